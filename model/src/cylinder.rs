@@ -1,0 +1,153 @@
+//! Motion of the cylinder, Eq. (7), in closed form.
+
+use core::f64::consts::TAU;
+
+/// Force on the cylinder over its mass: harmonic, plus an external part that is linear in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// A / M, m/s^2.
+    pub amplitude: f64,
+    /// `f_0`, Hz.
+    pub frequency: f64,
+    /// Phase, rad, the phase noise included.
+    pub phase: f64,
+    /// External force over M at the start of the motion, m/s^2.
+    pub external: f64,
+    /// Its rate, m/s^3.
+    pub external_rate: f64,
+}
+
+impl Drive {
+    /// 2 pi `f_0`, rad/s.
+    pub fn omega(&self) -> f64 {
+        TAU * self.frequency
+    }
+
+    /// True if the force never changes.
+    pub fn is_constant(&self) -> bool {
+        self.amplitude == 0.0 && self.external_rate == 0.0
+    }
+
+    /// 2 pi `f_0` t + phase at `time` t, s, reduced by whole turns before the phase is added, so that a long run loses
+    /// no digits.
+    pub fn angle(&self, time: f64) -> f64 {
+        TAU * cycle_fraction(self.frequency, time) + self.phase
+    }
+}
+
+/// Motion of the cylinder from one change of the force to the next: position and velocity at `start` and the force
+/// since then. Values are evaluated from the start, never accumulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CylinderMotion {
+    /// Time from which this motion holds, s.
+    pub start: f64,
+    /// `z_M` at the start, m.
+    pub position: f64,
+    /// `z_M'` at the start, m/s.
+    pub velocity: f64,
+    /// Force over mass.
+    pub drive: Drive,
+    /// Angle of the harmonic force at the start, rad, and its sine and cosine.
+    sin_start: f64,
+    cos_start: f64,
+}
+
+impl CylinderMotion {
+    /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
+    pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
+        let (sin_start, cos_start) = drive.angle(start).sin_cos();
+        Self { start, position, velocity, drive, sin_start, cos_start }
+    }
+
+    /// `z_M''`, m/s^2, at `time`, s: Eq. (7).
+    pub fn acceleration(&self, time: f64) -> f64 {
+        self.drive.amplitude * self.drive.angle(time).cos()
+            + self.drive.external
+            + self.drive.external_rate * (time - self.start)
+    }
+
+    /// `z_M'''`, m/s^3, at `time`, s.
+    pub fn jerk(&self, time: f64) -> f64 {
+        self.drive.external_rate - self.drive.amplitude * self.drive.omega() * self.drive.angle(time).sin()
+    }
+
+    /// `z_M'`, m/s, at `time`, s: Eq. (7) integrated once.
+    pub fn velocity(&self, time: f64) -> f64 {
+        let elapsed = time - self.start;
+        let harmonic = self.drive.amplitude / self.drive.omega() * (self.drive.angle(time).sin() - self.sin_start);
+        self.velocity + harmonic + elapsed * (self.drive.external + 0.5 * self.drive.external_rate * elapsed)
+    }
+
+    /// `z_M`, m, at `time`, s: Eq. (7) integrated twice.
+    pub fn position(&self, time: f64) -> f64 {
+        let elapsed = time - self.start;
+        let omega = self.drive.omega();
+        let swing = self.drive.amplitude / (omega * omega);
+        let drift = self.velocity - swing * omega * self.sin_start;
+        let external = 0.5 * self.drive.external + elapsed * self.drive.external_rate / 6.0;
+        self.position + swing * (self.cos_start - self.drive.angle(time).cos()) + elapsed * (drift + elapsed * external)
+    }
+
+    /// The same motion described from `time`, s, on, under another drive.
+    #[must_use]
+    pub fn continued(&self, time: f64, drive: Drive) -> Self {
+        Self::new(time, self.position(time), self.velocity(time), drive)
+    }
+}
+
+/// Fraction of a turn in `frequency` x `time`, in [-1/2, 1/2]. The product is formed exactly, as a sum of two doubles
+/// (Dekker 1971), so that the fraction is right to rounding however many turns there were.
+pub fn cycle_fraction(frequency: f64, time: f64) -> f64 {
+    let product = frequency * time;
+    let (a, b) = split(frequency);
+    let (c, d) = split(time);
+    let error = ((a * c - product) + a * d + b * c) + b * d;
+    (product - product.round()) + error
+}
+
+/// High and low half of `x`; their sum is `x`, and products of halves are exact.
+fn split(x: f64) -> (f64, f64) {
+    const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
+    let scaled = SPLITTER * x;
+    let high = scaled - (scaled - x);
+    (high, x - high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn the_phase_keeps_its_digits_for_a_long_run() {
+        // 2.1 Hz has no finite binary expansion; the fused product is the reference.
+        for time in [0.123, 1.0e3 + 0.1, 1.0e6 + 0.3, 1.0e9 + 0.7] {
+            let product: f64 = 2.1 * time;
+            let exact = (product - product.round()) + 2.1_f64.mul_add(time, -product);
+            assert_eq!(cycle_fraction(2.1, time), exact, "at {time} s");
+        }
+    }
+
+    #[test]
+    fn velocity_and_acceleration_are_the_derivatives_of_position() {
+        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: -0.2 };
+        let motion = CylinderMotion::new(0.37, 0.01, -0.2, drive);
+        for k in 0..50 {
+            let (t, h) = (0.4 + 0.06 * f64::from(k), 1e-4);
+            let slope =
+                |f: &dyn Fn(f64) -> f64| (8.0 * (f(t + h) - f(t - h)) - (f(t + 2.0 * h) - f(t - 2.0 * h))) / (12.0 * h);
+            assert_relative_eq!(slope(&|t| motion.position(t)), motion.velocity(t), epsilon = 1e-10);
+            assert_relative_eq!(slope(&|t| motion.velocity(t)), motion.acceleration(t), epsilon = 1e-9);
+            assert_relative_eq!(slope(&|t| motion.acceleration(t)), motion.jerk(t), epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_motion_continued_with_the_same_force_goes_on_as_before() {
+        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: 0.0 };
+        let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive);
+        let continued = motion.continued(1.3, drive);
+        assert_relative_eq!(motion.position(2.9), continued.position(2.9), max_relative = 1e-13);
+        assert_relative_eq!(motion.velocity(2.9), continued.velocity(2.9), max_relative = 1e-13);
+    }
+}

@@ -1,0 +1,61 @@
+//! What the model refuses, with the thing, its value and its bound in each message.
+
+/// Error of the model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// A parameter is not finite or outside its bounds.
+    #[error("{name} = {value} {unit} is outside its bounds [{min}, {max}] {unit}")]
+    Bounds {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Value given.
+        value: f64,
+        /// Unit of value and bounds.
+        unit: &'static str,
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+    },
+    /// Two or more parameters contradict each other.
+    #[error("{name} = {value} {unit} must be greater than {bound_name} = {bound} {unit}")]
+    Order {
+        /// Name of the quantity that is too small.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Name of the quantity that it must exceed.
+        bound_name: &'static str,
+        /// Value of that quantity.
+        bound: f64,
+        /// Unit of both.
+        unit: &'static str,
+    },
+    /// An input or a time is NaN or infinite.
+    #[error("{name} = {value} is not a finite number")]
+    NotFinite {
+        /// Name of the input.
+        name: &'static str,
+        /// Value given.
+        value: f64,
+    },
+    /// Time was asked to run backwards.
+    #[error("time cannot go back from {from} s to {to} s")]
+    Backwards {
+        /// Present time, s.
+        from: f64,
+        /// Time asked for, s.
+        to: f64,
+    },
+    /// More events than the budget within one excitation period: the motion is beyond what can be resolved.
+    #[error(
+        "{limit} events within one excitation period up to t = {time} s: the restitution coefficient is too close to 1 \
+         for bounces this small"
+    )]
+    TooManyEvents {
+        /// Time of the last event, s.
+        time: f64,
+        /// Events allowed in one period.
+        limit: u64,
+    },
+}

@@ -1,0 +1,292 @@
+//! The vibro-impact harvester under the impulsive law: from event to event, exactly.
+
+mod events;
+
+use self::events::{Event, Search};
+use crate::cylinder::{CylinderMotion, Drive};
+use crate::error::ModelError;
+use crate::flight::{Flight, Side};
+use crate::membrane::Membrane;
+use crate::noise;
+use crate::parameters::{NoiseModel, OutsideGap, Parameters};
+use crate::pulse::{Deflection, PulseShape, Pulses};
+
+/// Sums over all impacts so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Totals {
+    /// Impacts resolved one by one. Of a chattering sequence, the endless tail that is summed in closed form is not
+    /// counted here; its gains are contained below.
+    pub impacts: u64,
+    /// Chattering sequences that ended with the ball at rest on a membrane.
+    pub chatters: u64,
+    /// Times that a resting ball left a membrane.
+    pub releases: u64,
+    /// Relative speed of the last impact, m/s.
+    pub last_speed: f64,
+    /// Sum of `U_DE4` - `U_in`, V: the numerator of Eq. (15).
+    pub voltage_gain: f64,
+    /// Sum of W, J, Eq. (13): the numerator of Eq. (14).
+    pub energy: f64,
+}
+
+impl Totals {
+    /// Events processed: what the run cost.
+    pub fn events(&self) -> u64 {
+        self.impacts + self.releases
+    }
+}
+
+/// The ball since its last event: straight on while free, carried by the membrane while resting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ball {
+    since: f64,
+    position: f64,
+    velocity: f64,
+    resting: Option<Side>,
+}
+
+/// The phase noise: sample number and, read as a Wiener process, its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Noise {
+    sample: u64,
+    walk: f64,
+}
+
+/// The harvester: state at one time, moved forward by [`Harvester::advance`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Harvester {
+    parameters: Parameters,
+    membrane: Membrane,
+    shape: PulseShape,
+    time: f64,
+    cylinder: CylinderMotion,
+    ball: Ball,
+    noise: Noise,
+    search: Search,
+    pulses: [Pulses; 2],
+    totals: Totals,
+    /// Period in which events are being counted, and their number: the budget.
+    period: f64,
+    period_events: u64,
+}
+
+impl Harvester {
+    /// The harvester at `start`, s, in its initial state.
+    ///
+    /// # Errors
+    /// A parameter out of bounds ([`Parameters::validate`]); a start time that is not finite.
+    pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
+        parameters.validate()?;
+        finite("start time", start)?;
+        let p = *parameters;
+        let noise = Noise { sample: sample_number(&p, start), walk: 0.0 };
+        let drive = Drive {
+            amplitude: p.amplitude / p.cylinder_mass,
+            frequency: p.frequency,
+            phase: phase(&p, &noise),
+            external: 0.0,
+            external_rate: 0.0,
+        };
+        let cylinder = CylinderMotion::new(start, p.cylinder_position, p.cylinder_velocity, drive);
+        let half = p.travel() / 2.0;
+        let position = match p.outside_gap {
+            OutsideGap::Free => p.ball_position,
+            OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
+        };
+        let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
+        let flight = Flight::new(&cylinder, start, p.cylinder_position - position, p.ball_velocity, half);
+        let mut harvester = Self {
+            parameters: p,
+            membrane: Membrane::new(&p),
+            shape: PulseShape::new(p.stiffness_exponent, p.restitution),
+            time: start,
+            cylinder,
+            ball,
+            noise,
+            search: Search::new(flight),
+            pulses: [Pulses::default(), Pulses::default()],
+            totals: Totals::default(),
+            period: 0.0,
+            period_events: 0,
+        };
+        harvester.rest_if_started_at_rest();
+        harvester.advance(start)?;
+        Ok(harvester)
+    }
+
+    /// Moves on to `time`, s, through every event up to and including it. How a run is split into calls changes nothing.
+    ///
+    /// # Errors
+    /// A time that is not finite or lies in the past; more events than can be resolved.
+    pub fn advance(&mut self, time: f64) -> Result<(), ModelError> {
+        finite("time", time)?;
+        if time < self.time {
+            return Err(ModelError::Backwards { from: self.time, to: time });
+        }
+        while let Some(event) = self.next_event(time).filter(|event| event.time() <= time) {
+            self.process(event)?;
+        }
+        self.time = time;
+        // Look one period ahead, so that the next impact is known; what is found does not depend on the steps.
+        self.next_event(time + 1.0 / self.parameters.frequency);
+        Ok(())
+    }
+
+    /// Sets the external force on the cylinder from now on: `force`, N, growing by `rate`, N/s. Nothing changes, to the
+    /// last bit, if this is what it does already.
+    ///
+    /// # Errors
+    /// A force or rate that is not finite.
+    pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
+        finite("externalForce", force)?;
+        finite("derivative of externalForce", rate)?;
+        let mass = self.parameters.cylinder_mass;
+        let drive = self.cylinder.drive;
+        let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
+        if force / mass != present || rate / mass != drive.external_rate {
+            self.restart(self.time, Drive { external: force / mass, external_rate: rate / mass, ..drive });
+            self.next_event(self.time + 1.0 / self.parameters.frequency);
+        }
+        Ok(())
+    }
+
+    fn half_travel(&self) -> f64 {
+        self.parameters.travel() / 2.0
+    }
+
+    fn ball_at(&self, time: f64) -> Ball {
+        let (position, velocity) = (self.ball_position_at(time), self.ball_velocity_at(time));
+        Ball { since: time, position, velocity, resting: None }
+    }
+
+    fn relative_displacement_at(&self, time: f64) -> f64 {
+        match self.ball.resting {
+            Some(side) => side.sign() * self.half_travel(),
+            None => self.search.flight.derivative(0, time - self.search.flight.start),
+        }
+    }
+
+    fn ball_position_at(&self, time: f64) -> f64 {
+        match self.ball.resting {
+            Some(side) => self.cylinder.position(time) - side.sign() * self.half_travel(),
+            None => self.ball.position + self.ball.velocity * (time - self.ball.since),
+        }
+    }
+
+    fn ball_velocity_at(&self, time: f64) -> f64 {
+        if self.ball.resting.is_some() { self.cylinder.velocity(time) } else { self.ball.velocity }
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The membrane, the same at both ends.
+    pub fn membrane(&self) -> &Membrane {
+        &self.membrane
+    }
+
+    /// Present time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// `z_M`, m.
+    pub fn cylinder_position(&self) -> f64 {
+        self.cylinder.position(self.time)
+    }
+
+    /// `z_M'`, m/s.
+    pub fn cylinder_velocity(&self) -> f64 {
+        self.cylinder.velocity(self.time)
+    }
+
+    /// `z_M''`, m/s^2, Eq. (7).
+    pub fn cylinder_acceleration(&self) -> f64 {
+        self.cylinder.acceleration(self.time)
+    }
+
+    /// `z_m`, m.
+    pub fn ball_position(&self) -> f64 {
+        self.ball_position_at(self.time)
+    }
+
+    /// `z_m'`, m/s.
+    pub fn ball_velocity(&self) -> f64 {
+        self.ball_velocity_at(self.time)
+    }
+
+    /// dz = `z_M` - `z_m`, m.
+    pub fn relative_displacement(&self) -> f64 {
+        self.relative_displacement_at(self.time)
+    }
+
+    /// Deflection of the membrane at `side` and its rate.
+    pub fn deflection(&self, side: Side) -> Deflection {
+        self.pulses[side.index()].at(&self.shape, self.time)
+    }
+
+    /// Capacitance of the membrane at `side`, F, Eq. (1).
+    pub fn capacitance(&self, side: Side) -> f64 {
+        self.membrane.capacitance(self.deflection(side).value)
+    }
+
+    /// Time derivative of the capacitance at `side`, F/s.
+    pub fn capacitance_rate(&self, side: Side) -> f64 {
+        let deflection = self.deflection(side);
+        self.membrane.capacitance_slope(deflection.value) * deflection.rate
+    }
+
+    /// The membrane on which the ball rests.
+    pub fn resting(&self) -> Option<Side> {
+        self.ball.resting
+    }
+
+    /// Sums over all impacts so far.
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Time of the next impact, s, if the external force goes on as it is; none if no impact is foreseen within at
+    /// least one excitation period, while the ball rests, or beyond the present sample of the phase noise.
+    pub fn next_impact(&self) -> Option<f64> {
+        match self.search.found {
+            Some(Event::Impact { time, .. }) => Some(time),
+            _ => None,
+        }
+    }
+
+    /// The next time, s, at which a capacitance has a kink or an extremum: the peak or the end of a pulse, or an impact.
+    pub fn next_knot(&self) -> Option<f64> {
+        let pulses = self.pulses.iter().filter_map(|pulses| pulses.next_knot(&self.shape, self.time));
+        pulses.chain(self.next_impact()).min_by(f64::total_cmp)
+    }
+}
+
+/// Number of the noise sample that holds at `time`, s.
+fn sample_number(parameters: &Parameters, time: f64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates; a start before t = 0 gets sample 0
+    let mut sample = (time / parameters.noise_hold) as u64;
+    // The quotient is rounded, the grid is the product: make sure that the sample's interval ends after `time`.
+    while (sample + 1) as f64 * parameters.noise_hold <= time {
+        sample += 1;
+    }
+    sample
+}
+
+/// Phase of the harmonic force under the present noise sample, rad.
+fn phase(parameters: &Parameters, noise: &Noise) -> f64 {
+    if parameters.phase_noise == 0.0 {
+        return parameters.phase;
+    }
+    let xi = match parameters.noise_model {
+        NoiseModel::Held => noise::normal(parameters.seed, noise.sample),
+        NoiseModel::Wiener => noise.walk,
+    };
+    parameters.phase + parameters.phase_noise * xi
+}
+
+fn finite(name: &'static str, value: f64) -> Result<(), ModelError> {
+    if value.is_finite() { Ok(()) } else { Err(ModelError::NotFinite { name, value }) }
+}

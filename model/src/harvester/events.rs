@@ -1,0 +1,239 @@
+//! The events of the motion: what comes next, and what it does.
+
+use super::{Ball, Harvester, phase};
+use crate::cylinder::Drive;
+use crate::error::ModelError;
+use crate::flight::{Flight, Side};
+use crate::noise;
+use crate::parameters::NoiseModel;
+use crate::pulse::Pulse;
+
+/// Relative change of the wall's acceleration over the rest of a chattering sequence below which it counts as constant,
+/// so that the rest is a geometric series.
+const CHATTER_TOLERANCE: f64 = 1e-5;
+
+/// Height of a bounce, in units of s/2, below which a ball may count as resting.
+const CHATTER_HEIGHT: f64 = 1e-9;
+
+/// Events allowed within one excitation period.
+const EVENT_BUDGET: u64 = 1_000_000;
+
+/// What the next event is. Times in s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Event {
+    Impact {
+        time: f64,
+        side: Side,
+    },
+    Release {
+        time: f64,
+    },
+    /// The phase noise takes its next sample.
+    NoiseSample {
+        time: f64,
+    },
+}
+
+impl Event {
+    pub(super) fn time(self) -> f64 {
+        match self {
+            Self::Impact { time, .. } | Self::Release { time } | Self::NoiseSample { time } => time,
+        }
+    }
+}
+
+/// How far the present flight (or rest) has been searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Search {
+    pub(super) flight: Flight,
+    /// Windows before this one hold no event.
+    window: u64,
+    pub(super) found: Option<Event>,
+    /// No event will ever come.
+    exhausted: bool,
+}
+
+impl Search {
+    pub(super) fn new(flight: Flight) -> Self {
+        Self { flight, window: 0, found: None, exhausted: false }
+    }
+}
+
+impl Harvester {
+    /// A ball that starts on a membrane, at rest relative to it and pushed against it, rests without an impact.
+    pub(super) fn rest_if_started_at_rest(&mut self) {
+        let dz = self.relative_displacement();
+        let side = if dz > 0.0 { Side::Left } else { Side::Right };
+        let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
+        let at_rest = self.cylinder.velocity == self.ball.velocity;
+        if touching && at_rest && self.stays_on_membrane(self.time, side, 0.0) {
+            self.rest(self.time, side);
+        }
+    }
+
+    /// Takes cylinder and ball at `time` as the start of a new motion under `drive`.
+    pub(super) fn restart(&mut self, time: f64, drive: Drive) {
+        let dz = self.relative_displacement_at(time);
+        self.cylinder = self.cylinder.continued(time, drive);
+        self.new_search(time, dz);
+    }
+
+    /// Searches from `time` on, at which `z_M` - `z_m` is `dz`. That is handed on rather than computed from positions,
+    /// so that a ball on a membrane is there to the last bit however far the cylinder has drifted.
+    fn new_search(&mut self, time: f64, dz: f64) {
+        let flight = Flight::new(&self.cylinder, time, dz, self.ball_velocity_at(time), self.half_travel());
+        self.search = Search::new(flight);
+    }
+
+    /// The next event, if there is one before the search windows have passed `until`, s.
+    pub(super) fn next_event(&mut self, until: f64) -> Option<Event> {
+        let limit = self.noise_limit();
+        let start = self.search.flight.start;
+        let limit_elapsed = limit.map_or(f64::INFINITY, |time| time - start);
+        while self.search.found.is_none() && !self.search.exhausted {
+            let begin = self.search.window as f64 * self.search.flight.window_length();
+            if begin >= limit_elapsed {
+                self.search.found = limit.map(|time| Event::NoiseSample { time });
+                break;
+            }
+            if start + begin > until {
+                break;
+            }
+            self.search_window(limit_elapsed);
+        }
+        self.search.found
+    }
+
+    /// Searches one window of the flight or of the rest.
+    fn search_window(&mut self, limit: f64) {
+        let Search { flight, window, .. } = self.search;
+        if let Some(side) = self.ball.resting {
+            let release = flight.release_in_window(side, window, limit);
+            self.search.found = release.map(|elapsed| Event::Release { time: flight.start + elapsed });
+            self.search.window += 1;
+            // Without a force that changes, the ball rests for ever.
+            self.search.exhausted = release.is_none() && self.cylinder.drive.is_constant() && limit == f64::INFINITY;
+            return;
+        }
+        let Some(window) = flight.skip(window) else {
+            if limit == f64::INFINITY {
+                self.search.exhausted = true;
+            } else {
+                self.search.window = u64::MAX;
+            }
+            return;
+        };
+        let contact = flight.contact_in_window(window, limit);
+        self.search.found =
+            contact.map(|contact| Event::Impact { time: flight.start + contact.elapsed, side: contact.side });
+        self.search.window = window + 1;
+    }
+
+    pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
+        match event {
+            Event::Impact { time, side } => {
+                self.spend(time)?;
+                self.impact(time, side);
+            }
+            Event::Release { time } => {
+                self.spend(time)?;
+                let dz = self.relative_displacement_at(time);
+                self.ball = self.ball_at(time);
+                self.totals.releases += 1;
+                self.new_search(time, dz);
+            }
+            Event::NoiseSample { time } => self.next_noise_sample(time),
+        }
+        Ok(())
+    }
+
+    /// Counts an event against the budget of its excitation period.
+    fn spend(&mut self, time: f64) -> Result<(), ModelError> {
+        let period = (time * self.parameters.frequency).floor();
+        if period != self.period {
+            (self.period, self.period_events) = (period, 0);
+        }
+        self.period_events += 1;
+        if self.period_events > EVENT_BUDGET {
+            return Err(ModelError::TooManyEvents { time, limit: EVENT_BUDGET });
+        }
+        Ok(())
+    }
+
+    /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
+    fn impact(&mut self, time: f64, side: Side) {
+        let wall = self.cylinder.velocity(time);
+        let speed = (side.sign() * (wall - self.ball.velocity)).max(0.0);
+        let peak = self.membrane.deflection(speed);
+        self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak });
+        self.totals.impacts += 1;
+        self.totals.last_speed = speed;
+        self.credit(self.membrane.capacitance_excess(peak));
+        let rebound = self.parameters.restitution * speed;
+        self.ball = Ball {
+            since: time,
+            position: self.cylinder.position(time) - side.sign() * self.half_travel(),
+            velocity: wall + side.sign() * rebound, // Eq. (11), with v_M subtracted from both sides
+            resting: None,
+        };
+        self.new_search(time, side.sign() * self.half_travel());
+        if self.stays_on_membrane(time, side, rebound) {
+            self.credit(self.membrane.excess_of_chatter(rebound, self.parameters.restitution));
+            self.totals.chatters += 1;
+            self.rest(time, side);
+        }
+    }
+
+    /// From `time`, s, on the ball rests on the membrane at `side`.
+    fn rest(&mut self, time: f64, side: Side) {
+        self.ball.resting = Some(side);
+        self.new_search(time, side.sign() * self.half_travel());
+    }
+
+    /// Adds impacts whose `C_3` / `C_2` - 1 sum to `excess`: Eqs. (12) and (13).
+    fn credit(&mut self, excess: f64) {
+        let bias = self.parameters.bias_voltage;
+        self.totals.voltage_gain += bias * excess;
+        self.totals.energy += 0.5 * bias * bias * self.membrane.rest_capacitance() * excess;
+    }
+
+    /// Whether a ball that leaves `side` with relative speed `rebound`, m/s, comes to rest there, because the wall
+    /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the
+    /// push is constant meanwhile.
+    fn stays_on_membrane(&self, time: f64, side: Side, rebound: f64) -> bool {
+        let push = side.sign() * self.cylinder.acceleration(time);
+        let jerk = self.cylinder.jerk(time);
+        if push <= 0.0 {
+            return push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0;
+        }
+        let height = rebound * rebound / (2.0 * push);
+        if height <= 4.0 * self.search.flight.rounding(0.0) {
+            return true;
+        }
+        // Flights of 2 v / a, 2 v r / a, ...: their sum.
+        let duration = 2.0 * rebound / (push * (1.0 - self.parameters.restitution));
+        let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
+        let change = duration * (jerk.abs() + 0.5 * duration * curvature);
+        let noise_limit = self.noise_limit().unwrap_or(f64::INFINITY);
+        height <= CHATTER_HEIGHT * self.half_travel()
+            && change <= CHATTER_TOLERANCE * push
+            && time + duration <= noise_limit
+    }
+
+    fn next_noise_sample(&mut self, time: f64) {
+        let p = &self.parameters;
+        if p.noise_model == NoiseModel::Wiener {
+            self.noise.walk += p.noise_hold.sqrt() * noise::normal(p.seed, self.noise.sample);
+        }
+        self.noise.sample += 1;
+        let drive = Drive { phase: phase(p, &self.noise), ..self.cylinder.drive };
+        let external = drive.external + drive.external_rate * (time - self.cylinder.start);
+        self.restart(time, Drive { external, ..drive });
+    }
+
+    /// End of the present hold interval of the phase noise, s; none without noise.
+    fn noise_limit(&self) -> Option<f64> {
+        let p = &self.parameters;
+        (p.phase_noise > 0.0).then(|| (self.noise.sample + 1) as f64 * p.noise_hold)
+    }
+}

@@ -1,0 +1,157 @@
+//! The parameters of the harvester: name, unit, start value, bounds and meaning of each, in one table.
+
+use crate::error::ModelError;
+
+/// Vacuum permittivity, F/m (CODATA 2022). The paper rounds it to 8.85e-12.
+pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
+
+/// One real parameter: what a user must know of it, and how to reach it.
+#[derive(Debug, Clone, Copy)]
+pub struct Quantity {
+    /// Structured name, as the FMU shows it.
+    pub name: &'static str,
+    /// SI unit; "1" for a pure number.
+    pub unit: &'static str,
+    /// Start value: Section 4.2 of the paper, with A and r of Fig. 14.
+    pub start: f64,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+    /// Symbol and equation of the paper, and meaning.
+    pub description: &'static str,
+    /// Reads the parameter.
+    pub get: fn(&Parameters) -> f64,
+    /// Writes the parameter, unchecked.
+    pub set: fn(&mut Parameters, f64),
+}
+
+impl Quantity {
+    fn check(&self, parameters: &Parameters) -> Result<(), ModelError> {
+        let value = (self.get)(parameters);
+        // NaN fails the comparison, too.
+        if value >= self.min && value <= self.max {
+            return Ok(());
+        }
+        Err(ModelError::Bounds { name: self.name, value, unit: self.unit, min: self.min, max: self.max })
+    }
+}
+
+macro_rules! parameters {
+    ($($field:ident: $name:literal, $unit:literal, $start:expr, $min:expr, $max:expr, $description:literal;)*) => {
+        /// Parameters of one harvester. Real ones are listed in [`Parameters::TABLE`].
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct Parameters {
+            $(#[doc = concat!("`", $name, "` [", $unit, "]: ", $description)] pub $field: f64,)*
+            /// `excitation.seed`: seed of the phase noise.
+            pub seed: i32,
+            /// `excitation.noiseModel`: how the phase noise is read.
+            pub noise_model: NoiseModel,
+            /// `initial.outsideGap`: what a start beyond a membrane means.
+            pub outside_gap: OutsideGap,
+        }
+
+        impl Default for Parameters {
+            fn default() -> Self {
+                Self { $($field: $start,)* seed: 1, noise_model: NoiseModel::Held, outside_gap: OutsideGap::Project }
+            }
+        }
+
+        impl Parameters {
+            /// Every real parameter, in the order in which the FMU lists them.
+            pub const TABLE: &'static [Quantity] = &[$(Quantity {
+                name: $name, unit: $unit, start: $start, min: $min, max: $max, description: $description,
+                get: |p| p.$field, set: |p, value| p.$field = value,
+            },)*];
+        }
+    };
+}
+
+parameters! {
+    cylinder_mass: "cylinder.mass", "kg", 0.1245, 1e-6, 1e6, "M: mass of the outer structure without the ball, Eq. (7)";
+    cylinder_length: "cylinder.length", "m", 0.042, 0.0, 100.0, "d: length of the cylinder, Eq. (8)";
+    frame_width: "frame.width", "m", 0.006, 0.0, 10.0, "w: width of the frame that holds a membrane, Eq. (8)";
+    ball_mass: "ball.mass", "kg", 0.0035, 1e-9, 1e6, "m: mass of the ball, Eq. (9)";
+    ball_radius: "ball.radius", "m", 0.005, 1e-6, 1.0, "r_b: radius of the ball, Eq. (4)";
+    initial_radius: "membrane.initialRadius", "m", 0.003_15, 1e-6, 1.0, "R_1: radius of the membrane before it is stretched, Table 1";
+    initial_thickness: "membrane.initialThickness", "m", 0.001, 1e-9, 0.1, "h_1: thickness of the membrane before it is stretched, Table 1";
+    prestretch: "membrane.prestretch", "1", 2.0, 1.0, 20.0, "lambda: radial pre-stretch, R_2 = lambda R_1, Section 2.2";
+    relative_permittivity: "membrane.relativePermittivity", "1", 3.4, 1.0, 1e4, "epsilon_r: relative permittivity of the membrane, Eq. (1)";
+    stiffness: "membrane.stiffness", "N/m^n", 4.0847e5, 1e-6, 1e15, "K: factor of the force law f = K x^n, Eq. (2)";
+    stiffness_exponent: "membrane.stiffnessExponent", "1", 2.6, 1.0, 10.0, "n: exponent of the force law f = K x^n, Eq. (2)";
+    restitution: "membrane.restitution", "1", 0.6, 0.0, 1.0, "r: coefficient of restitution, Eq. (11)";
+    amplitude: "excitation.amplitude", "N", 0.5, 0.0, 1e6, "A: amplitude of the harmonic force on the cylinder, Eq. (7)";
+    frequency: "excitation.frequency", "Hz", 2.0, 1e-3, 1e5, "f_0: frequency of the harmonic force, Eq. (7)";
+    phase: "excitation.phase", "rad", 0.0, -1e3, 1e3, "Phase of the harmonic force at t = 0; 0 in the paper";
+    phase_noise: "excitation.phaseNoise", "rad", 0.0, 0.0, 1e3, "sigma: intensity of the phase noise, D = sigma^2, Section 5.2 (rad/sqrt(s) when read as a Wiener process)";
+    noise_hold: "excitation.noiseHold", "s", 1e-5, 1e-9, 1e3, "Time for which one sample xi of the phase noise is held, Section 5.2";
+    cylinder_position: "initial.cylinderPosition", "m", 0.0, -1e3, 1e3, "z_M(0): position of the cylinder at the start, Section 4.2";
+    cylinder_velocity: "initial.cylinderVelocity", "m/s", 0.0, -1e3, 1e3, "z_M'(0): velocity of the cylinder at the start, Section 4.2";
+    ball_position: "initial.ballPosition", "m", 0.0, -1e3, 1e3, "z_m(0): position of the ball at the start, Section 4.2";
+    ball_velocity: "initial.ballVelocity", "m/s", 0.0, -1e3, 1e3, "z_m'(0): velocity of the ball at the start, Section 4.2";
+    bias_voltage: "biasVoltage", "V", 2000.0, 0.0, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
+}
+
+/// How the phase noise of Section 5.2 is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoiseModel {
+    /// F = A cos(2 pi f0 t + sigma xi), a fresh xi in each hold interval: the paper's formula as it stands.
+    Held,
+    /// F = A cos(2 pi f0 t + sigma W(t)), W a Wiener process sampled at each hold interval.
+    Wiener,
+}
+
+/// What a start with `|z_M - z_m| > s/2` means; the paper's Fig. 12 has one and does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutsideGap {
+    /// The start is taken as it is: the ball is free until it has come inside the gap, and meets membranes from then on.
+    Free,
+    /// The ball is put on the membrane that it is beyond; all velocities stay.
+    Project,
+}
+
+impl Parameters {
+    /// Checks each parameter against its bounds, and those that depend on each other.
+    ///
+    /// # Errors
+    /// The first parameter that is not finite or out of bounds; `ball.travel` not positive; `membrane.radius` not
+    /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution).
+    pub fn validate(&self) -> Result<(), ModelError> {
+        Self::TABLE.iter().try_for_each(|quantity| quantity.check(self))?;
+        exceeds("membrane.radius", self.membrane_radius(), "ball.radius", self.ball_radius)?;
+        exceeds("ball.travel", self.travel(), "its lower bound", 0.0)
+    }
+
+    /// s = d + 2 w - 2 `r_b`, m: the largest distance that the ball moves inside the cylinder (Section 3.2).
+    pub fn travel(&self) -> f64 {
+        self.cylinder_length + 2.0 * self.frame_width - 2.0 * self.ball_radius
+    }
+
+    /// `R_2` = lambda `R_1`, m (Section 2.2).
+    pub fn membrane_radius(&self) -> f64 {
+        self.prestretch * self.initial_radius
+    }
+
+    /// `h_2` = `h_1` / lambda^2, m (Section 2.2).
+    pub fn membrane_thickness(&self) -> f64 {
+        self.initial_thickness / (self.prestretch * self.prestretch)
+    }
+
+    /// Amplitude of the cylinder's motion under the harmonic force, A / (M (2 pi f0)^2), m (Section 5.1).
+    pub fn cylinder_amplitude(&self) -> f64 {
+        let omega = core::f64::consts::TAU * self.frequency;
+        self.amplitude / (self.cylinder_mass * omega * omega)
+    }
+
+    /// gamma, the cylinder's amplitude over half the ball's travel, Eq. (16).
+    pub fn normalized_amplitude(&self) -> f64 {
+        self.cylinder_amplitude() / (self.travel() / 2.0)
+    }
+}
+
+fn exceeds(name: &'static str, value: f64, bound_name: &'static str, bound: f64) -> Result<(), ModelError> {
+    if value > bound {
+        return Ok(());
+    }
+    Err(ModelError::Order { name, value, bound_name, bound, unit: "m" })
+}

@@ -1,0 +1,267 @@
+//! The deflection of a membrane in time after an impact, under the impulsive law.
+//!
+//! The paper's impact takes no time; C(t) needs a pulse of finite length. Loading follows the paper's own energy
+//! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
+//! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
+
+/// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
+const MIN_RESTITUTION: f64 = 0.01;
+
+/// One pulse: an impact and what it does to the membrane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Time of the impact, s.
+    pub start: f64,
+    /// Relative speed of the impact, m/s.
+    pub speed: f64,
+    /// Largest deflection delta, m, Eq. (10).
+    pub peak: f64,
+}
+
+/// Deflection and its rate at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deflection {
+    /// Deflection x, m.
+    pub value: f64,
+    /// dx/dt, m/s.
+    pub rate: f64,
+}
+
+/// The shape that all pulses of one exponent n share: y = x / delta against the fraction of the loading time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseShape {
+    exponent: f64,
+    /// Loading time times impact speed over delta: sqrt(pi) Gamma(1 + 1/(n+1)) / Gamma(1/2 + 1/(n+1)).
+    loading: f64,
+    stretch: f64,
+}
+
+impl PulseShape {
+    /// Shape for force exponent n of Eq. (2) and restitution r of Eq. (11).
+    pub fn new(exponent: f64, restitution: f64) -> Self {
+        // The two series meet where y^(n+1) = 1/2; each converges there at least as fast as 2^-k.
+        let half = 0.5_f64.powf(1.0 / (exponent + 1.0));
+        let loading = half * lower_series(exponent, 0.5) + upper_series(exponent, 0.5) * 0.5_f64.sqrt();
+        Self { exponent, loading, stretch: 1.0 / restitution.max(MIN_RESTITUTION) }
+    }
+
+    /// Time from the impact to the largest deflection, s.
+    pub fn loading_time(&self, pulse: &Pulse) -> f64 {
+        if pulse.speed > 0.0 { self.loading * pulse.peak / pulse.speed } else { 0.0 }
+    }
+
+    /// Time of the largest deflection, s.
+    pub fn peak_time(&self, pulse: &Pulse) -> f64 {
+        pulse.start + self.loading_time(pulse)
+    }
+
+    /// Time at which the membrane is flat again, s.
+    pub fn end_time(&self, pulse: &Pulse) -> f64 {
+        pulse.start + self.loading_time(pulse) * (1.0 + self.stretch)
+    }
+
+    /// Deflection at `time`, s; zero before and after the pulse.
+    pub fn at(&self, pulse: &Pulse, time: f64) -> Deflection {
+        let loading_time = self.loading_time(pulse);
+        let elapsed = time - pulse.start;
+        if elapsed <= 0.0 || elapsed >= loading_time * (1.0 + self.stretch) {
+            return Deflection::default();
+        }
+        if elapsed <= loading_time {
+            let (y, slope) = self.loading_curve(elapsed / loading_time);
+            return Deflection { value: pulse.peak * y, rate: pulse.speed * slope };
+        }
+        let (y, slope) = self.loading_curve(1.0 - (elapsed - loading_time) / (loading_time * self.stretch));
+        Deflection { value: pulse.peak * y, rate: -pulse.speed * slope / self.stretch }
+    }
+
+    /// y and dy/d(t v / delta) = sqrt(1 - y^(n+1)) at `fraction` (0 to 1) of the loading time.
+    ///
+    /// Inverts t v / delta = integral of dy / sqrt(1 - y^(n+1)) by Newton's method. The integral is close to y at small
+    /// y and close to a multiple of q = sqrt(1 - y^(n+1)) below its end, so each half is nearly linear in its own variable.
+    fn loading_curve(&self, fraction: f64) -> (f64, f64) {
+        let power = self.exponent + 1.0;
+        let target = fraction.clamp(0.0, 1.0) * self.loading;
+        let half = 0.5_f64.powf(1.0 / power);
+        if target <= half * lower_series(self.exponent, 0.5) {
+            let y = newton(target, half, |y| {
+                let w = y.powf(power);
+                (y * lower_series(self.exponent, w) - target, 1.0 / (1.0 - w).sqrt())
+            });
+            return (y, (1.0 - y.powf(power)).max(0.0).sqrt());
+        }
+        let rest = self.loading - target;
+        let q = newton(rest * power / 2.0, 0.5_f64.sqrt(), |q| {
+            let complement = q * q;
+            let slope = 2.0 / power * (1.0 - complement).powf(1.0 / power - 1.0);
+            (q * upper_series(self.exponent, complement) - rest, slope)
+        });
+        ((1.0 - q * q).powf(1.0 / power), q)
+    }
+}
+
+/// Integral of dy / sqrt(1 - y^(n+1)) from 0 to y, over y, at w = y^(n+1): 2F1(1/2, a; 1 + a; w) with a = 1 / (n+1).
+fn lower_series(exponent: f64, w: f64) -> f64 {
+    let a = 1.0 / (exponent + 1.0);
+    hypergeometric(w, |k| (0.5 + k) / (1.0 + k) * (a + k) / (a + k + 1.0))
+}
+
+/// The same integral from y to 1, over q = sqrt(1 - y^(n+1)), at c = q^2: 2a 2F1(1 - a, 1/2; 3/2; c) with a = 1 / (n+1).
+fn upper_series(exponent: f64, complement: f64) -> f64 {
+    let a = 1.0 / (exponent + 1.0);
+    2.0 * a * hypergeometric(complement, |k| (1.0 - a + k) / (1.0 + k) * (0.5 + k) / (1.5 + k))
+}
+
+/// Sum of a hypergeometric series at 0 <= `x` <= 1/2 from the ratio of its neighbouring coefficients, all below one.
+fn hypergeometric(x: f64, ratio: impl Fn(f64) -> f64) -> f64 {
+    const MAX_TERMS: u32 = 200;
+    let (mut sum, mut term) = (1.0, 1.0);
+    for k in 0..MAX_TERMS {
+        term *= x * ratio(f64::from(k));
+        sum += term;
+        if term < sum * 1e-17 {
+            break;
+        }
+    }
+    sum
+}
+
+/// Root of a nearly linear, convex, increasing function that returns value and slope.
+///
+/// `start` lies at or beyond the root, so the iteration falls towards it; `end` bounds the range of the function.
+fn newton(start: f64, end: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    const MAX_ITERATIONS: u32 = 20;
+    let mut x = start.clamp(0.0, end);
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = function(x);
+        let next = (x - value / slope).clamp(0.0, end);
+        let change = (next - x).abs();
+        x = next;
+        if change <= 1e-15 {
+            break;
+        }
+    }
+    x
+}
+
+/// Pulses under way on one membrane. Where they overlap, the larger deflection wins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pulses {
+    under_way: Vec<Pulse>,
+}
+
+impl Pulses {
+    /// Pulses kept at a time; of more, the smallest are dropped, which are hidden below the others.
+    const CAPACITY: usize = 256;
+
+    /// Adds the pulse of a new impact, and forgets those that have ended.
+    pub fn push(&mut self, shape: &PulseShape, pulse: Pulse) {
+        self.under_way.retain(|old| shape.end_time(old) > pulse.start);
+        if self.under_way.len() >= Self::CAPACITY {
+            self.under_way.pop();
+        }
+        // Largest peak first, so that `at` can stop early and a full list drops its smallest.
+        let position = self.under_way.partition_point(|old| old.peak >= pulse.peak);
+        self.under_way.insert(position, pulse);
+    }
+
+    /// Deflection of the membrane at `time`, s.
+    pub fn at(&self, shape: &PulseShape, time: f64) -> Deflection {
+        let mut largest = Deflection::default();
+        for pulse in &self.under_way {
+            if pulse.peak <= largest.value {
+                break;
+            }
+            let deflection = shape.at(pulse, time);
+            if deflection.value > largest.value {
+                largest = deflection;
+            }
+        }
+        largest
+    }
+
+    /// The first time after `time`, s, at which a pulse peaks or ends; none when the membrane is flat.
+    pub fn next_knot(&self, shape: &PulseShape, time: f64) -> Option<f64> {
+        let knots = self.under_way.iter().flat_map(|pulse| [shape.peak_time(pulse), shape.end_time(pulse)]);
+        knots.filter(|&knot| knot > time).min_by(f64::total_cmp)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Loading time times impact speed over delta for the linear spring, n = 1: a quarter of a sine's period.
+    const LINEAR_LOADING: f64 = core::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_linear_spring_gives_a_half_sine() {
+        let shape = PulseShape::new(1.0, 1.0);
+        let pulse = Pulse { start: 1.0, speed: 2.0, peak: 0.003 };
+        let quarter = LINEAR_LOADING * pulse.peak / pulse.speed;
+        assert_relative_eq!(shape.loading_time(&pulse), quarter, max_relative = 1e-14);
+        for k in 0..=200 {
+            let t = 2.0 * quarter * f64::from(k) / 200.0;
+            let angle = LINEAR_LOADING * t / quarter;
+            let x = shape.at(&pulse, 1.0 + t);
+            assert_relative_eq!(x.value, pulse.peak * angle.sin(), epsilon = 1e-15);
+            if k > 0 && k < 200 {
+                assert_relative_eq!(x.rate, pulse.speed * angle.cos(), epsilon = 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn loading_obeys_the_energy_balance_and_newtons_law_for_the_papers_exponent() {
+        let shape = PulseShape::new(2.6, 0.6);
+        let pulse = Pulse { start: 0.0, speed: 0.4, peak: 0.0026 };
+        let time = shape.loading_time(&pulse);
+        for k in 1..100 {
+            let t = time * f64::from(k) / 100.0;
+            let x = shape.at(&pulse, t);
+            let kinetic = (x.rate / pulse.speed).powi(2);
+            assert_relative_eq!(kinetic + (x.value / pulse.peak).powf(3.6), 1.0, epsilon = 1e-13);
+            let h = time * 1e-4;
+            let slope = (shape.at(&pulse, t + h).value - shape.at(&pulse, t - h).value) / (2.0 * h);
+            assert_relative_eq!(slope, x.rate, epsilon = 1e-7 * pulse.speed);
+        }
+        assert_relative_eq!(shape.at(&pulse, time).value, pulse.peak, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn the_loading_time_has_its_closed_form() {
+        // sqrt(pi) Gamma(1 + a) / Gamma(1/2 + a), a = 1/(n + 1), with `gamma` of Python's math module.
+        for (exponent, expected) in
+            [(2.6, 1.341_987_686_916_841_2), (1.0, LINEAR_LOADING), (10.0, 1.120_767_003_918_876)]
+        {
+            assert_relative_eq!(PulseShape::new(exponent, 1.0).loading, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn unloading_is_the_mirror_image_stretched_by_the_restitution() {
+        let shape = PulseShape::new(2.6, 0.5);
+        let pulse = Pulse { start: 0.0, speed: 1.0, peak: 0.004 };
+        let time = shape.loading_time(&pulse);
+        let (rise, fall) = (shape.at(&pulse, time * 0.75), shape.at(&pulse, time * 1.5));
+        assert_relative_eq!(rise.value, fall.value, max_relative = 1e-14);
+        assert_relative_eq!(fall.rate, -0.5 * rise.rate, max_relative = 1e-13);
+        assert_eq!(shape.at(&pulse, time * 3.000_001).value, 0.0);
+    }
+
+    #[test]
+    fn the_larger_of_two_overlapping_pulses_wins() {
+        let shape = PulseShape::new(2.6, 0.5);
+        let (big, small) =
+            (Pulse { start: 0.0, speed: 1.0, peak: 0.004 }, Pulse { start: 0.001, speed: 0.1, peak: 0.001 });
+        let mut pulses = Pulses::default();
+        pulses.push(&shape, big);
+        pulses.push(&shape, small);
+        for k in 0..1000 {
+            let t = f64::from(k) * 1e-4;
+            let expected = shape.at(&big, t).value.max(shape.at(&small, t).value);
+            assert_eq!(pulses.at(&shape, t).value, expected, "at {t} s");
+        }
+    }
+}

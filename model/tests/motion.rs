@@ -1,0 +1,242 @@
+//! The event-driven motion: against brute force, without missed impacts, independent of the steps.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+mod common;
+
+use common::{Impact, Stepper};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use videg_model::{Case, Harvester, ModelError, NoiseModel, Parameters, Side};
+
+/// Impacts up to `until`, found by going from one predicted impact to the next.
+fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
+    let mut list = Vec::new();
+    while harvester.time() < until {
+        let target = harvester.next_impact().unwrap_or(until).min(harvester.time() + 0.05).min(until);
+        let before = harvester.totals().impacts;
+        harvester.advance(target).unwrap();
+        assert!(harvester.totals().impacts - before <= 1, "an impact that was not foreseen before {target} s");
+        if harvester.totals().impacts > before {
+            list.push(Impact { time: target, speed: harvester.totals().last_speed });
+        }
+    }
+    list
+}
+
+prop_compose! {
+    fn any_parameters()(
+        amplitude in 0.0..2.0,
+        frequency in 0.5..5.0,
+        phase in 0.0..TAU,
+        restitution in prop_oneof![Just(1.0), Just(0.0), 0.1..1.0],
+        position in -0.9..0.9,
+        velocity in -0.5..0.5,
+    ) -> Parameters {
+        let p = Parameters { amplitude, frequency, phase, restitution, ..Parameters::default() };
+        Parameters { ball_position: position * p.travel() / 2.0, ball_velocity: velocity, ..p }
+    }
+}
+
+/// Largest difference of the ball's motion between two starts that differ by `nudge`, at `time`.
+fn sensitivity(p: Parameters, nudge: f64, time: f64) -> f64 {
+    let run = |p: Parameters| {
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        harvester.advance(time).unwrap();
+        (harvester.ball_position(), harvester.ball_velocity())
+    };
+    let there = run(p);
+    [1.0, -1.0].into_iter().fold(0.0, |largest: f64, sign| {
+        let position = run(Parameters { ball_position: p.ball_position + sign * nudge, ..p });
+        let velocity = run(Parameters { ball_velocity: p.ball_velocity + sign * nudge, ..p });
+        [position, velocity]
+            .iter()
+            .fold(largest, |l, here| l.max((here.0 - there.0).abs()).max((here.1 - there.1).abs()))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_motion_is_that_of_brute_force_until_chaos_separates_them(p in any_parameters()) {
+        let mut stepper = Stepper::new(p, 1e-6);
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        let mut checked = 0;
+        for k in 1..=20 {
+            // Off the grid of impacts at rational times; 2 s in all.
+            let time = (0.1 * f64::from(k) / 1e-6).round() * 1e-6;
+            stepper.run(time);
+            harvester.advance(time).unwrap();
+            // A nudge of the size of the stepper's own error: its rule for a resting ball is right to a few steps.
+            if sensitivity(p, 1e-7, time) > 1e-5 {
+                break;
+            }
+            let difference = (harvester.ball_position() - stepper.ball[0]).abs();
+            prop_assert!(difference < 1e-5, "{difference:e} m at {time} s after {} impacts", harvester.totals().impacts);
+            prop_assert!((harvester.cylinder_position() - stepper.cylinder[0]).abs() < 1e-9);
+            checked = stepper.impacts.len();
+        }
+        // The same impacts, one by one; those of a chattering end are cut off at different depths.
+        let resolved = |list: &[Impact]| list.iter().copied().filter(|i| i.speed > 1e-3).collect::<Vec<_>>();
+        let mut again = Harvester::new(&p, 0.0).unwrap();
+        let until = stepper.impacts.get(checked.wrapping_sub(1)).map_or(0.0, |i| i.time + 1e-7);
+        let (ours, theirs) = (resolved(&impacts(&mut again, until)), resolved(&stepper.impacts[..checked]));
+        prop_assert!(ours.len().abs_diff(theirs.len()) <= 1, "{} against {} impacts", ours.len(), theirs.len());
+        for (a, b) in ours.iter().zip(&theirs) {
+            prop_assert!((a.time - b.time).abs() < 1e-3 && (a.speed - b.speed).abs() < 1e-3, "{a:?} {b:?}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn the_ball_never_leaves_the_gap(p in any_parameters(), steps in prop::collection::vec(1e-4..0.05, 200)) {
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        for step in steps {
+            harvester.advance(harvester.time() + step).unwrap();
+            let beyond = harvester.relative_displacement().abs() - p.travel() / 2.0;
+            prop_assert!(beyond < 1e-12, "{beyond:e} m beyond a membrane at {} s", harvester.time());
+        }
+    }
+
+    #[test]
+    fn splitting_a_run_changes_no_bit(
+        p in any_parameters(),
+        noise in prop_oneof![Just(0.0), Just(0.5)],
+        wiener in any::<bool>(),
+        cuts in prop::collection::vec(0.0..4.0, 0..40),
+    ) {
+        let noise_model = if wiener { NoiseModel::Wiener } else { NoiseModel::Held };
+        let p = Parameters { phase_noise: noise, noise_hold: 1e-3, noise_model, ..p };
+        let mut whole = Harvester::new(&p, 0.0).unwrap();
+        whole.advance(4.0).unwrap();
+        let mut split = Harvester::new(&p, 0.0).unwrap();
+        let mut cuts = cuts;
+        cuts.sort_by(f64::total_cmp);
+        for cut in cuts {
+            split.advance(cut).unwrap();
+            split.set_external_force(0.0, 0.0).unwrap(); // what it is already
+        }
+        split.advance(4.0).unwrap();
+        // Equal in every field, to the last bit, what is foreseen included.
+        prop_assert_eq!(whole, split);
+    }
+
+    #[test]
+    fn energy_of_the_ball_in_the_frame_of_a_cylinder_at_rest_never_grows(
+        velocity in 0.01..1.0, restitution in 0.0..=1.0,
+    ) {
+        let p = Parameters { amplitude: 0.0, ball_velocity: velocity, restitution, ..Parameters::default() };
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        let mut speed = velocity;
+        for k in 1..50 {
+            harvester.advance(0.1 * f64::from(k)).unwrap();
+            let now = harvester.ball_velocity().abs();
+            prop_assert!(now <= speed);
+            speed = now;
+        }
+        prop_assert_eq!(speed, (0..harvester.totals().impacts).fold(velocity, |v, _| v * restitution));
+    }
+
+    #[test]
+    fn a_graze_is_found_or_passed_by_as_the_exact_extremum_says(
+        drift in -0.3_f64..0.3, excess in prop_oneof![-1e-6..-1e-12_f64, 1e-12..1e-6_f64], phase in 0.0..TAU,
+    ) {
+        // dz = drift t - swing (cos(wt + phase) - cos(phase)) + dz0: place its first maximum at s/2 + excess.
+        let base = Parameters { amplitude: 0.3, phase, restitution: 1.0, ..Parameters::default() };
+        let omega = TAU * base.frequency;
+        let swing = base.cylinder_amplitude();
+        prop_assume!(drift.abs() < 0.9 * swing * omega);
+        let dz = |t: f64| drift * t - swing * ((omega * t + phase).cos() - phase.cos());
+        // First maximum after the start: dz' = drift + swing w sin = 0 with cos < 0.
+        let angle = std::f64::consts::PI - (-drift / (swing * omega)).asin();
+        let mut time = (angle - phase) / omega;
+        while time < 0.02 { time += TAU / omega; }
+        let level = base.travel() / 2.0 + excess;
+        let start: f64 = level - dz(time);
+        // Only if the start and all before the maximum stay well inside.
+        let inside = (0..2000).map(|k| start + dz(time * f64::from(k) / 2000.0)).take(1900).all(|z: f64| z.abs() < 0.0219);
+        prop_assume!(inside);
+        // Ball velocity such that z_M' - z_m' = drift + swing w sin(wt + phase).
+        let p = Parameters { ball_position: -start, ball_velocity: -drift - swing * omega * phase.sin(), ..base };
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        harvester.advance(time + 1e-4).unwrap();
+        prop_assert_eq!(harvester.totals().impacts > 0, excess > 0.0, "start {}, maximum at {} s", start, time);
+    }
+
+    #[test]
+    fn a_linear_external_force_moves_the_cylinder_as_newton_says(
+        p in any_parameters(), force in -0.5..0.5, rate in -1.0..1.0, when in 0.1..0.9,
+    ) {
+        let mut harvester = Harvester::new(&p, 0.0).unwrap();
+        harvester.advance(when).unwrap();
+        harvester.set_external_force(force, rate).unwrap();
+        let mut free = Harvester::new(&p, 0.0).unwrap();
+        for k in 1..40 {
+            let time = when + 0.05 * f64::from(k);
+            harvester.advance(time).unwrap();
+            free.advance(time).unwrap();
+            let tau = time - when;
+            let shift = (force / 2.0 + rate * tau / 6.0) * tau * tau / p.cylinder_mass;
+            let found = harvester.cylinder_position() - free.cylinder_position();
+            prop_assert!((found - shift).abs() < 1e-12 * (1.0 + shift.abs()));
+            let beyond = harvester.relative_displacement().abs() - p.travel() / 2.0;
+            prop_assert!(beyond < 1e-11, "{beyond:e} m beyond a membrane");
+        }
+    }
+}
+
+#[test]
+fn an_external_force_alone_drives_the_ball_to_the_membrane_at_the_time_of_free_fall() {
+    let p = Parameters { amplitude: 0.0, restitution: 0.0, ..Parameters::default() };
+    let mut harvester = Harvester::new(&p, 0.0).unwrap();
+    harvester.set_external_force(0.1245, 0.0).unwrap(); // 1 m/s^2
+    let expected = (2.0 * p.travel() / 2.0_f64).sqrt();
+    assert!((harvester.next_impact().unwrap() - expected).abs() < 1e-14);
+    harvester.advance(1.0).unwrap();
+    assert_eq!(harvester.resting(), Some(Side::Left));
+    harvester.set_external_force(-0.1245, 0.0).unwrap();
+    harvester.advance(1.2).unwrap();
+    assert_eq!(harvester.resting(), None, "released when the push turns");
+    assert!((harvester.ball_velocity() - 1.0).abs() < 1e-14, "the ball keeps the velocity of the release");
+}
+
+#[test]
+fn an_hour_long_run_loses_nothing_of_the_phase() {
+    let p = (Case::find("fig9").unwrap().parameters)();
+    let mut harvester = Harvester::new(&p, 0.0).unwrap();
+    harvester.advance(1.0e6 + 0.125).unwrap(); // a whole number of periods and a quarter
+    assert!((harvester.cylinder_velocity() - p.cylinder_amplitude() * TAU * 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn times_and_forces_that_make_no_sense_are_errors() {
+    let mut harvester = Harvester::new(&Parameters::default(), 0.0).unwrap();
+    harvester.advance(1.0).unwrap();
+    assert_eq!(harvester.advance(0.5), Err(ModelError::Backwards { from: 1.0, to: 0.5 }));
+    assert!(matches!(harvester.advance(f64::NAN), Err(ModelError::NotFinite { name: "time", .. })));
+    assert!(harvester.set_external_force(f64::INFINITY, 0.0).is_err());
+    assert!(harvester.set_external_force(0.0, f64::NAN).is_err());
+    assert_eq!(harvester.time(), 1.0);
+}
+
+#[test]
+fn every_parameter_out_of_bounds_is_named_with_value_and_bound() {
+    for quantity in Parameters::TABLE {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, quantity.max * 1.01 + 1.0, quantity.min - 1.0] {
+            let mut p = Parameters::default();
+            (quantity.set)(&mut p, value);
+            let error = Harvester::new(&p, 0.0).unwrap_err();
+            let message = error.to_string();
+            assert!(message.contains(quantity.name) && message.contains(&value.to_string()), "{message}");
+            assert!(matches!(error, ModelError::Bounds { min, max, .. } if min == quantity.min && max == quantity.max));
+        }
+    }
+    let error = Harvester::new(&Parameters { ball_radius: 0.007, ..Parameters::default() }, 0.0).unwrap_err();
+    assert_eq!(error.to_string(), "membrane.radius = 0.0063 m must be greater than ball.radius = 0.007 m");
+    let error = Harvester::new(&Parameters { cylinder_length: 0.0, frame_width: 0.001, ..Parameters::default() }, 0.0);
+    assert!(error.unwrap_err().to_string().contains("ball.travel"));
+}
