@@ -1,0 +1,11 @@
+//! Prints the `modelDescription.xml` of the FMU in `lag.rs`.
+
+use fmi2_export::{DescriptionError, model_description};
+
+#[path = "lag.rs"]
+mod lag;
+
+fn main() -> Result<(), DescriptionError> {
+    print!("{}", model_description::<lag::Lag>()?);
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! `fmi2Instantiate` and `fmi2FreeInstance`.
+
+use super::{Fmu, Handle, guard, text};
+use crate::instance::{Instance, panic_message};
+use crate::logger::Logger;
+use crate::resource::resource_path;
+use crate::slave::Slave;
+use core::ptr::null_mut;
+use core::sync::atomic::Ordering;
+use fmi2_abi::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2String, fmi2Type,
+};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The arguments of `fmi2Instantiate` that are checked.
+struct Request<'a> {
+    name: &'a str,
+    kind: fmi2Type,
+    guid: Result<&'a str, &'static str>,
+    resources: Option<Result<&'a str, &'static str>>,
+}
+
+/// `fmi2Instantiate`. A failure is logged even with `logging_on` false, since the standard promises the reason.
+#[allow(clippy::too_many_arguments)] // The arguments of the C function, and the FMU.
+pub unsafe fn instantiate<S: Slave>(
+    fmu: &Fmu,
+    instance_name: fmi2String,
+    kind: fmi2Type,
+    guid: fmi2String,
+    resource_location: fmi2String,
+    functions: *const fmi2CallbackFunctions,
+    _visible: fmi2Boolean,
+    logging_on: fmi2Boolean,
+) -> fmi2Component {
+    guard(null_mut(), || {
+        // SAFETY: contract of this module, for all three.
+        let functions = unsafe { functions.as_ref() };
+        let name = unsafe { text(instance_name) };
+        let (guid, resources) = unsafe { (text(guid), text(resource_location)) };
+        let request = Request {
+            name: name.unwrap_or_default(),
+            kind,
+            guid,
+            resources: (!resource_location.is_null()).then_some(resources),
+        };
+        let logger = Logger::new(functions, request.name, logging_on != fmi2False);
+        match create::<S>(fmu, &request, logger) {
+            Ok(instance) => Box::into_raw(Box::new(Handle::new(instance))).cast(),
+            Err(reason) => {
+                let logger = Logger::new(functions, request.name, true);
+                logger.status(fmi2Error, format_args!("fmi2Instantiate: {reason}"));
+                null_mut()
+            }
+        }
+    })
+}
+
+fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<Instance<S>, String> {
+    let identity = match fmu.identity::<S>() {
+        Ok(identity) => identity,
+        Err(e) => return Err(format!("the FMU is faulty: {e}")),
+    };
+    if request.name.is_empty() {
+        return Err("instanceName is empty, NULL or not UTF-8".to_owned());
+    }
+    if request.kind != fmi2CoSimulation {
+        let kind = request.kind;
+        return Err(format!("fmuType = {kind}; this FMU offers co-simulation (1) only"));
+    }
+    let given = request.guid.map_err(|reason| format!("fmuGUID: {reason}"))?;
+    if given != identity.text {
+        return Err(format!("fmuGUID = {given:?}; this FMU has {}", identity.text));
+    }
+    // Nothing is read from there, so an odd location is worth a warning at most.
+    let location = request.resources.map(|uri| uri.map(resource_path));
+    match location {
+        Some(Ok(Err(e))) => logger.warning(format_args!("fmi2Instantiate: {e}")),
+        Some(Err(reason)) => {
+            logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}"));
+        }
+        None | Some(Ok(Ok(_))) => {}
+    }
+    // There is no status to carry it, so the warning must not colour the next call.
+    logger.take_warned();
+    catch_unwind(AssertUnwindSafe(|| Instance::new(logger, identity.guid)))
+        .map_err(|payload| format!("the model panicked: {}", panic_message(payload)))
+}
+
+/// `fmi2FreeInstance`. NULL is ignored; so is an instance that is in a call, which leaks rather than vanish under
+/// the feet of that call.
+pub unsafe fn free_instance<S: Slave>(component: fmi2Component) {
+    let handle = component.cast::<Handle<S>>();
+    if handle.is_null() || !handle.is_aligned() {
+        return;
+    }
+    // SAFETY: by contract the component points to a live handle.
+    if unsafe { &*handle }.busy.swap(true, Ordering::Acquire) {
+        return;
+    }
+    // SAFETY: by contract it came from `Box::into_raw` in `instantiate` and was not freed; `busy` keeps others out.
+    guard((), || drop(unsafe { Box::from_raw(handle) }));
+}

@@ -1,0 +1,162 @@
+//! The bodies of the C functions, generic over the slave. [`export_fmu!`](crate::export_fmu) gives each its
+//! exported symbol; nobody else needs this module.
+//!
+//! Every body has the same shape: pointers become slices, the guard checks the component and the state, and one
+//! function of the instance does the work in safe Rust.
+//!
+//! # Panics and silence
+//! No panic leaves a C function: it becomes `fmi2Error` and a log message. Nothing here writes to stdout or stderr.
+//! Rust's default panic hook does print one line to stderr before the guard catches the panic. It stays in place,
+//! because the hook is global: an FMU has no business replacing what others in its process may rely on, and a
+//! panic is a bug whose location should not be lost. An error that a model *returns* prints nothing.
+//!
+//! # Safety
+//! All functions here have the contract of their C namesake: a component is NULL or comes from
+//! [`instantiate`](instantiate::instantiate) with the same `S` and was not freed; an array is NULL or holds as
+//! many values as the call says; a string is NULL or zero-terminated.
+#![allow(clippy::missing_safety_doc)] // The contract is the same for all and stands above.
+
+pub mod co_simulation;
+pub mod common;
+pub mod instantiate;
+pub mod state;
+
+use crate::call_state::Function;
+use crate::error::CallError;
+use crate::guid::Guid;
+use crate::instance::{Call, Instance};
+use crate::slave::Slave;
+use crate::variable::{TableError, check_fmu};
+use core::cell::UnsafeCell;
+use core::ffi::{CStr, c_char};
+use core::mem::MaybeUninit;
+use core::sync::atomic::{AtomicBool, Ordering};
+use fmi2_abi::{fmi2Component, fmi2Error, fmi2Status};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
+
+/// What is worked out once per FMU and process: whether its table is sound, and its GUID.
+#[derive(Debug, Default)]
+pub struct Fmu(OnceLock<Result<Identity, TableError>>);
+
+/// The GUID, as number and as text.
+#[derive(Debug)]
+struct Identity {
+    guid: Guid,
+    text: String,
+}
+
+impl Fmu {
+    /// Nothing worked out yet.
+    pub const fn new() -> Self {
+        Self(OnceLock::new())
+    }
+
+    fn identity<S: Slave>(&self) -> &Result<Identity, TableError> {
+        self.0.get_or_init(|| {
+            check_fmu::<S>()?;
+            let guid = Guid::of::<S>();
+            Ok(Identity { guid, text: guid.to_string() })
+        })
+    }
+}
+
+/// What a component points to: an instance and a lock. FMI 2.0 forbids concurrent calls, and calls from inside a
+/// logger callback; the lock makes them an error where they would be undefined behaviour.
+pub(crate) struct Handle<S> {
+    busy: AtomicBool,
+    instance: UnsafeCell<Instance<S>>,
+}
+
+impl<S: Slave> Handle<S> {
+    fn new(instance: Instance<S>) -> Self {
+        Self { busy: AtomicBool::new(false), instance: UnsafeCell::new(instance) }
+    }
+
+    /// Runs `body` on the instance unless it is busy.
+    fn with(&self, body: impl FnOnce(&mut Instance<S>) -> fmi2Status) -> fmi2Status {
+        if self.busy.swap(true, Ordering::Acquire) {
+            return fmi2Error;
+        }
+        // SAFETY: `busy` was false and is now true, so this is the only reference.
+        let status = body(unsafe { &mut *self.instance.get() });
+        self.busy.store(false, Ordering::Release);
+        status
+    }
+}
+
+/// The guard around every function that acts on an instance.
+unsafe fn enter<S: Slave>(
+    component: fmi2Component,
+    function: Function,
+    call: impl FnOnce(&mut Instance<S>) -> Call,
+) -> fmi2Status {
+    let handle = component.cast::<Handle<S>>();
+    if !handle.is_aligned() {
+        return fmi2Error;
+    }
+    // SAFETY: by contract the component is NULL or points to a live handle.
+    let Some(handle) = (unsafe { handle.as_ref() }) else {
+        return fmi2Error;
+    };
+    guard(fmi2Error, || handle.with(|i| i.run(function, call)))
+}
+
+/// Keeps a panic from unwinding into C.
+fn guard<T>(otherwise: T, body: impl FnOnce() -> T) -> T {
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
+        let _ = crate::instance::panic_message(payload);
+        otherwise
+    })
+}
+
+/// Checks a pointer that is to become a slice.
+fn check_array<T>(pointer: *const T, count: usize, argument: &'static str) -> Call {
+    let reason = if pointer.is_null() {
+        return Err(CallError::NullArgument(argument));
+    } else if !pointer.is_aligned() {
+        "it is not aligned"
+    } else if count > isize::MAX as usize / size_of::<T>().max(1) {
+        "that is more than memory holds"
+    } else {
+        return Ok(());
+    };
+    Err(CallError::BadArray { argument, count, reason })
+}
+
+/// An array argument. An empty one may be NULL.
+unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &'static str) -> Call<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_array(pointer, count, argument)?;
+    // SAFETY: checked above; by contract it holds `count` values.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+/// An array to be filled. The importer need not have initialised it.
+unsafe fn array_out<'a, T>(pointer: *mut T, count: usize, argument: &'static str) -> Call<&'a mut [MaybeUninit<T>]> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check_array(pointer, count, argument)?;
+    // SAFETY: checked above; by contract there is room for `count` values, and no one else looks at them now.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer.cast(), count) })
+}
+
+/// A single value to be filled.
+unsafe fn out<'a, T>(pointer: *mut T, argument: &'static str) -> Call<&'a mut MaybeUninit<T>> {
+    check_array(pointer, 1, argument)?;
+    // SAFETY: checked above; by contract there is room for one value.
+    Ok(unsafe { &mut *pointer.cast() })
+}
+
+/// A string argument, or why it is none.
+unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, &'static str> {
+    if pointer.is_null() {
+        return Err("it is NULL");
+    }
+    // SAFETY: by contract it is zero-terminated.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| "it is not UTF-8")
+}

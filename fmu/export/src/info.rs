@@ -1,0 +1,123 @@
+//! Facts about an FMU as a whole.
+
+/// Name, authorship, default experiment and capabilities of an FMU. Capabilities that follow from elsewhere (the
+/// variable table, the exporter) are not repeated here: `canInterpolateInputs` and `maxOutputDerivativeOrder`
+/// from the derivatives in the table, `canGetAndSetFMUstate` always true.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ModelInfo {
+    /// Stem of the shared library; a C identifier.
+    pub model_identifier: &'static str,
+    /// Name of the model.
+    pub model_name: &'static str,
+    /// One line on what it does.
+    pub description: &'static str,
+    /// Who wrote the model.
+    pub author: &'static str,
+    /// Version of the model.
+    pub version: &'static str,
+    /// Copyright notice.
+    pub copyright: &'static str,
+    /// License, as an SPDX expression.
+    pub license: &'static str,
+    /// Name and version of the tool that made the FMU.
+    pub generation_tool: &'static str,
+    /// Experiment to run unless the user asks for another.
+    pub default_experiment: Option<DefaultExperiment>,
+    /// Whether [`Slave::write_state`](crate::Slave::write_state) and
+    /// [`Slave::read_state`](crate::Slave::read_state) are implemented (`canSerializeFMUstate`).
+    pub can_serialize: bool,
+    /// Whether the step size may differ from step to step (`canHandleVariableCommunicationStepSize`).
+    pub variable_step_size: bool,
+}
+
+/// Experiment to run unless the user asks for another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DefaultExperiment {
+    /// Start time, s.
+    pub start_time: f64,
+    /// Stop time, s.
+    pub stop_time: f64,
+    /// Communication step size, s.
+    pub step_size: f64,
+    /// Relative tolerance; none if the slave has no use for one.
+    pub tolerance: Option<f64>,
+}
+
+macro_rules! setters {
+    ($($(#[$doc:meta])* $field:ident;)*) => {$(
+        $(#[$doc])*
+        #[must_use]
+        pub const fn $field(mut self, text: &'static str) -> Self {
+            self.$field = text;
+            self
+        }
+    )*};
+}
+
+impl ModelInfo {
+    /// A model whose name is its identifier, all else empty; the step size may vary, states are not serialised.
+    pub const fn new(model_identifier: &'static str) -> Self {
+        Self {
+            model_identifier,
+            model_name: model_identifier,
+            description: "",
+            author: "",
+            version: "",
+            copyright: "",
+            license: "",
+            generation_tool: concat!("fmi2-export ", env!("CARGO_PKG_VERSION")),
+            default_experiment: None,
+            can_serialize: false,
+            variable_step_size: true,
+        }
+    }
+
+    setters! {
+        /// Sets the name of the model.
+        model_name;
+        /// Sets the description.
+        description;
+        /// Sets the author.
+        author;
+        /// Sets the version.
+        version;
+        /// Sets the copyright notice.
+        copyright;
+        /// Sets the license.
+        license;
+        /// Sets the generation tool.
+        generation_tool;
+    }
+
+    /// Sets the default experiment: start and stop time and step size, s.
+    #[must_use]
+    pub const fn default_experiment(mut self, start: f64, stop: f64, step: f64) -> Self {
+        self.default_experiment =
+            Some(DefaultExperiment { start_time: start, stop_time: stop, step_size: step, tolerance: None });
+        self
+    }
+
+    /// Sets the relative tolerance of the default experiment; without such an experiment it does nothing.
+    #[must_use]
+    pub const fn default_tolerance(mut self, tolerance: f64) -> Self {
+        if let Some(experiment) = &mut self.default_experiment {
+            experiment.tolerance = Some(tolerance);
+        }
+        self
+    }
+
+    /// Says that the state can be serialised.
+    #[must_use]
+    pub const fn can_serialize(mut self) -> Self {
+        self.can_serialize = true;
+        self
+    }
+
+    /// Says that all steps must have one size.
+    #[must_use]
+    pub const fn constant_step_size(mut self) -> Self {
+        self.variable_step_size = false;
+        self
+    }
+}

@@ -1,0 +1,79 @@
+//! From instantiation to termination, and debug logging.
+
+use super::{Call, Core, Instance};
+use crate::call_state::CallState;
+use crate::error::CallError;
+use crate::logger::LogCategory;
+use crate::slave::{Experiment, Slave};
+
+impl<S: Slave> Instance<S> {
+    /// `fmi2SetDebugLogging`. Without names, all categories are meant. An unknown name earns a warning and no more:
+    /// the computation can go on.
+    pub(crate) fn set_debug_logging(&mut self, on: bool, names: &[&str]) {
+        if !on || names.is_empty() || names.contains(&LogCategory::ALL_NAME) {
+            self.logger.enable_all(on);
+            return;
+        }
+        let known = names.iter().filter_map(|name| LogCategory::from_name(name));
+        self.logger.enable_only(known);
+        let is_unknown = |name: &&&str| LogCategory::from_name(name).is_none();
+        for name in names.iter().filter(is_unknown) {
+            self.logger.warning(format_args!("there is no log category {name:?}"));
+        }
+    }
+
+    /// `fmi2SetupExperiment`
+    pub(crate) fn setup_experiment(&mut self, experiment: Experiment) -> Call {
+        let refuse = |argument, value: f64, bound: &str| {
+            Err(CallError::BadArgument { argument, value: value.to_string(), bound: bound.to_owned() })
+        };
+        let start = experiment.start_time;
+        if !start.is_finite() {
+            return refuse("startTime", start, "it must be finite");
+        }
+        // An infinite stop time is a harmless way to say that there is none.
+        if let Some(stop) = experiment.stop_time.filter(|t| t.is_nan() || *t < start) {
+            return refuse("stopTime", stop, &format!("it must not lie before {start} s"));
+        }
+        if let Some(tolerance) = experiment.tolerance
+            && !(tolerance.is_finite() && tolerance > 0.0)
+        {
+            return refuse("tolerance", tolerance, "it must be positive");
+        }
+        self.core.time = start;
+        self.core.experiment = Some(experiment);
+        self.core.dirty = true;
+        Ok(self.core.model.setup_experiment(&experiment, &self.logger)?)
+    }
+
+    /// `fmi2EnterInitializationMode`. A missing `fmi2SetupExperiment` is tolerated: the simulation starts at 0.
+    pub(crate) fn enter_initialization_mode(&mut self) -> Call {
+        if self.core.experiment.is_none() {
+            self.logger.warning("fmi2SetupExperiment was not called; the simulation starts at 0 s");
+            self.setup_experiment(Experiment { start_time: 0.0, stop_time: None, tolerance: None })?;
+        }
+        self.core.state = CallState::InitializationMode;
+        Ok(())
+    }
+
+    /// `fmi2ExitInitializationMode`
+    pub(crate) fn exit_initialization_mode(&mut self) -> Call {
+        self.update();
+        self.core.model.initialize(&self.logger)?;
+        self.core.state = CallState::StepComplete;
+        Ok(())
+    }
+
+    /// `fmi2Terminate`
+    pub(crate) fn terminate(&mut self) -> Call {
+        self.core.model.terminate(&self.logger)?;
+        self.core.state = CallState::Terminated;
+        Ok(())
+    }
+
+    /// `fmi2Reset`: a fresh model. Saved FMU states and log settings stay.
+    pub(crate) fn reset(&mut self) {
+        self.core = Core::new();
+        self.strings.clear();
+    }
+}

@@ -1,0 +1,133 @@
+//! One instance of a slave behind the C interface, in safe Rust. The functions of `ffi` translate pointers and
+//! call one function here; this module guards panics, keeps the call state and turns errors into statuses.
+
+mod co_simulation;
+mod fmu_state;
+mod lifecycle;
+mod values;
+
+use crate::call_state::{CallState, Function, Legality};
+use crate::error::CallError;
+use crate::guid::Guid;
+use crate::logger::Logger;
+use crate::slave::{Experiment, Slave};
+use co_simulation::LastStep;
+use core::any::Any;
+use fmi2_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
+use std::collections::BTreeMap;
+use std::ffi::CString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Outcome of a call.
+pub(crate) type Call<T = ()> = Result<T, CallError>;
+
+/// All that an FMU state holds: the model and what the exporter knows about it.
+#[derive(Clone)]
+pub(crate) struct Core<S> {
+    model: S,
+    state: CallState,
+    /// End of the last step, s.
+    time: f64,
+    experiment: Option<Experiment>,
+    /// Something was set since calculated values were brought up to date.
+    dirty: bool,
+    last_step: LastStep,
+}
+
+/// An instance of a slave.
+pub(crate) struct Instance<S> {
+    core: Core<S>,
+    logger: Logger,
+    guid: Guid,
+    /// FMU states that the importer holds, by the token that it holds them by.
+    fmu_states: BTreeMap<usize, Core<S>>,
+    /// Results of the last `fmi2GetString`.
+    strings: Vec<CString>,
+}
+
+impl<S: Slave> Core<S> {
+    /// A fresh model with its start values.
+    fn new() -> Self {
+        let mut model = S::new();
+        for variable in S::variables() {
+            variable.kind().apply_start(&mut model);
+        }
+        Self {
+            model,
+            state: CallState::Instantiated,
+            time: 0.0,
+            experiment: None,
+            dirty: true,
+            last_step: LastStep::NONE,
+        }
+    }
+}
+
+impl<S: Slave> Instance<S> {
+    /// A fresh instance.
+    pub(crate) fn new(logger: Logger, guid: Guid) -> Self {
+        Self { core: Core::new(), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
+    }
+
+    /// Runs one C function: state check, the call itself behind a panic guard, then status, log and new state.
+    pub(crate) fn run(&mut self, function: Function, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
+        let result = self.check_state(function).and_then(|()| {
+            // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
+            // values are for debugging only and from which restoring a state or a reset replaces it.
+            catch_unwind(AssertUnwindSafe(|| call(self)))
+                .unwrap_or_else(|payload| Err(CallError::Panic(panic_message(payload))))
+        });
+        self.conclude(function, result)
+    }
+
+    fn check_state(&self, function: Function) -> Call {
+        let state = self.core.state;
+        match function.legality(state) {
+            Legality::Legal => Ok(()),
+            Legality::Tolerated => {
+                self.logger
+                    .warning(format_args!("{}: FMI 2.0 forbids it in state {state}; tolerated", function.name()));
+                Ok(())
+            }
+            Legality::Illegal => Err(CallError::IllegalState { state, legal: function.legal_states() }),
+        }
+    }
+
+    /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued".
+    fn conclude(&mut self, function: Function, result: Call) -> fmi2Status {
+        let warned = self.logger.take_warned();
+        let Err(error) = result else {
+            return if warned { fmi2Warning } else { fmi2OK };
+        };
+        let status = error.status();
+        match status {
+            fmi2Error => self.core.state = CallState::Error,
+            fmi2Fatal => self.core.state = CallState::Fatal,
+            _ => {}
+        }
+        self.logger.status(status, format_args!("{}: {error}", function.name()));
+        status
+    }
+
+    /// Brings calculated values up to date, if something was set and initialisation is still ahead.
+    fn update(&mut self) {
+        if self.core.dirty && self.core.state.is_before_initialization() {
+            self.core.model.update();
+            self.core.dirty = false;
+        }
+    }
+}
+
+/// The text of a panic. A payload that is no text is leaked: its destructor might panic in turn.
+pub(crate) fn panic_message(payload: Box<dyn Any + Send>) -> String {
+    match payload.downcast::<String>() {
+        Ok(text) => *text,
+        Err(payload) => match payload.downcast::<&'static str>() {
+            Ok(text) => (*text).to_owned(),
+            Err(payload) => {
+                core::mem::forget(payload);
+                "no message".to_owned()
+            }
+        },
+    }
+}

@@ -1,0 +1,81 @@
+//! Get and Set of variables. A Set is all or nothing: every value is checked before the first is written.
+
+use super::{Call, Instance};
+use crate::call_state::is_settable;
+use crate::error::CallError;
+use crate::logger::c_string;
+use crate::slave::Slave;
+use crate::variable::{AsString, Transfer, Variable};
+use core::ffi::c_char;
+
+/// The variable with this value reference.
+pub(super) fn variable<S: Slave>(reference: u32) -> Call<&'static Variable<S>> {
+    let table = S::variables();
+    let found = usize::try_from(reference).ok().and_then(|i| table.get(i));
+    found.ok_or(CallError::UnknownReference { reference, last: table.len().saturating_sub(1) })
+}
+
+fn wrong_type<S: Slave>(reference: u32, wanted: &'static str) -> CallError {
+    match variable::<S>(reference) {
+        Err(unknown) => unknown,
+        Ok(variable) => {
+            CallError::WrongType { name: variable.name(), reference, actual: variable.kind().type_name(), wanted }
+        }
+    }
+}
+
+impl<S: Slave> Instance<S> {
+    /// `fmi2GetReal` and its kin. `put` takes each value with its position in the call.
+    pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut put: impl FnMut(usize, T::Taken)) -> Call {
+        self.update();
+        for (i, &reference) in references.iter().enumerate() {
+            let value = T::get(variable::<S>(reference)?, &self.core.model)
+                .ok_or_else(|| wrong_type::<S>(reference, T::NAME))?;
+            put(i, value);
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetString`. The strings live in the instance until the next call of this function.
+    pub(crate) fn get_strings(&mut self, references: &[u32], mut put: impl FnMut(usize, *const c_char)) -> Call {
+        let mut strings = Vec::with_capacity(references.len());
+        self.get::<AsString>(references, |_, text| strings.push(c_string(&text)))?;
+        self.strings = strings;
+        for (i, string) in self.strings.iter().enumerate() {
+            put(i, string.as_ptr());
+        }
+        Ok(())
+    }
+
+    /// `fmi2SetReal` and its kin. `take` converts a value from the type of the C interface.
+    pub(crate) fn set<'a, T: Transfer<S>, V: Copy>(
+        &mut self,
+        references: &[u32],
+        values: &[V],
+        take: impl Fn(V) -> T::Given<'a>,
+    ) -> Call {
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = variable::<S>(reference)?;
+            T::check(variable, take(value)).ok_or_else(|| wrong_type::<S>(reference, T::NAME))??;
+            self.check_settable(variable)?;
+        }
+        for (&reference, &value) in references.iter().zip(values) {
+            T::set(variable::<S>(reference)?, &mut self.core.model, take(value));
+        }
+        self.core.dirty = true;
+        Ok(())
+    }
+
+    pub(super) fn check_settable(&self, variable: &Variable<S>) -> Call {
+        let state = self.core.state;
+        if is_settable(variable.causality(), variable.variability(), state) {
+            return Ok(());
+        }
+        Err(CallError::NotSettable {
+            name: variable.name(),
+            causality: variable.causality().as_str(),
+            variability: variable.variability().as_str(),
+            state,
+        })
+    }
+}

@@ -1,0 +1,105 @@
+//! Exports a Rust model through the C functions of FMI 2.0 for co-simulation.
+//!
+//! A model implements [`Slave`], describes its variables in one table of [`Variable`]s, and names itself in
+//! [`export_fmu!`]. The table is the only place where a variable is described: Get and Set, the checks of
+//! values, start values, the GUID and `modelDescription.xml` all follow from it.
+//!
+//! # A complete FMU
+//! ```
+//! use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, Variable, export_fmu};
+//!
+//! /// A first-order lag.
+//! #[derive(Clone, Default)]
+//! struct Lag {
+//!     time_constant: f64,
+//!     input: f64,
+//!     output: f64,
+//! }
+//!
+//! type V = Variable<Lag>;
+//!
+//! static VARIABLES: [V; 3] = [
+//!     V::parameter("timeConstant", "s", 1.0, "T: time constant")
+//!         .min(1e-6)
+//!         .access(|m| m.time_constant, |m, v| m.time_constant = v),
+//!     V::input("u", "1", 0.0, "Input").access(|m| m.input, |m, v| m.input = v),
+//!     V::output("y", "1", "Output").depends_on(&[]).get(|m| m.output),
+//! ];
+//!
+//! impl Slave for Lag {
+//!     const INFO: ModelInfo = ModelInfo::new("Lag")
+//!         .description("First-order lag")
+//!         .default_experiment(0.0, 10.0, 0.1);
+//!
+//!     fn variables() -> &'static [Variable<Self>] {
+//!         &VARIABLES
+//!     }
+//!
+//!     fn new() -> Self {
+//!         Self::default() // The start values of the table follow.
+//!     }
+//!
+//!     fn do_step(&mut self, _t: f64, h: f64, _log: &Logger) -> Result<(), SlaveError> {
+//!         self.output += (self.input - self.output) * -(-h / self.time_constant).exp_m1();
+//!         Ok(())
+//!     }
+//! }
+//!
+//! export_fmu!(Lag);
+//! ```
+//! With the feature `model-description`, `model_description::<Lag>()` gives the text of `modelDescription.xml`. The
+//! shared library itself never needs the feature.
+//!
+//! # What the exporter sees to
+//! - Call order: one table says which [`Function`] is legal in which [`CallState`].
+//! - A Set is all or nothing: type, causality, variability, bounds and finiteness of every value are checked before
+//!   the first is written. A refused value is an error that names variable, value and bound.
+//! - Any `fmi2Error` leaves the instance in the error state, from which only restoring an FMU state or
+//!   `fmi2Reset` leads back, as the standard has it.
+//! - FMU states are clones of the model, together with call state and time. The importer holds tokens, not
+//!   pointers; a token that is foreign, stale or freed twice is refused. A state belongs to the instance that gave
+//!   it; serialise it to carry it to another.
+//! - Calls from inside a callback, or from two threads at once, are refused.
+//! - Panics become `fmi2Error` ([`ffi`] says what that means for stderr).
+//! - Messages go to the importer's logger only, and only while logging is on for their category. Why
+//!   `fmi2Instantiate` failed is reported always.
+//!
+//! # Not offered
+//! Model exchange, directional derivatives, asynchronous steps. Their functions exist, as importers demand, and
+//! return `fmi2Error`.
+#![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
+
+mod call_state;
+mod error;
+pub mod ffi;
+mod fnv;
+mod guid;
+mod info;
+mod instance;
+mod logger;
+mod macros;
+#[cfg(feature = "model-description")]
+mod model_description;
+mod resource;
+mod serialize;
+mod slave;
+mod units;
+mod variable;
+
+pub use call_state::{CallState, Function, Legality, is_settable};
+pub use error::{Severity, SlaveError};
+pub use fmi2_abi as abi;
+pub use guid::Guid;
+pub use info::{DefaultExperiment, ModelInfo};
+pub use logger::{LogCategory, Logger};
+#[cfg(feature = "model-description")]
+pub use model_description::{DescriptionError, model_description};
+pub use resource::{ResourceError, resource_path};
+pub use serialize::{StateError, StateReader, StateWriter};
+pub use slave::{Experiment, Slave};
+pub use units::{BaseUnit, base_unit};
+pub use variable::{
+    BooleanSpec, Causality, Declaration, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, Initial,
+    IntegerSpec, Kind, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, TableError, Variability, Variable,
+    value_reference,
+};

@@ -1,0 +1,173 @@
+//! Messages to the importer, through its variadic logger callback.
+
+use core::cell::Cell;
+use core::ffi::CStr;
+use core::fmt::Display;
+use fmi2_abi::{
+    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
+    fmi2Status, fmi2Warning,
+};
+use std::ffi::CString;
+
+/// A log category of FMI 2.0, as listed in `modelDescription.xml`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LogCategory {
+    /// Events of the model.
+    Events,
+    /// Messages that go with `fmi2Warning`.
+    Warning,
+    /// Messages that go with `fmi2Discard`.
+    Discard,
+    /// Messages that go with `fmi2Error`.
+    Error,
+    /// Messages that go with `fmi2Fatal`.
+    Fatal,
+}
+
+impl LogCategory {
+    /// All categories, in the order of `modelDescription.xml`.
+    pub const ALL: [Self; 5] = [Self::Events, Self::Warning, Self::Discard, Self::Error, Self::Fatal];
+
+    /// Name of the category that stands for all of them.
+    pub const ALL_NAME: &'static str = "logAll";
+
+    const fn c_name(self) -> &'static CStr {
+        match self {
+            Self::Events => c"logEvents",
+            Self::Warning => c"logStatusWarning",
+            Self::Discard => c"logStatusDiscard",
+            Self::Error => c"logStatusError",
+            Self::Fatal => c"logStatusFatal",
+        }
+    }
+
+    /// The name that FMI 2.0 gives it.
+    pub fn name(self) -> &'static str {
+        self.c_name().to_str().unwrap_or_default()
+    }
+
+    /// What is logged under it.
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Events => "Events of the model",
+            Self::Warning => "Messages that go with fmi2Warning",
+            Self::Discard => "Messages that go with fmi2Discard",
+            Self::Error => "Messages that go with fmi2Error",
+            Self::Fatal => "Messages that go with fmi2Fatal",
+        }
+    }
+
+    /// The category with this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.name() == name)
+    }
+
+    const fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+/// Sends messages to the importer. Nothing is formatted that is not sent.
+pub struct Logger {
+    callback: Option<fmi2CallbackLogger>,
+    environment: fmi2ComponentEnvironment,
+    instance_name: CString,
+    enabled: u8,
+    warned: Cell<bool>,
+}
+
+const ALL_BITS: u8 = 0b1_1111;
+
+impl Logger {
+    /// A logger that says nothing, for use of a slave without an importer.
+    pub fn silent() -> Self {
+        Self::new(None, "", false)
+    }
+
+    /// A logger on the callback of the importer.
+    pub(crate) fn new(functions: Option<&fmi2CallbackFunctions>, instance_name: &str, logging_on: bool) -> Self {
+        Self {
+            callback: functions.and_then(|f| f.logger),
+            environment: functions.map_or(core::ptr::null_mut(), |f| f.componentEnvironment),
+            instance_name: c_string(instance_name),
+            enabled: if logging_on { ALL_BITS } else { 0 },
+            warned: Cell::new(false),
+        }
+    }
+
+    /// Reports an event of the model (category `logEvents`).
+    pub fn event(&self, message: impl Display) {
+        self.send(fmi2OK, LogCategory::Events, &message);
+    }
+
+    /// Reports that something is odd though the computation goes on (category `logStatusWarning`). The C function
+    /// that is under way returns `fmi2Warning` if it succeeds otherwise.
+    pub fn warning(&self, message: impl Display) {
+        self.warned.set(true);
+        self.send(fmi2Warning, LogCategory::Warning, &message);
+    }
+
+    /// Whether messages of this category reach anyone, for models that must work to make them.
+    pub fn is_enabled(&self, category: LogCategory) -> bool {
+        self.callback.is_some() && self.enabled & category.bit() != 0
+    }
+
+    /// Reports a call that did not succeed, under the category of its status.
+    pub(crate) fn status(&self, status: fmi2Status, message: impl Display) {
+        let category = match status {
+            fmi2Warning => LogCategory::Warning,
+            fmi2Discard => LogCategory::Discard,
+            fmi2Error => LogCategory::Error,
+            fmi2Fatal => LogCategory::Fatal,
+            _ => LogCategory::Events,
+        };
+        self.send(status, category, &message);
+    }
+
+    /// Switches all categories on or off.
+    pub(crate) fn enable_all(&mut self, on: bool) {
+        self.enabled = if on { ALL_BITS } else { 0 };
+    }
+
+    /// Leaves exactly these categories on.
+    pub(crate) fn enable_only(&mut self, categories: impl Iterator<Item = LogCategory>) {
+        self.enabled = categories.fold(0, |bits, c| bits | c.bit());
+    }
+
+    /// Whether a warning was given during the call that is under way.
+    pub(crate) fn has_warned(&self) -> bool {
+        self.warned.get()
+    }
+
+    /// The same, at the end of the call.
+    pub(crate) fn take_warned(&self) -> bool {
+        self.warned.take()
+    }
+
+    fn send(&self, status: fmi2Status, category: LogCategory, message: &dyn Display) {
+        let Some(callback) = self.callback else {
+            return;
+        };
+        if !self.is_enabled(category) {
+            return;
+        }
+        let text = c_string(&message.to_string());
+        // SAFETY: the callback came from the importer with this environment; all strings are zero-terminated
+        // and outlive the call. The fixed format keeps a percent sign in the message from being interpreted.
+        unsafe {
+            callback(
+                self.environment,
+                self.instance_name.as_ptr(),
+                status,
+                category.c_name().as_ptr(),
+                c"%s".as_ptr(),
+                text.as_ptr(),
+            );
+        }
+    }
+}
+
+/// A C string; a NUL inside, which C cannot hold, becomes the replacement character.
+pub(crate) fn c_string(text: &str) -> CString {
+    CString::new(text).unwrap_or_else(|_| CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default())
+}

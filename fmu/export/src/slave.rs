@@ -1,0 +1,96 @@
+//! The trait that a model implements to become an FMU.
+
+use crate::error::SlaveError;
+use crate::info::ModelInfo;
+use crate::logger::Logger;
+use crate::serialize::{StateError, StateReader, StateWriter};
+use crate::variable::Variable;
+
+/// What the importer says about the experiment before initialisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Experiment {
+    /// Time at which the simulation starts, s.
+    pub start_time: f64,
+    /// Time behind which the importer will not go, s.
+    pub stop_time: Option<f64>,
+    /// Relative tolerance that the importer asks for.
+    pub tolerance: Option<f64>,
+}
+
+/// A model that can be exported as an FMU for co-simulation.
+///
+/// Life of a slave: [`new`](Self::new); the start values of the table are written; Sets, with
+/// [`update`](Self::update) before each Get that follows; [`setup_experiment`](Self::setup_experiment);
+/// more Sets; [`initialize`](Self::initialize); then [`do_step`](Self::do_step), Sets of inputs and Gets;
+/// [`terminate`](Self::terminate).
+///
+/// `Clone` is the FMU state: a clone must hold *everything*, random generators, event history and input
+/// derivatives included. A panic in any of these functions is caught and becomes `fmi2Error`.
+pub trait Slave: Clone + Send + 'static {
+    /// Facts about the FMU as a whole.
+    const INFO: ModelInfo;
+
+    /// The variable table. The value reference of a variable is its index here.
+    fn variables() -> &'static [Variable<Self>];
+
+    /// A fresh model. The start values of the table are written into it afterwards, through the setters and in
+    /// the order of the table, so it need not repeat them.
+    fn new() -> Self;
+
+    /// Takes note of start time, stop time and tolerance.
+    ///
+    /// # Errors
+    /// If the model cannot run this experiment.
+    fn setup_experiment(&mut self, experiment: &Experiment, log: &Logger) -> Result<(), SlaveError> {
+        let _ = (experiment, log);
+        Ok(())
+    }
+
+    /// Makes calculated parameters and initial outputs consistent with what was set. Called lazily, before
+    /// initialisation is complete only: ahead of a Get that follows a Set, and ahead of
+    /// [`initialize`](Self::initialize). The values may still be contradictory; this function has no say in that.
+    fn update(&mut self) {}
+
+    /// Ends initialisation: validates the parameters together and sets up the state. From here on, the outputs
+    /// are the model's to keep consistent.
+    ///
+    /// # Errors
+    /// If the parameters make no sense; the message names them, their values and the bound.
+    fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
+        let _ = log;
+        Ok(())
+    }
+
+    /// Advances from time `t` to `t + h`, s. `h` is finite and positive; `t` agrees with the end of the step
+    /// before to within rounding.
+    ///
+    /// # Errors
+    /// [`SlaveError::discard`] if the step was done in part or not at all and a smaller one may work,
+    /// [`SlaveError::terminate`] to end the simulation, [`SlaveError::error`] if the instance cannot go on.
+    fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError>;
+
+    /// Ends the simulation; final values can still be read.
+    ///
+    /// # Errors
+    /// If something could not be wound up.
+    fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
+        let _ = log;
+        Ok(())
+    }
+
+    /// Writes everything that [`read_state`](Self::read_state) needs. Called only if
+    /// [`ModelInfo::can_serialize`] is set.
+    fn write_state(&self, out: &mut StateWriter) {
+        let _ = out;
+    }
+
+    /// Rebuilds a model from what [`write_state`](Self::write_state) wrote, in the same order. The bytes have
+    /// the right checksum and come from an FMU with the same GUID; anything left over is refused.
+    ///
+    /// # Errors
+    /// If the bytes describe no valid model.
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        let _ = from;
+        Err(StateError::Unsupported)
+    }
+}

@@ -1,0 +1,354 @@
+//! Constructors of table rows. All of them are `const`, so that a table is a readable `static`.
+//!
+//! A row is declared by what it is (`parameter`, `input`, `output`, ...), refined (`min`, `tunable`, ...) and
+//! finished with its accessors: [`access`](Declaration::access) where the environment may write,
+//! [`get`](Declaration::get) where it only reads. A row without accessors does not compile, nor does an
+//! output that can be written.
+
+use super::kind::{BooleanSpec, EnumerationSpec, EnumerationType, IntegerSpec, Kind, RealSpec, StringSpec};
+use super::{Causality, Variability, Variable};
+use core::marker::PhantomData;
+
+/// Marks a declaration that needs a getter and a setter.
+#[derive(Debug, Clone, Copy)]
+pub struct Settable;
+
+/// Marks a declaration that needs a getter only.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadOnly;
+
+/// A row of the table that still lacks its accessors. `T` is the type with its attributes, `A` is [`Settable`]
+/// or [`ReadOnly`].
+#[must_use = "a declaration becomes a variable through `access` or `get`"]
+pub struct Declaration<T: Copy, A> {
+    name: &'static str,
+    description: &'static str,
+    causality: Causality,
+    variability: Variability,
+    dependencies: Option<&'static [&'static str]>,
+    spec: T,
+    access: PhantomData<fn(A)>,
+}
+
+type Real<M, A> = Declaration<RealSpec<M>, A>;
+type Integer<M, A> = Declaration<IntegerSpec<M>, A>;
+type Boolean<M, A> = Declaration<BooleanSpec<M>, A>;
+type Text<M, A> = Declaration<StringSpec<M>, A>;
+type Enumeration<M, A> = Declaration<EnumerationSpec<M>, A>;
+
+const fn declare<T: Copy, A>(
+    (causality, variability): (Causality, Variability),
+    name: &'static str,
+    description: &'static str,
+    spec: T,
+) -> Declaration<T, A> {
+    Declaration { name, description, causality, variability, dependencies: None, spec, access: PhantomData }
+}
+
+// What a constructor stands for. The getters below are placeholders that `access` and `get` replace.
+const PARAMETER: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
+const CALCULATED: (Causality, Variability) = (Causality::CalculatedParameter, Variability::Fixed);
+const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
+const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
+const DISCRETE_INPUT: (Causality, Variability) = (Causality::Input, Variability::Discrete);
+const DISCRETE_OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Discrete);
+
+const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
+    RealSpec {
+        unit,
+        start,
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+        nominal: None,
+        infinity_allowed: false,
+        get: |_| f64::NAN,
+        set: None,
+        input_derivatives: None,
+        output_derivatives: None,
+    }
+}
+
+const fn integer<M>(start: Option<i32>) -> IntegerSpec<M> {
+    IntegerSpec { start, min: i32::MIN, max: i32::MAX, get: |_| 0, set: None }
+}
+
+const fn boolean<M>(start: Option<bool>) -> BooleanSpec<M> {
+    BooleanSpec { start, get: |_| false, set: None }
+}
+
+const fn text<M>(start: Option<&'static str>) -> StringSpec<M> {
+    StringSpec { start, get: |_| String::new(), set: None }
+}
+
+const fn enumeration<M>(of: &'static EnumerationType, start: Option<i32>) -> EnumerationSpec<M> {
+    EnumerationSpec { of, start, get: |_| 0, set: None }
+}
+
+/// Constructors of Real variables. `unit` is `"1"` where there is none.
+impl<M> Variable<M> {
+    /// A fixed Real parameter; [`tunable`](Declaration::tunable) lets it change between steps.
+    pub const fn parameter(
+        name: &'static str,
+        unit: &'static str,
+        start: f64,
+        description: &'static str,
+    ) -> Real<M, Settable> {
+        declare(PARAMETER, name, description, real(unit, Some(start)))
+    }
+
+    /// A Real that follows from the parameters.
+    pub const fn calculated_parameter(
+        name: &'static str,
+        unit: &'static str,
+        description: &'static str,
+    ) -> Real<M, ReadOnly> {
+        declare(CALCULATED, name, description, real(unit, None))
+    }
+
+    /// A continuous Real input.
+    pub const fn input(
+        name: &'static str,
+        unit: &'static str,
+        start: f64,
+        description: &'static str,
+    ) -> Real<M, Settable> {
+        declare(INPUT, name, description, real(unit, Some(start)))
+    }
+
+    /// A continuous Real output, calculated from the start.
+    pub const fn output(name: &'static str, unit: &'static str, description: &'static str) -> Real<M, ReadOnly> {
+        declare(OUTPUT, name, description, real(unit, None))
+    }
+
+    /// The independent variable, time.
+    pub const fn independent(name: &'static str, description: &'static str) -> Real<M, ReadOnly> {
+        let kind = (Causality::Independent, Variability::Continuous);
+        declare(kind, name, description, real("s", None))
+    }
+}
+
+/// Constructors of Integer, Boolean, String and enumeration variables. Inputs and outputs are discrete.
+impl<M> Variable<M> {
+    /// A fixed Integer parameter.
+    pub const fn integer_parameter(name: &'static str, start: i32, description: &'static str) -> Integer<M, Settable> {
+        declare(PARAMETER, name, description, integer(Some(start)))
+    }
+
+    /// An Integer input.
+    pub const fn integer_input(name: &'static str, start: i32, description: &'static str) -> Integer<M, Settable> {
+        declare(DISCRETE_INPUT, name, description, integer(Some(start)))
+    }
+
+    /// An Integer output.
+    pub const fn integer_output(name: &'static str, description: &'static str) -> Integer<M, ReadOnly> {
+        declare(DISCRETE_OUTPUT, name, description, integer(None))
+    }
+
+    /// A fixed Boolean parameter.
+    pub const fn boolean_parameter(name: &'static str, start: bool, description: &'static str) -> Boolean<M, Settable> {
+        declare(PARAMETER, name, description, boolean(Some(start)))
+    }
+
+    /// A Boolean input.
+    pub const fn boolean_input(name: &'static str, start: bool, description: &'static str) -> Boolean<M, Settable> {
+        declare(DISCRETE_INPUT, name, description, boolean(Some(start)))
+    }
+
+    /// A Boolean output.
+    pub const fn boolean_output(name: &'static str, description: &'static str) -> Boolean<M, ReadOnly> {
+        declare(DISCRETE_OUTPUT, name, description, boolean(None))
+    }
+
+    /// A fixed String parameter.
+    pub const fn string_parameter(
+        name: &'static str,
+        start: &'static str,
+        description: &'static str,
+    ) -> Text<M, Settable> {
+        declare(PARAMETER, name, description, text(Some(start)))
+    }
+
+    /// A String input.
+    pub const fn string_input(name: &'static str, start: &'static str, description: &'static str) -> Text<M, Settable> {
+        declare(DISCRETE_INPUT, name, description, text(Some(start)))
+    }
+
+    /// A String output.
+    pub const fn string_output(name: &'static str, description: &'static str) -> Text<M, ReadOnly> {
+        declare(DISCRETE_OUTPUT, name, description, text(None))
+    }
+
+    /// A fixed parameter that chooses an item; `start` is its number, from 1.
+    pub const fn enumeration_parameter(
+        name: &'static str,
+        of: &'static EnumerationType,
+        start: i32,
+        description: &'static str,
+    ) -> Enumeration<M, Settable> {
+        declare(PARAMETER, name, description, enumeration(of, Some(start)))
+    }
+
+    /// An input that chooses an item; `start` is its number, from 1.
+    pub const fn enumeration_input(
+        name: &'static str,
+        of: &'static EnumerationType,
+        start: i32,
+        description: &'static str,
+    ) -> Enumeration<M, Settable> {
+        declare(DISCRETE_INPUT, name, description, enumeration(of, Some(start)))
+    }
+
+    /// An output that tells an item.
+    pub const fn enumeration_output(
+        name: &'static str,
+        of: &'static EnumerationType,
+        description: &'static str,
+    ) -> Enumeration<M, ReadOnly> {
+        declare(DISCRETE_OUTPUT, name, description, enumeration(of, None))
+    }
+}
+
+/// Refinements of any variable.
+impl<T: Copy, A> Declaration<T, A> {
+    /// Lets a parameter, or what follows from it, change between steps.
+    pub const fn tunable(mut self) -> Self {
+        self.variability = Variability::Tunable;
+        self
+    }
+
+    /// Makes a Real input or output change at events only.
+    pub const fn discrete(mut self) -> Self {
+        self.variability = Variability::Discrete;
+        self
+    }
+
+    const fn finish<M>(self, kind: Kind<M>) -> Variable<M> {
+        Variable {
+            name: self.name,
+            description: self.description,
+            causality: self.causality,
+            variability: self.variability,
+            kind,
+            dependencies: self.dependencies,
+        }
+    }
+}
+
+/// Refinements of a variable that the environment only reads.
+impl<T: Copy> Declaration<T, ReadOnly> {
+    /// Makes an output local: for display, not for connections.
+    pub const fn local(mut self) -> Self {
+        self.causality = Causality::Local;
+        self
+    }
+
+    /// Promises that an output depends, at a communication point, on these variables and no others. An empty
+    /// list says that it has no direct feedthrough, so that masters need not look for algebraic loops.
+    pub const fn depends_on(mut self, names: &'static [&'static str]) -> Self {
+        self.dependencies = Some(names);
+        self
+    }
+}
+
+/// Refinements of a Real.
+impl<M, A> Declaration<RealSpec<M>, A> {
+    /// Smallest value allowed.
+    pub const fn min(mut self, min: f64) -> Self {
+        self.spec.min = min;
+        self
+    }
+
+    /// Largest value allowed.
+    pub const fn max(mut self, max: f64) -> Self {
+        self.spec.max = max;
+        self
+    }
+
+    /// Typical magnitude.
+    pub const fn nominal(mut self, nominal: f64) -> Self {
+        self.spec.nominal = Some(nominal);
+        self
+    }
+}
+
+impl<M> Declaration<RealSpec<M>, Settable> {
+    /// Lets a Set give an infinite value, within `min` and `max`.
+    pub const fn infinity_allowed(mut self) -> Self {
+        self.spec.infinity_allowed = true;
+        self
+    }
+
+    /// Takes time derivatives of an input up to `max_order`; `set` gets the order, from 1, and the value. The
+    /// model keeps them (so that a saved state holds them) and decides how long they stay in force.
+    pub const fn input_derivatives(mut self, max_order: u32, set: fn(&mut M, u32, f64)) -> Self {
+        self.spec.input_derivatives = Some((max_order, set));
+        self
+    }
+
+    /// Finishes the row with its accessors.
+    pub const fn access(mut self, get: fn(&M) -> f64, set: fn(&mut M, f64)) -> Variable<M> {
+        self.spec.get = get;
+        self.spec.set = Some(set);
+        let kind = Kind::Real(self.spec);
+        self.finish(kind)
+    }
+}
+
+impl<M> Declaration<RealSpec<M>, ReadOnly> {
+    /// Gives time derivatives of an output up to `max_order`; `get` gets the order, from 1.
+    pub const fn output_derivatives(mut self, max_order: u32, get: fn(&M, u32) -> f64) -> Self {
+        self.spec.output_derivatives = Some((max_order, get));
+        self
+    }
+
+    /// Finishes the row with its getter.
+    pub const fn get(mut self, get: fn(&M) -> f64) -> Variable<M> {
+        self.spec.get = get;
+        let kind = Kind::Real(self.spec);
+        self.finish(kind)
+    }
+}
+
+/// Refinements of an Integer.
+impl<M, A> Declaration<IntegerSpec<M>, A> {
+    /// Smallest value allowed.
+    pub const fn min(mut self, min: i32) -> Self {
+        self.spec.min = min;
+        self
+    }
+
+    /// Largest value allowed.
+    pub const fn max(mut self, max: i32) -> Self {
+        self.spec.max = max;
+        self
+    }
+}
+
+macro_rules! finishers {
+    ($($spec:ident $kind:ident $get:ty, $set:ty;)*) => {$(
+        impl<M> Declaration<$spec<M>, Settable> {
+            /// Finishes the row with its accessors.
+            pub const fn access(mut self, get: fn(&M) -> $get, set: fn(&mut M, $set)) -> Variable<M> {
+                self.spec.get = get;
+                self.spec.set = Some(set);
+                let kind = Kind::$kind(self.spec);
+                self.finish(kind)
+            }
+        }
+
+        impl<M> Declaration<$spec<M>, ReadOnly> {
+            /// Finishes the row with its getter.
+            pub const fn get(mut self, get: fn(&M) -> $get) -> Variable<M> {
+                self.spec.get = get;
+                let kind = Kind::$kind(self.spec);
+                self.finish(kind)
+            }
+        }
+    )*};
+}
+finishers! {
+    IntegerSpec Integer i32, i32;
+    BooleanSpec Boolean bool, bool;
+    StringSpec String String, &str;
+    EnumerationSpec Enumeration i32, i32;
+}

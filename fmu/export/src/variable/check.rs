@@ -1,0 +1,163 @@
+//! Checks of a table and its [`ModelInfo`] as a whole, once per process: a mistake in it would otherwise surface
+//! as an FMU that some importers refuse.
+
+use super::kind::{EnumerationType, Kind, RealSpec};
+use super::{Causality, Variability, Variable};
+use crate::info::ModelInfo;
+use crate::slave::Slave;
+use std::collections::{HashMap, HashSet};
+
+/// A mistake in a variable table or in the facts about the FMU.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{subject}: {mistake}")]
+pub struct TableError {
+    subject: String,
+    mistake: String,
+}
+
+type Check = Result<(), TableError>;
+
+fn mistake<T>(subject: &str, mistake: impl Into<String>) -> Result<T, TableError> {
+    Err(TableError { subject: subject.to_owned(), mistake: mistake.into() })
+}
+
+fn ensure(holds: bool, subject: &str, what: impl FnOnce() -> String) -> Check {
+    if holds { Ok(()) } else { mistake(subject, what()) }
+}
+
+/// Checks all there is to know about an FMU before it runs.
+pub(crate) fn check_fmu<S: Slave>() -> Check {
+    check_info(&S::INFO)?;
+    check_table(S::variables())
+}
+
+fn check_info(info: &ModelInfo) -> Check {
+    let name = info.model_identifier;
+    let identifier = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    ensure(identifier, name, || "the model identifier is no C identifier".into())?;
+    let texts = [
+        info.model_name,
+        info.description,
+        info.author,
+        info.version,
+        info.copyright,
+        info.license,
+        info.generation_tool,
+    ];
+    texts.into_iter().try_for_each(|text| check_text(name, text))?;
+    let Some(experiment) = info.default_experiment else {
+        return Ok(());
+    };
+    let sensible = experiment.start_time.is_finite()
+        && experiment.stop_time.is_finite()
+        && experiment.stop_time > experiment.start_time
+        && experiment.step_size.is_finite()
+        && experiment.step_size > 0.0
+        && experiment.tolerance.is_none_or(|t| t.is_finite() && t > 0.0);
+    ensure(sensible, name, || format!("{experiment:?} is no experiment"))
+}
+
+fn check_table<M>(table: &[Variable<M>]) -> Check {
+    let mut names = HashSet::new();
+    let mut types: HashMap<&str, &EnumerationType> = HashMap::new();
+    for variable in table {
+        let name = variable.name;
+        ensure(!name.is_empty(), "variable", || "its name is empty".into())?;
+        check_text(name, name)?;
+        check_text(name, variable.description)?;
+        ensure(names.insert(name), name, || "its name occurs twice".into())?;
+        check_variability(variable)?;
+        check_kind(variable)?;
+        if let Kind::Enumeration(spec) = &variable.kind {
+            let first = types.entry(spec.of.name).or_insert(spec.of);
+            ensure(**first == *spec.of, name, || format!("there are two enumerations named {}", spec.of.name))?;
+        }
+    }
+    let clash = types.keys().find(|name| names.contains(*name));
+    ensure(clash.is_none(), clash.unwrap_or(&""), || "a variable and an enumeration share this name".into())?;
+    let times = table.iter().filter(|v| v.causality == Causality::Independent);
+    ensure(times.count() <= 1, "table", || "there are two independent variables".into())?;
+    table.iter().try_for_each(|v| check_dependencies(v, &names))
+}
+
+/// XML attributes normalise line breaks and cannot hold other control characters.
+fn check_text(subject: &str, text: &str) -> Check {
+    ensure(!text.contains(char::is_control), subject, || format!("{text:?} contains a control character"))
+}
+
+fn check_variability<M>(variable: &Variable<M>) -> Check {
+    let real = matches!(variable.kind, Kind::Real(_));
+    let allowed = match variable.causality {
+        Causality::Parameter | Causality::CalculatedParameter => {
+            matches!(variable.variability, Variability::Fixed | Variability::Tunable)
+        }
+        Causality::Input | Causality::Output | Causality::Local => match variable.variability {
+            Variability::Continuous => real,
+            Variability::Discrete => true,
+            Variability::Fixed | Variability::Tunable => false,
+        },
+        Causality::Independent => real && variable.variability == Variability::Continuous,
+    };
+    ensure(allowed, variable.name, || {
+        let (v, c) = (variable.variability.as_str(), variable.causality.as_str());
+        format!("a {} cannot be a {v} {c}", variable.kind.type_name())
+    })
+}
+
+fn check_kind<M>(variable: &Variable<M>) -> Check {
+    let name = variable.name;
+    match &variable.kind {
+        Kind::Real(spec) => check_real(variable, spec),
+        Kind::Integer(spec) => {
+            ensure(spec.min <= spec.max, name, || "its min is above its max".into())?;
+            check_start(name, spec.start, |start| spec.complaint(start))
+        }
+        Kind::Enumeration(spec) => {
+            ensure(!spec.of.items.is_empty(), spec.of.name, || "it has no items".into())?;
+            let mut names = HashSet::new();
+            for item in spec.of.items {
+                ensure(names.insert(item.name), item.name, || "the item occurs twice".into())?;
+                check_text(spec.of.name, item.name)?;
+                check_text(item.name, item.description)?;
+            }
+            check_text(spec.of.name, spec.of.name)?;
+            check_text(spec.of.name, spec.of.description)?;
+            check_start(name, spec.start, |start| spec.complaint(start))
+        }
+        Kind::Boolean(_) => Ok(()),
+        Kind::String(spec) => check_text(name, spec.start.unwrap_or_default()),
+    }
+}
+
+fn check_real<M>(variable: &Variable<M>, spec: &RealSpec<M>) -> Check {
+    let name = variable.name;
+    check_text(name, spec.unit)?;
+    ensure(!spec.unit.is_empty(), name, || "its unit is empty; use \"1\" for none".into())?;
+    ensure(spec.min <= spec.max, name, || "its min is above its max".into())?;
+    let nominal = spec.nominal.is_none_or(|n| n.is_finite() && n > 0.0);
+    ensure(nominal, name, || "its nominal value is not positive".into())?;
+    let input = spec.input_derivatives.is_none() || variable.causality == Causality::Input;
+    ensure(input, name, || "only an input takes input derivatives".into())?;
+    let output = spec.output_derivatives.is_none() || variable.causality == Causality::Output;
+    ensure(output, name, || "only an output gives output derivatives".into())?;
+    check_start(name, spec.start, |start| spec.complaint(start))
+}
+
+fn check_start<T: Copy + ToString>(name: &str, start: Option<T>, complaint: impl FnOnce(T) -> Option<String>) -> Check {
+    let Some(start) = start else {
+        return Ok(());
+    };
+    match complaint(start) {
+        None => Ok(()),
+        Some(bound) => mistake(name, format!("start {}: {bound}", start.to_string())),
+    }
+}
+
+fn check_dependencies<M>(variable: &Variable<M>, names: &HashSet<&str>) -> Check {
+    let dependencies = variable.dependencies.unwrap_or_default();
+    for other in dependencies {
+        ensure(names.contains(other), variable.name, || format!("it depends on {other}, which is not in the table"))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,189 @@
+//! The types of FMI 2.0 with their attributes and the accessors into the model.
+
+/// Type of a variable with the attributes of that type.
+pub enum Kind<M: 'static> {
+    /// `fmi2Real`
+    Real(RealSpec<M>),
+    /// `fmi2Integer`
+    Integer(IntegerSpec<M>),
+    /// `fmi2Boolean`
+    Boolean(BooleanSpec<M>),
+    /// `fmi2String`
+    String(StringSpec<M>),
+    /// An `fmi2Integer` that counts the items of an enumeration from 1.
+    Enumeration(EnumerationSpec<M>),
+}
+
+/// Sets a time derivative of an input: model, order from 1, value.
+pub type SetDerivative<M> = fn(&mut M, u32, f64);
+
+/// Gives a time derivative of an output: model, order from 1.
+pub type GetDerivative<M> = fn(&M, u32) -> f64;
+
+/// Attributes and accessors of a Real.
+pub struct RealSpec<M: 'static> {
+    /// Unit, `"1"` if it has none.
+    pub unit: &'static str,
+    /// Start value in that unit; none if the model calculates it.
+    pub start: Option<f64>,
+    /// Lower bound; minus infinity if there is none.
+    pub min: f64,
+    /// Upper bound; infinity if there is none.
+    pub max: f64,
+    /// Typical magnitude.
+    pub nominal: Option<f64>,
+    /// Whether a Set may give an infinite value. NaN is refused always.
+    pub infinity_allowed: bool,
+    /// Reads the model.
+    pub get: fn(&M) -> f64,
+    /// Writes the model.
+    pub set: Option<fn(&mut M, f64)>,
+    /// Highest order and setter of the time derivatives of an input.
+    pub input_derivatives: Option<(u32, SetDerivative<M>)>,
+    /// Highest order and getter of the time derivatives of an output.
+    pub output_derivatives: Option<(u32, GetDerivative<M>)>,
+}
+
+/// Attributes and accessors of an Integer.
+pub struct IntegerSpec<M: 'static> {
+    /// Start value; none if the model calculates it.
+    pub start: Option<i32>,
+    /// Lower bound; `i32::MIN` if there is none.
+    pub min: i32,
+    /// Upper bound; `i32::MAX` if there is none.
+    pub max: i32,
+    /// Reads the model.
+    pub get: fn(&M) -> i32,
+    /// Writes the model.
+    pub set: Option<fn(&mut M, i32)>,
+}
+
+/// Attributes and accessors of a Boolean.
+pub struct BooleanSpec<M: 'static> {
+    /// Start value; none if the model calculates it.
+    pub start: Option<bool>,
+    /// Reads the model.
+    pub get: fn(&M) -> bool,
+    /// Writes the model.
+    pub set: Option<fn(&mut M, bool)>,
+}
+
+/// Attributes and accessors of a String.
+pub struct StringSpec<M: 'static> {
+    /// Start value; none if the model calculates it.
+    pub start: Option<&'static str>,
+    /// Reads the model.
+    pub get: fn(&M) -> String,
+    /// Writes the model.
+    pub set: Option<fn(&mut M, &str)>,
+}
+
+/// Attributes and accessors of an enumeration. The accessors speak in item numbers, from 1.
+pub struct EnumerationSpec<M: 'static> {
+    /// The enumeration.
+    pub of: &'static EnumerationType,
+    /// Start value; none if the model calculates it.
+    pub start: Option<i32>,
+    /// Reads the model.
+    pub get: fn(&M) -> i32,
+    /// Writes the model; never called with a number that is not an item.
+    pub set: Option<fn(&mut M, i32)>,
+}
+
+/// An enumeration type. Its items are numbered from 1 in the order given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EnumerationType {
+    /// Name, unique among the types and different from every variable name.
+    pub name: &'static str,
+    /// What the choice is about.
+    pub description: &'static str,
+    /// The choices.
+    pub items: &'static [EnumerationItem],
+}
+
+/// One choice of an enumeration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EnumerationItem {
+    /// Name of the choice.
+    pub name: &'static str,
+    /// What it means.
+    pub description: &'static str,
+}
+
+impl EnumerationType {
+    /// An enumeration with `(name, description)` items made by [`EnumerationItem::new`].
+    pub const fn new(name: &'static str, description: &'static str, items: &'static [EnumerationItem]) -> Self {
+        Self { name, description, items }
+    }
+
+    /// The item with this number, counted from 1.
+    pub fn item(&self, number: i32) -> Option<&EnumerationItem> {
+        let index = usize::try_from(number).ok()?.checked_sub(1)?;
+        self.items.get(index)
+    }
+}
+
+impl EnumerationItem {
+    /// An item.
+    pub const fn new(name: &'static str, description: &'static str) -> Self {
+        Self { name, description }
+    }
+}
+
+// Derived impls would ask for `M: Clone`, which fn pointers do not need.
+macro_rules! copy {
+    ($($name:ident)*) => {$(
+        impl<M> Clone for $name<M> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<M> Copy for $name<M> {}
+    )*};
+}
+copy!(Kind RealSpec IntegerSpec BooleanSpec StringSpec EnumerationSpec);
+
+impl<M> Kind<M> {
+    /// The name of the type, as the XML element of `modelDescription.xml`.
+    pub const fn type_name(&self) -> &'static str {
+        match self {
+            Self::Real(_) => "Real",
+            Self::Integer(_) => "Integer",
+            Self::Boolean(_) => "Boolean",
+            Self::String(_) => "String",
+            Self::Enumeration(_) => "Enumeration",
+        }
+    }
+
+    /// Whether the type has a start value.
+    pub const fn has_start(&self) -> bool {
+        match self {
+            Self::Real(s) => s.start.is_some(),
+            Self::Integer(s) => s.start.is_some(),
+            Self::Boolean(s) => s.start.is_some(),
+            Self::String(s) => s.start.is_some(),
+            Self::Enumeration(s) => s.start.is_some(),
+        }
+    }
+
+    /// Writes the start value into a model, if there is one.
+    pub(crate) fn apply_start(&self, model: &mut M) {
+        match self {
+            Self::Real(s) => apply(s.start, s.set, model),
+            Self::Integer(s) => apply(s.start, s.set, model),
+            Self::Boolean(s) => apply(s.start, s.set, model),
+            Self::Enumeration(s) => apply(s.start, s.set, model),
+            Self::String(s) => {
+                if let (Some(start), Some(set)) = (s.start, s.set) {
+                    set(model, start);
+                }
+            }
+        }
+    }
+}
+
+fn apply<M, T>(start: Option<T>, set: Option<fn(&mut M, T)>, model: &mut M) {
+    if let (Some(start), Some(set)) = (start, set) {
+        set(model, start);
+    }
+}

@@ -1,0 +1,166 @@
+//! The variable table: each fact about a variable stands here, once.
+//!
+//! A table is a `static` array of [`Variable`]s. The **value reference of a variable is its index in the
+//! table**; the 1-based position that `ModelStructure` wants is that index plus one. The exporter reads and
+//! writes the model through the accessors of the table, checks each Set against it, applies its start values
+//! to a fresh model, derives the GUID from it and writes `modelDescription.xml` from it.
+//!
+//! Write `type V = Variable<MyModel>;` and start the rows with `V::`, so that the compiler knows the model in
+//! every closure.
+
+mod assign;
+mod builder;
+mod check;
+mod kind;
+
+pub(crate) use assign::{AsBoolean, AsInteger, AsReal, AsString, Transfer};
+pub use builder::{Declaration, ReadOnly, Settable};
+pub use check::TableError;
+pub(crate) use check::check_fmu;
+pub use kind::{
+    BooleanSpec, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, RealSpec,
+    SetDerivative, StringSpec,
+};
+
+/// What a variable is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Causality {
+    /// Chosen by the user before the simulation.
+    Parameter,
+    /// Follows from parameters during initialisation.
+    CalculatedParameter,
+    /// Given by the environment at each communication point.
+    Input,
+    /// Given to the environment at each communication point.
+    Output,
+    /// For display only.
+    Local,
+    /// The independent variable, time.
+    Independent,
+}
+
+impl Causality {
+    /// The word of `modelDescription.xml`.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Parameter => "parameter",
+            Self::CalculatedParameter => "calculatedParameter",
+            Self::Input => "input",
+            Self::Output => "output",
+            Self::Local => "local",
+            Self::Independent => "independent",
+        }
+    }
+}
+
+/// When a variable may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variability {
+    /// Not after initialisation.
+    Fixed,
+    /// Between steps.
+    Tunable,
+    /// At events.
+    Discrete,
+    /// At any time (Real only).
+    Continuous,
+}
+
+impl Variability {
+    /// The word of `modelDescription.xml`.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Tunable => "tunable",
+            Self::Discrete => "discrete",
+            Self::Continuous => "continuous",
+        }
+    }
+}
+
+/// Where the initial value of a variable comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Initial {
+    /// The start value is the initial value.
+    Exact,
+    /// The model calculates it.
+    Calculated,
+}
+
+impl Initial {
+    /// The word of `modelDescription.xml`.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Calculated => "calculated",
+        }
+    }
+}
+
+/// One row of the variable table of the model `M`. Made by the constructors in this module, such as
+/// [`Variable::parameter`].
+pub struct Variable<M: 'static> {
+    pub(crate) name: &'static str,
+    pub(crate) description: &'static str,
+    pub(crate) causality: Causality,
+    pub(crate) variability: Variability,
+    pub(crate) kind: Kind<M>,
+    pub(crate) dependencies: Option<&'static [&'static str]>,
+}
+
+// Derived impls would ask for `M: Clone`, which fn pointers do not need.
+impl<M> Clone for Variable<M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M> Copy for Variable<M> {}
+
+impl<M> Variable<M> {
+    /// Name, unique in the table.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// One line that tells the user what it is.
+    pub const fn description(&self) -> &'static str {
+        self.description
+    }
+
+    /// What it is for.
+    pub const fn causality(&self) -> Causality {
+        self.causality
+    }
+
+    /// When it may change.
+    pub const fn variability(&self) -> Variability {
+        self.variability
+    }
+
+    /// Where its initial value comes from; `None` for inputs and the independent variable, where FMI 2.0
+    /// forbids the attribute.
+    pub const fn initial(&self) -> Option<Initial> {
+        match self.causality {
+            Causality::Parameter => Some(Initial::Exact),
+            Causality::CalculatedParameter | Causality::Output | Causality::Local => Some(Initial::Calculated),
+            Causality::Input | Causality::Independent => None,
+        }
+    }
+
+    /// Type, with its attributes and accessors.
+    pub const fn kind(&self) -> &Kind<M> {
+        &self.kind
+    }
+
+    /// Names of the variables that an output depends on at a communication point; `None` if nothing is promised,
+    /// which importers read as "on every input".
+    pub const fn dependencies(&self) -> Option<&'static [&'static str]> {
+        self.dependencies
+    }
+}
+
+/// Value reference of the variable `name` in a table, `None` if there is no such variable.
+pub fn value_reference<M>(table: &[Variable<M>], name: &str) -> Option<u32> {
+    let index = table.iter().position(|v| v.name == name)?;
+    u32::try_from(index).ok()
+}

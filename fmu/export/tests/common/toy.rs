@@ -1,0 +1,230 @@
+//! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
+
+use fmi2_export::{
+    EnumerationItem, EnumerationType, Experiment, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
+    StateWriter, Variable, export_fmu,
+};
+use std::cell::Cell;
+
+thread_local! {
+    /// Makes `Toy::new` panic, which no variable can.
+    pub static PANIC_IN_NEW: Cell<bool> = const { Cell::new(false) };
+    /// Makes `Toy::clone` panic.
+    pub static PANIC_IN_CLONE: Cell<bool> = const { Cell::new(false) };
+    /// Makes dropping a `Toy` panic.
+    pub static PANIC_IN_DROP: Cell<bool> = const { Cell::new(false) };
+}
+
+#[derive(Debug, Default, PartialEq)]
+pub struct Toy {
+    gain: f64,
+    limit: f64,
+    doubled: f64,
+    input: f64,
+    slope: f64,
+    integral: f64,
+    count: i32,
+    seed: i32,
+    on: bool,
+    label: String,
+    law: i32,
+    trouble: String,
+    updates: i32,
+    start_time: f64,
+    time: f64,
+}
+
+impl Clone for Toy {
+    fn clone(&self) -> Self {
+        assert!(!PANIC_IN_CLONE.get(), "panic in clone");
+        Self { label: self.label.clone(), trouble: self.trouble.clone(), ..*self }
+    }
+}
+
+pub static LAW: EnumerationType = EnumerationType::new(
+    "Law",
+    "What is integrated",
+    &[EnumerationItem::new("value", "The input"), EnumerationItem::new("square", "Its square, x < y & \"so\"")],
+);
+
+pub const GAIN: u32 = 0;
+pub const LIMIT: u32 = 1;
+pub const DOUBLED: u32 = 2;
+pub const INPUT: u32 = 3;
+pub const INTEGRAL: u32 = 4;
+pub const SEED: u32 = 5;
+pub const COUNT: u32 = 6;
+pub const ON: u32 = 7;
+pub const IS_ON: u32 = 8;
+pub const LABEL: u32 = 9;
+pub const ECHO: u32 = 10;
+pub const LAW_VR: u32 = 11;
+pub const CHOSEN: u32 = 12;
+pub const TROUBLE: u32 = 13;
+pub const UPDATES: u32 = 14;
+pub const TIME: u32 = 15;
+pub const COUNT_OF_VARIABLES: u32 = 16;
+
+type V = Variable<Toy>;
+
+static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
+    V::parameter("toy.gain", "N/m", 2.0, "k: gain").min(0.5).max(8.0).nominal(2.0).access(
+        |m| {
+            m.fail_in("getter");
+            m.gain
+        },
+        |m, v| {
+            m.fail_in("setter");
+            m.gain = v;
+        },
+    ),
+    V::parameter("limit", "1", f64::INFINITY, "Bound of the integral")
+        .min(0.0)
+        .tunable()
+        .infinity_allowed()
+        .access(|m| m.limit, |m, v| m.limit = v),
+    V::calculated_parameter("doubled", "N/m", "2 k").get(|m| m.doubled),
+    V::input("u", "V", 1.0, "Input")
+        .input_derivatives(1, |m, _order, v| m.slope = v)
+        .access(|m| m.input, |m, v| m.input = v),
+    V::output("integral", "N.s/m", "Integral of k u")
+        .depends_on(&[])
+        .output_derivatives(1, |m, _order| m.gain * m.input)
+        .get(|m| m.integral),
+    V::integer_parameter("seed", 1, "Seed").min(0).max(9).access(|m| m.seed, |m, v| m.seed = v),
+    V::integer_output("count", "Number of steps").get(|m| m.count),
+    V::boolean_input("on", true, "Whether to integrate").access(|m| m.on, |m, v| m.on = v),
+    V::boolean_output("isOn", "Whether it integrates").depends_on(&["on"]).get(|m| m.on),
+    V::string_parameter("label", "toy", "Label").access(|m| m.label.clone(), |m, v| v.clone_into(&mut m.label)),
+    V::string_output("echo", "The label, with a NUL after it").get(|m| format!("{}\0", m.label)),
+    V::enumeration_parameter("law", &LAW, 1, "What is integrated").access(|m| m.law, |m, v| m.law = v),
+    V::enumeration_output("chosen", &LAW, "The law in force").local().get(|m| m.law),
+    V::string_input("trouble", "", "The hook that is to fail, and how")
+        .access(|m| m.trouble.clone(), |m, v| v.clone_into(&mut m.trouble)),
+    V::integer_output("updates", "How often update ran").local().get(|m| m.updates),
+    V::independent("time", "Time").get(|m| m.time),
+];
+
+impl Toy {
+    /// Panics if the variable `trouble` says so.
+    fn fail_in(&self, hook: &str) {
+        assert!(self.trouble != format!("panic {hook}"), "panic in {hook}");
+    }
+
+    /// Panics or returns an error if the variable `trouble` says so.
+    fn trouble_in(&self, hook: &str, log: &Logger) -> Result<(), SlaveError> {
+        self.fail_in(hook);
+        match self.trouble.strip_suffix(hook).map(str::trim_end) {
+            Some("error") => Err(SlaveError::error("asked for an error, 100 %s")),
+            Some("fatal") => Err(SlaveError::fatal("asked for a fatal error")),
+            Some("discard") => Err(SlaveError::discard(self.time + 0.25, "asked for a discard")),
+            Some("terminate") => Err(SlaveError::terminate(self.time + 0.125, "asked to terminate")),
+            Some("warning") => {
+                log.warning("asked for a warning");
+                Ok(())
+            }
+            Some("event") => {
+                log.event(format_args!("an event with a NUL \0 at {} s", self.time));
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Drop for Toy {
+    fn drop(&mut self) {
+        assert!(!PANIC_IN_DROP.replace(false), "panic in drop");
+    }
+}
+
+impl Slave for Toy {
+    const INFO: ModelInfo = ModelInfo::new("Toy")
+        .model_name("A toy & its tests")
+        .description("Integrates its input")
+        .author("Nobody")
+        .version("1.0")
+        .copyright("(c) Nobody")
+        .license("MIT OR Apache-2.0")
+        .generation_tool("fmi2-export")
+        .default_experiment(0.0, 10.0, 0.5)
+        .default_tolerance(1e-4)
+        .can_serialize();
+
+    fn variables() -> &'static [Variable<Self>] {
+        &VARIABLES
+    }
+
+    fn new() -> Self {
+        assert!(!PANIC_IN_NEW.get(), "panic in new");
+        Self::default()
+    }
+
+    fn setup_experiment(&mut self, experiment: &Experiment, log: &Logger) -> Result<(), SlaveError> {
+        self.start_time = experiment.start_time;
+        self.time = experiment.start_time;
+        self.trouble_in("setup", log)
+    }
+
+    fn update(&mut self) {
+        self.fail_in("update");
+        self.updates += 1;
+        self.doubled = 2.0 * self.gain;
+    }
+
+    fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
+        self.trouble_in("initialize", log)
+    }
+
+    fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
+        self.trouble_in("step", log)?;
+        let input = self.input + 0.5 * h * self.slope;
+        let rate = if self.law == 1 { input } else { input * input };
+        if self.on {
+            self.integral = (self.integral + self.gain * rate * h).min(self.limit);
+        }
+        self.count += 1;
+        self.time = t + h;
+        Ok(())
+    }
+
+    fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
+        self.trouble_in("terminate", log)
+    }
+
+    fn write_state(&self, out: &mut StateWriter) {
+        self.fail_in("write");
+        out.f64s(&[self.gain, self.limit, self.doubled, self.input, self.slope, self.integral]);
+        out.f64s(&[self.start_time, self.time]);
+        out.i32(self.count);
+        out.i32(self.seed);
+        out.bool(self.on);
+        out.str(&self.label);
+        out.i32(self.law);
+        out.str(&self.trouble);
+        out.i32(self.updates);
+    }
+
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        let numbers = from.f64s()?;
+        let times = from.f64s()?;
+        let ([gain, limit, doubled, input, slope, integral], [start_time, time]) = (&numbers[..], &times[..]) else {
+            return Err(StateError::Invalid("wrong number of numbers".into()));
+        };
+        let mut toy = Self::default();
+        (toy.gain, toy.limit, toy.doubled) = (*gain, *limit, *doubled);
+        (toy.input, toy.slope, toy.integral) = (*input, *slope, *integral);
+        (toy.start_time, toy.time) = (*start_time, *time);
+        toy.count = from.i32()?;
+        toy.seed = from.i32()?;
+        toy.on = from.bool()?;
+        from.str()?.clone_into(&mut toy.label);
+        toy.law = from.i32()?;
+        from.str()?.clone_into(&mut toy.trouble);
+        toy.updates = from.i32()?;
+        toy.fail_in("read");
+        Ok(toy)
+    }
+}
+
+export_fmu!(Toy);

@@ -1,0 +1,190 @@
+//! Saving, restoring and serialising FMU states.
+#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
+
+mod common;
+
+use common::toy::*;
+use common::*;
+use core::ptr::{dangling_mut, null, null_mut, without_provenance_mut};
+use fmi2_export::abi::*;
+
+/// Everything that can be read, bit for bit.
+fn fingerprint(host: &Host) -> (Vec<u64>, Vec<i32>, String) {
+    let reals = [GAIN, LIMIT, DOUBLED, INPUT, INTEGRAL, TIME].map(|vr| host.real(vr).to_bits());
+    let integers = [SEED, COUNT, LAW_VR, CHOSEN, UPDATES].map(|vr| host.integer(vr));
+    (reals.to_vec(), integers.to_vec(), host.string(LABEL))
+}
+
+/// A host in the middle of a simulation, with an input derivative in force, at 0.3 s.
+fn busy_host() -> Host {
+    let host = Host::initializing();
+    assert_eq!(host.set_real(GAIN, 1.1), fmi2OK);
+    assert_eq!(host.set_string(LABEL, "busy"), fmi2OK);
+    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
+    let (vr, order, value) = (INPUT, 1, 0.7);
+    let status =
+        unsafe { fmi2SetRealInputDerivatives(host.component, &raw const vr, 1, &raw const order, &raw const value) };
+    assert_eq!(status, fmi2OK);
+    assert_eq!(host.step(0.0, 0.3), fmi2OK);
+    host
+}
+
+fn run_on(host: &Host) {
+    for i in 0..50 {
+        let t = 0.3 + 0.1 * f64::from(i);
+        assert_eq!(host.set_real(INPUT, t.sin()), fmi2OK);
+        assert_eq!(host.step(t, 0.1), fmi2OK);
+    }
+}
+
+fn serialize(host: &Host, state: fmi2FMUstate) -> Vec<fmi2Byte> {
+    let mut size = 0;
+    assert_eq!(unsafe { fmi2SerializedFMUstateSize(host.component, state, &raw mut size) }, fmi2OK);
+    let mut bytes = vec![0; size];
+    let status = unsafe { fmi2SerializeFMUstate(host.component, state, bytes.as_mut_ptr(), size) };
+    assert_eq!(status, fmi2OK);
+    bytes
+}
+
+fn deserialize(host: &Host, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
+    unsafe { fmi2DeSerializeFMUstate(host.component, bytes.as_ptr(), bytes.len(), state) }
+}
+
+#[test]
+fn a_restored_state_runs_on_bit_for_bit() {
+    let host = busy_host();
+    let saved = host.save();
+    run_on(&host);
+    let first = fingerprint(&host);
+    for _ in 0..3 {
+        assert_eq!(host.restore(saved), fmi2OK);
+        run_on(&host);
+        assert_eq!(fingerprint(&host), first);
+    }
+}
+
+#[test]
+fn a_state_holds_the_call_state_too() {
+    let host = Host::initializing();
+    let saved = host.save();
+    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
+    assert_eq!(host.terminate(), fmi2OK);
+    assert_eq!(host.restore(saved), fmi2OK);
+    assert_eq!(host.set_real(GAIN, 3.0), fmi2OK, "back in initialization mode");
+    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
+}
+
+#[test]
+fn a_state_given_back_is_overwritten_in_place() {
+    let host = busy_host();
+    let mut state = host.save();
+    let token = state;
+    assert_eq!(host.step(0.3, 1.0), fmi2OK);
+    assert_eq!(unsafe { fmi2GetFMUstate(host.component, &raw mut state) }, fmi2OK);
+    assert_eq!(state, token);
+    let here = fingerprint(&host);
+    assert_eq!(host.step(1.3, 1.0), fmi2OK);
+    assert_eq!(host.restore(state), fmi2OK);
+    assert_eq!(fingerprint(&host), here);
+}
+
+#[test]
+fn states_that_are_foreign_stale_or_null_are_refused() {
+    let host = Host::initialized();
+    let mut freed = host.save();
+    let again = freed;
+    unsafe {
+        assert_eq!(fmi2FreeFMUstate(host.component, &raw mut freed), fmi2OK);
+        assert!(freed.is_null(), "FreeFMUstate nulls the pointer");
+        assert_eq!(fmi2FreeFMUstate(host.component, &raw mut freed), fmi2OK, "NULL is ignored");
+        assert_eq!(fmi2FreeFMUstate(host.component, null_mut()), fmi2OK, "NULL is ignored");
+    }
+    let other = Host::initialized();
+    let fresh = host.save();
+    assert_ne!(fresh, again, "a token is never given out twice");
+    let foreign = other.save();
+    for bad in [again, foreign, dangling_mut(), without_provenance_mut(usize::MAX)] {
+        let host = Host::initialized();
+        assert_eq!(host.restore(bad), fmi2Error);
+        assert!(host.error().contains("is no FMU state of this instance"));
+        let mut bad = bad;
+        let (mut size, mut bytes) = (0, [0; 512]);
+        unsafe {
+            assert_eq!(fmi2FreeFMUstate(host.component, &raw mut bad), fmi2Error);
+            assert_eq!(fmi2GetFMUstate(host.component, &raw mut bad), fmi2Error);
+            assert_eq!(fmi2SerializedFMUstateSize(host.component, bad, &raw mut size), fmi2Error);
+            assert_eq!(fmi2SerializeFMUstate(host.component, bad, bytes.as_mut_ptr(), 512), fmi2Error);
+        }
+    }
+    assert_eq!(host.restore(null_mut()), fmi2Error);
+    assert_eq!(host.error(), "fmi2SetFMUstate: argument FMUstate is NULL");
+    assert_eq!(unsafe { fmi2GetFMUstate(host.component, null_mut()) }, fmi2Error);
+    assert_eq!(host.restore(fresh), fmi2OK, "the right one still works");
+}
+
+#[test]
+fn a_serialised_state_runs_on_in_another_instance() {
+    let host = busy_host();
+    let bytes = serialize(&host, host.save());
+    run_on(&host);
+    let other = Host::new();
+    let mut state = null_mut();
+    assert_eq!(deserialize(&other, &bytes, &mut state), fmi2OK);
+    assert_eq!(serialize(&other, state), bytes, "the bytes are the same again");
+    assert_eq!(other.restore(state), fmi2OK);
+    run_on(&other);
+    assert_eq!(fingerprint(&other), fingerprint(&host));
+    let before = state;
+    assert_eq!(deserialize(&other, &bytes, &mut state), fmi2OK);
+    assert_eq!(state, before, "a state given back is overwritten");
+}
+
+#[test]
+fn damaged_truncated_and_foreign_bytes_are_refused() {
+    let host = busy_host();
+    let good = serialize(&host, host.save());
+    let refused = |bytes: &[fmi2Byte], what: &str| {
+        let mut state = null_mut();
+        assert_eq!(deserialize(&host, bytes, &mut state), fmi2Error, "{what}");
+        assert!(state.is_null(), "{what}");
+        assert!(host.error().contains("the serialised state is refused"), "{what}");
+    };
+    for position in 0..good.len() {
+        let mut damaged = good.clone();
+        damaged[position] ^= 0x10;
+        refused(&damaged, &format!("byte {position}"));
+        refused(&good[..position], &format!("{position} bytes"));
+    }
+    refused(&[good.as_slice(), &[0]].concat(), "a byte too many");
+    refused(&vec![0; good.len()], "zeros");
+    let mut state = null_mut();
+    unsafe {
+        assert_eq!(fmi2DeSerializeFMUstate(host.component, null(), 10, &raw mut state), fmi2Error);
+        assert_eq!(fmi2DeSerializeFMUstate(host.component, good.as_ptr(), good.len(), null_mut()), fmi2Error);
+    }
+    assert_eq!(deserialize(&host, &good, &mut state), fmi2OK);
+}
+
+#[test]
+fn a_buffer_that_is_too_small_or_null_is_refused_and_untouched() {
+    let host = busy_host();
+    let state = host.save();
+    let size = serialize(&host, state).len();
+    let mut buffer = vec![0x55; size];
+    let c = host.component;
+    assert_eq!(unsafe { fmi2SerializeFMUstate(c, state, buffer.as_mut_ptr(), size - 1) }, fmi2Error);
+    assert!(buffer.iter().all(|b| *b == 0x55));
+    assert!(host.error().contains(&format!("size = {}: the state takes {size} bytes", size - 1)));
+    assert_eq!(unsafe { fmi2SerializeFMUstate(c, state, null_mut(), size) }, fmi2Error);
+    assert_eq!(unsafe { fmi2SerializedFMUstateSize(c, state, null_mut()) }, fmi2Error);
+}
+
+#[test]
+fn saved_states_outlive_a_reset() {
+    let host = busy_host();
+    let saved = host.save();
+    let here = fingerprint(&host);
+    assert_eq!(host.reset(), fmi2OK);
+    assert_eq!(host.restore(saved), fmi2OK);
+    assert_eq!(fingerprint(&host), here);
+}

@@ -1,0 +1,161 @@
+//! `modelDescription.xml`: a golden file, and the rules that exporters get wrong.
+//!
+//! Golden file `data/Toy.xml`: written by this test with `UPDATE_GOLDEN=1`, validated against the schema of FMI 2.0
+//! with FMPy 0.3.32 by hand.
+#![cfg(feature = "model-description")]
+#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
+
+mod common;
+
+use common::toy::Toy;
+use fmi2_export::{
+    Causality, EnumerationItem, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Variable,
+    model_description,
+};
+
+fn text() -> String {
+    model_description::<Toy>().expect("a sound table")
+}
+
+#[test]
+fn the_text_is_as_in_the_golden_file() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/Toy.xml");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(path, text()).expect("golden file");
+    }
+    let golden = std::fs::read_to_string(path).expect("golden file");
+    assert_eq!(text(), golden.replace("\r\n", "\n"));
+}
+
+#[test]
+fn the_text_is_the_same_on_every_run_and_has_the_guid_of_the_library() {
+    assert_eq!(text(), text());
+    assert!(text().contains(&format!("guid=\"{}\"", Guid::of::<Toy>())));
+}
+
+#[test]
+fn the_guid_is_a_uuid_in_braces() {
+    let guid = Guid::of::<Toy>().to_string();
+    let lengths: Vec<_> = guid.trim_matches(['{', '}']).split('-').map(str::len).collect();
+    assert_eq!((lengths, guid.len()), (vec![8, 4, 4, 4, 12], 38));
+}
+
+#[test]
+fn elements_come_in_the_order_of_the_schema() {
+    let text = text();
+    let order = [
+        "<CoSimulation",
+        "<UnitDefinitions",
+        "<TypeDefinitions",
+        "<LogCategories",
+        "<DefaultExperiment",
+        "<ModelVariables",
+        "<ModelStructure",
+        "<Outputs",
+        "<InitialUnknowns",
+    ];
+    let positions: Vec<_> = order.map(|element| text.find(element).expect(element)).to_vec();
+    assert!(positions.is_sorted(), "{positions:?}");
+}
+
+#[test]
+fn start_and_initial_stand_exactly_where_they_must() {
+    let text = text();
+    let rows: Vec<_> = text.split("<ScalarVariable ").skip(1).collect();
+    assert_eq!(rows.len(), Toy::variables().len());
+    for (row, variable) in rows.iter().zip(Toy::variables()) {
+        let settable = matches!(variable.causality(), Causality::Parameter | Causality::Input);
+        assert_eq!(row.contains(" start="), settable, "{}", variable.name());
+        let silent = matches!(variable.causality(), Causality::Input | Causality::Independent);
+        assert_eq!(row.contains(" initial="), !silent, "{}", variable.name());
+        let continuous = row.contains("variability=\"continuous\"");
+        assert!(!continuous || matches!(variable.kind(), Kind::Real(_)), "{}", variable.name());
+    }
+}
+
+/// Two tables that differ in one fact.
+macro_rules! slave {
+    ($name:ident, $($row:expr),* $(,)?) => {
+        #[derive(Clone)]
+        #[allow(dead_code)]
+        struct $name(f64);
+
+        impl Slave for $name {
+            const INFO: ModelInfo = ModelInfo::new("Small");
+            fn variables() -> &'static [Variable<Self>] {
+                type V = Variable<$name>;
+                static TABLE: &[V] = &[$($row),*];
+                TABLE
+            }
+            fn new() -> Self {
+                Self(0.0)
+            }
+            fn do_step(&mut self, _: f64, _: f64, _: &Logger) -> Result<(), SlaveError> {
+                Ok(())
+            }
+        }
+    };
+}
+
+#[test]
+fn the_guid_changes_with_the_interface_but_not_with_a_description() {
+    slave!(Base, V::parameter("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Described, V::parameter("a", "m", 1.0, "other words").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Renamed, V::parameter("b", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Unit, V::parameter("a", "s", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Start, V::parameter("a", "m", 2.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Bound, V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v));
+    slave!(Tunable, V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v));
+    slave!(Input, V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    let base = Guid::of::<Base>();
+    assert_eq!(base, Guid::of::<Described>());
+    let others = [
+        Guid::of::<Renamed>(),
+        Guid::of::<Unit>(),
+        Guid::of::<Start>(),
+        Guid::of::<Bound>(),
+        Guid::of::<Tunable>(),
+        Guid::of::<Input>(),
+    ];
+    for (i, other) in others.iter().enumerate() {
+        assert_ne!(*other, base, "{i}");
+        assert!(!others[..i].contains(other), "{i}");
+    }
+}
+
+#[test]
+fn a_minimal_table_has_no_empty_elements() {
+    slave!(Minimal, V::parameter("a", "1", 1.0, "").access(|m| m.0, |m, v| m.0 = v));
+    let text = model_description::<Minimal>().expect("a sound table");
+    for element in ["UnitDefinitions", "TypeDefinitions", "DefaultExperiment", "Outputs", "description=\"\""] {
+        assert!(!text.contains(element), "{element}");
+    }
+    assert!(text.contains("<ModelStructure"));
+}
+
+#[test]
+fn mistakes_in_a_table_are_found_and_named() {
+    fn mistake<S: Slave>() -> String {
+        model_description::<S>().expect_err("a mistake").to_string()
+    }
+    static LAW: EnumerationType = EnumerationType::new("Law", "", &[EnumerationItem::new("a", "")]);
+    static OTHER: EnumerationType = EnumerationType::new("Law", "", &[EnumerationItem::new("b", "")]);
+    slave!(Twice, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
+    assert_eq!(mistake::<Twice>(), "the FMU is faulty: a: its name occurs twice");
+    slave!(Bounds, V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v));
+    assert_eq!(mistake::<Bounds>(), "the FMU is faulty: a: start 1: below its min 2 m");
+    slave!(Tunable, V::input("a", "m", 1.0, "").tunable().access(|m| m.0, |m, v| m.0 = v));
+    assert_eq!(mistake::<Tunable>(), "the FMU is faulty: a: a Real cannot be a tunable input");
+    slave!(Unknown, V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0));
+    assert_eq!(mistake::<Unknown>(), "the FMU is faulty: a: it depends on b, which is not in the table");
+    slave!(Item, V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ()));
+    assert_eq!(mistake::<Item>(), "the FMU is faulty: a: start 2: no item of Law; allowed: 1 (a)");
+    slave!(Types, V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1),);
+    assert_eq!(mistake::<Types>(), "the FMU is faulty: b: there are two enumerations named Law");
+    slave!(Control, V::output("a", "m", "one\ntwo").get(|m| m.0));
+    assert!(mistake::<Control>().contains("control character"));
+    slave!(Times, V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0));
+    assert!(mistake::<Times>().contains("two independent variables"));
+    slave!(NoUnit, V::output("a", "", "").get(|m| m.0));
+    assert!(mistake::<NoUnit>().contains("its unit is empty"));
+}

@@ -1,0 +1,124 @@
+//! A panic behind any hook is an error of that call and nothing more: the host lives on.
+#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
+
+mod common;
+
+use common::toy::*;
+use common::*;
+use core::ptr::null_mut;
+use fmi2_export::abi::*;
+
+/// The call failed, the reason is logged, and a reset makes the instance usable again.
+fn assert_survives(host: &Host, status: fmi2Status, function: &str, hook: &str) {
+    assert_eq!(status, fmi2Error, "{hook}");
+    let expected = format!("{function}: internal error, the model panicked: panic in {hook}");
+    assert_eq!(host.error(), expected);
+    assert_eq!(host.step(0.0, 1.0), fmi2Error, "the error state");
+    assert_eq!(host.reset(), fmi2OK);
+    assert_eq!(host.setup(0.0, None), fmi2OK);
+    assert_eq!(host.initialize(), fmi2OK);
+    assert_eq!(host.step(0.0, 1.0), fmi2OK);
+}
+
+#[test]
+fn a_panic_in_setup_is_an_error() {
+    let host = Host::new();
+    host.trouble("panic setup");
+    assert_survives(&host, host.setup(0.0, None), "fmi2SetupExperiment", "setup");
+}
+
+#[test]
+fn a_panic_in_update_is_an_error() {
+    let host = Host::initializing();
+    host.trouble("panic update");
+    assert_survives(&host, host.try_real(DOUBLED).0, "fmi2GetReal", "update");
+}
+
+#[test]
+fn a_panic_in_initialize_is_an_error() {
+    let host = Host::initializing();
+    host.trouble("panic initialize");
+    let status = unsafe { fmi2ExitInitializationMode(host.component) };
+    assert_survives(&host, status, "fmi2ExitInitializationMode", "initialize");
+}
+
+#[test]
+fn a_panic_in_a_step_is_an_error() {
+    let host = Host::initialized();
+    host.trouble("panic step");
+    assert_survives(&host, host.step(0.0, 1.0), "fmi2DoStep", "step");
+}
+
+#[test]
+fn a_panic_in_terminate_is_an_error() {
+    let host = Host::initialized();
+    host.trouble("panic terminate");
+    assert_survives(&host, host.terminate(), "fmi2Terminate", "terminate");
+}
+
+#[test]
+fn a_panic_in_an_accessor_is_an_error() {
+    let host = Host::initializing();
+    host.trouble("panic getter");
+    assert_survives(&host, host.try_real(GAIN).0, "fmi2GetReal", "getter");
+    let host = Host::initializing();
+    host.trouble("panic setter");
+    assert_survives(&host, host.set_real(GAIN, 3.0), "fmi2SetReal", "setter");
+}
+
+#[test]
+fn a_panic_in_serialisation_is_an_error() {
+    let host = Host::initialized();
+    host.trouble("panic write");
+    let mut size = 0;
+    let status = unsafe { fmi2SerializedFMUstateSize(host.component, host.save(), &raw mut size) };
+    assert_survives(&host, status, "fmi2SerializedFMUstateSize", "write");
+
+    let host = Host::initialized();
+    host.trouble("panic read");
+    let (mut state, mut bytes) = (host.save(), vec![0; 1024]);
+    let status = unsafe {
+        assert_eq!(fmi2SerializedFMUstateSize(host.component, state, &raw mut size), fmi2OK);
+        assert_eq!(fmi2SerializeFMUstate(host.component, state, bytes.as_mut_ptr(), size), fmi2OK);
+        fmi2DeSerializeFMUstate(host.component, bytes.as_ptr(), size, &raw mut state)
+    };
+    assert_survives(&host, status, "fmi2DeSerializeFMUstate", "read");
+}
+
+#[test]
+fn a_panic_in_clone_is_an_error() {
+    let host = Host::initialized();
+    let (saved, mut state) = (host.save(), null_mut());
+    PANIC_IN_CLONE.set(true);
+    let status = unsafe { fmi2GetFMUstate(host.component, &raw mut state) };
+    PANIC_IN_CLONE.set(false);
+    assert!(state.is_null());
+    assert_survives(&host, status, "fmi2GetFMUstate", "clone");
+    PANIC_IN_CLONE.set(true);
+    let status = host.restore(saved);
+    PANIC_IN_CLONE.set(false);
+    assert_survives(&host, status, "fmi2SetFMUstate", "clone");
+}
+
+#[test]
+fn a_panic_in_new_fails_instantiate_and_reset() {
+    let host = Host::initialized();
+    PANIC_IN_NEW.set(true);
+    let mut log = Log::default();
+    let functions = callbacks(&mut log);
+    let c = instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, &raw const functions, false);
+    let status = host.reset();
+    PANIC_IN_NEW.set(false);
+    assert!(c.is_null());
+    assert_eq!(log.lines[0].message, "fmi2Instantiate: the model panicked: panic in new");
+    assert_survives(&host, status, "fmi2Reset", "new");
+}
+
+#[test]
+fn a_panic_in_drop_ends_with_the_call() {
+    let host = Host::initialized();
+    PANIC_IN_DROP.set(true);
+    assert_survives(&host, host.reset(), "fmi2Reset", "drop");
+    PANIC_IN_DROP.set(true);
+    drop(host);
+}
