@@ -1,0 +1,275 @@
+//! The circuit as a user sees it.
+
+use crate::devices::Devices;
+use crate::error::{Error, finite, not_negative, positive};
+use crate::exponential::Exponential;
+use crate::ideal::EVENTS;
+use crate::ledger::Ledger;
+use crate::network::{Elements, Network};
+use crate::parameters::{DiodeParameters, Diodes, Parameters, Topology, names};
+use crate::state::{Mode, Node, State};
+
+/// The harvesting circuit of Fig. 8(a) with two time-varying membrane capacitances.
+///
+/// ```
+/// use videg_circuit::{Circuit, Parameters, Topology};
+///
+/// let parameters = Parameters { topology: Topology::Isolated, ..Parameters::default() };
+/// let mut circuit = Circuit::new(parameters, [15e-12, 15e-12])?;
+/// circuit.advance(0.01, [20e-12, 15e-12])?; // stretched: the supply tops it up
+/// circuit.advance(1.00, [15e-12, 15e-12])?; // relaxed: the charge leaves for the load
+/// assert!((circuit.ledger().supply_charge - 2000.0 * 5e-12).abs() < 1e-20);
+/// assert!(circuit.ledger().surplus() < 0.0); // a series Zener burns more than the mechanics gave
+/// # Ok::<(), videg_circuit::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circuit {
+    parameters: Parameters,
+    state: State,
+}
+
+impl Circuit {
+    /// A circuit with both membranes charged to `U_in`; `capacitance` is left, right (F).
+    ///
+    /// # Errors
+    /// A parameter or capacitance out of bounds, by name.
+    pub fn new(parameters: Parameters, capacitance: [f64; 2]) -> Result<Self, Error> {
+        Self::with_voltages(parameters, capacitance, [parameters.supply_voltage; 2])
+    }
+
+    /// A circuit that starts from given voltages, left and right (V), 0 or more; equal on a shared node.
+    ///
+    /// The ideal diode fills a membrane below `U_in` at once and a load of 0 ohm empties one above `U_z` at once;
+    /// the ledger, zero before, holds that energy. The same rule for exponential diodes, whose inrush through no
+    /// resistance at all has no other limit.
+    ///
+    /// # Errors
+    /// A parameter, capacitance or voltage out of bounds, by name.
+    pub fn with_voltages(parameters: Parameters, capacitance: [f64; 2], voltage: [f64; 2]) -> Result<Self, Error> {
+        parameters.validate()?;
+        check_capacitances(capacitance)?;
+        not_negative(names::LEFT_VOLTAGE, voltage[0], "V")?;
+        not_negative(names::RIGHT_VOLTAGE, voltage[1], "V")?;
+        let [left, right] = voltage;
+        let shared = parameters.topology == Topology::SharedNode;
+        if shared && left != right {
+            return Err(Error::VoltagesDiffer { left, right });
+        }
+        let charge = if shared {
+            [left * (capacitance[0] + capacitance[1]), 0.0]
+        } else {
+            [left * capacitance[0], right * capacitance[1]]
+        };
+        let mut circuit = Self { parameters, state: State { charge, capacitance, ..State::default() } };
+        circuit.start(voltage);
+        Ok(circuit)
+    }
+
+    /// Lets the ideal elements act on the voltages given.
+    fn start(&mut self, voltage: [f64; 2]) {
+        self.state.initial_energy = self.stored_energy();
+        let mut network = self.network();
+        for (j, v) in voltage.into_iter().enumerate().take(network.count) {
+            if v == self.parameters.supply_voltage {
+                network.nodes[j].mode = Mode::Charging;
+            }
+            network.inrush(j);
+            network.outrush(j);
+        }
+        network.rank();
+        self.accept(network);
+        self.update_ideal_outputs(&network);
+    }
+
+    /// Advances by `dt` seconds, the capacitances (left, right) (F) running linearly in time to the values given.
+    ///
+    /// With ideal diodes the result is exact, whatever `dt`. With `dt` = 0 the capacitances jump: charge is
+    /// conserved, the supply tops up at once what falls below `U_in`, and no charge reaches a load above 0 ohm.
+    ///
+    /// # Errors
+    /// `dt` or a capacitance out of bounds, by name; [`Error::Integration`] with exponential diodes. The circuit
+    /// is unchanged then.
+    pub fn advance(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+        not_negative(names::STEP, dt, "s")?;
+        check_capacitances(capacitance)?;
+        if dt == 0.0 && capacitance == self.state.capacitance {
+            return Ok(());
+        }
+        finite("time", self.state.time + dt, "s")?;
+        match self.parameters.diodes {
+            Diodes::Ideal => self.advance_ideal(dt, capacitance)?,
+            Diodes::Exponential(diode) => self.advance_exponential(&diode, dt, capacitance)?,
+        }
+        self.state.capacitance = capacitance;
+        self.state.time += dt;
+        Ok(())
+    }
+
+    fn advance_ideal(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+        let mut network = self.network();
+        let ends = self.node_capacitances(capacitance);
+        if dt == 0.0 {
+            network.jump(ends);
+        } else {
+            network.advance(dt, ends).ok_or(Error::TooManyEvents { time: self.state.time, step: dt, bound: EVENTS })?;
+        }
+        self.accept(network);
+        self.update_ideal_outputs(&network);
+        Ok(())
+    }
+
+    fn advance_exponential(&mut self, diode: &DiodeParameters, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+        let mut network = self.network();
+        let ends = self.node_capacitances(capacitance);
+        let start = network.nodes.map(|node| node.capacitance);
+        let rate = [0, 1].map(|j| (ends[j] - start[j]) / dt);
+        if rate.iter().any(|rate| !rate.is_finite()) {
+            network.jump(ends);
+            self.accept(network);
+            return Ok(());
+        }
+        let devices = Devices::new(&self.parameters, diode);
+        let solver = Exponential {
+            devices: &devices,
+            solver: &diode.solver,
+            count: network.count,
+            capacitance: start,
+            rate,
+            time: self.state.time,
+        };
+        let mut internal_step = self.state.internal_step;
+        let point = solver.advance(&mut network, dt, &mut internal_step, self.state.load_voltage)?;
+        self.accept(network);
+        self.state.internal_step = internal_step;
+        self.state.load_voltage = point.load_voltage;
+        self.state.load_current = point.release.iter().sum();
+        self.state.supply_current = point.supply.iter().sum();
+        Ok(())
+    }
+
+    /// Parameters of this circuit.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// Time since the start (s).
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Capacitances, left and right (F).
+    pub fn capacitance(&self) -> [f64; 2] {
+        self.state.capacitance
+    }
+
+    /// Voltages `U_DE` of the membranes, left and right (V).
+    pub fn voltage(&self) -> [f64; 2] {
+        let nodes = self.network().nodes;
+        match self.parameters.topology {
+            Topology::SharedNode => [nodes[0].voltage(); 2],
+            Topology::Isolated => nodes.map(|node| node.voltage()),
+        }
+    }
+
+    /// Load voltage `U_out` (V): `I R`, a mean value where a switch is duty-cycled. At a load of infinite
+    /// resistance it is the open-circuit voltage behind the release element.
+    pub fn load_voltage(&self) -> f64 {
+        self.state.load_voltage
+    }
+
+    /// Load current (A).
+    pub fn load_current(&self) -> f64 {
+        self.state.load_current
+    }
+
+    /// Current drawn from the supply (A).
+    pub fn supply_current(&self) -> f64 {
+        self.state.supply_current
+    }
+
+    /// The books since the start.
+    pub fn ledger(&self) -> Ledger {
+        Ledger { stored: self.stored_energy() - self.state.initial_energy, ..self.state.ledger }
+    }
+
+    /// Changes of mode since the start: how often an ideal element began or ceased to conduct. Exponential diodes
+    /// have no modes and leave it at 0.
+    pub fn events(&self) -> u64 {
+        self.state.events
+    }
+
+    /// The dynamic state, as plain numbers.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Goes back (or on) to a state exported from a circuit with the same parameters.
+    ///
+    /// # Errors
+    /// A state that no circuit can be in; the circuit is unchanged then.
+    pub fn restore(&mut self, state: &State) -> Result<(), Error> {
+        state.validate()?;
+        self.state = *state;
+        Ok(())
+    }
+
+    fn node_capacitances(&self, [left, right]: [f64; 2]) -> [f64; 2] {
+        match self.parameters.topology {
+            Topology::SharedNode => [left + right, 0.0],
+            Topology::Isolated => [left, right],
+        }
+    }
+
+    fn network(&self) -> Network {
+        let count = self.parameters.nodes();
+        Network {
+            elements: Elements::new(&self.parameters),
+            nodes: self.state.nodes(count),
+            count,
+            excess: self.state.load_voltage,
+            ledger: self.state.ledger,
+            events: self.state.events,
+        }
+    }
+
+    fn stored_energy(&self) -> f64 {
+        let network = self.network();
+        network.nodes[..network.count].iter().map(Node::energy).sum()
+    }
+
+    fn accept(&mut self, mut network: Network) {
+        if self.parameters.diodes == Diodes::Ideal {
+            self.state.events = network.events;
+        } else {
+            for node in &mut network.nodes {
+                node.mode = Mode::Off;
+            }
+        }
+        self.state.set_nodes(&network.nodes);
+        self.state.ledger = network.ledger;
+    }
+
+    fn update_ideal_outputs(&mut self, network: &Network) {
+        let elements = &network.elements;
+        let falling = |j: usize| -network.nodes[j].rate;
+        let held: f64 = network.in_mode(Mode::Holding).map(falling).sum();
+        let filled: f64 = network.in_mode(Mode::Charging).map(falling).sum();
+        let top = network.nodes[..network.count].iter().map(Node::voltage).fold(0.0, f64::max);
+        self.state.supply_current = 0.0 - elements.supply * filled;
+        (self.state.load_voltage, self.state.load_current) = if elements.open() {
+            let above = top > elements.threshold;
+            (if above { top - elements.drop } else { 0.0 }, 0.0)
+        } else if let Some(discharge) = network.discharge() {
+            (discharge.excess, discharge.excess * elements.conductance)
+        } else {
+            // Adding zero turns the -0 of an empty sum into 0.
+            let current = elements.threshold * held + 0.0;
+            (current / elements.conductance, current)
+        };
+    }
+}
+
+fn check_capacitances([left, right]: [f64; 2]) -> Result<(), Error> {
+    positive(names::LEFT_CAPACITANCE, left, "F")?;
+    positive(names::RIGHT_CAPACITANCE, right, "F")
+}

@@ -1,0 +1,90 @@
+//! Closed forms of one harvesting cycle between the rest capacitance `C2` and the peak capacitance `C3`.
+//!
+//! They hold for one membrane on a node of its own. With both membranes on one node (Fig. 8a) the idle one
+//! lies in parallel: pass `C2 + C2` for `c2` and `C3 + C2` for `c3`. Capacitances in F, voltages in V,
+//! energies in J, charges in C. Nothing is checked: they are for reports and tests.
+
+/// `W = 1/2 U_in^2 (C3 - C2)`, Eq. (13) of the paper (J). Half of what the supply gives in a cycle, and the
+/// change of the stored energy; not the net gain of a cycle.
+pub fn eq13_energy(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    0.5 * supply_voltage * supply_voltage * (c3 - c2)
+}
+
+/// `U_DE4 = U_in C3 / C2`, Eq. (12) (V): the voltage that a constant charge reaches.
+pub fn peak_voltage(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    supply_voltage * c3 / c2
+}
+
+/// `U_DE4` with both membranes on one node (V): `U_in (C3 + C2) / (2 C2)`, not Eq. (12).
+pub fn peak_voltage_shared_node(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    peak_voltage(supply_voltage, c2 + c2, c3 + c2)
+}
+
+/// Charge moved from supply to load in a cycle with `U_z = U_in` and a discharge that is fast against the
+/// cycle (C): `dQ = U_in (C3 - C2)`.
+pub fn cycle_charge(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    supply_voltage * (c3 - c2)
+}
+
+/// Largest net gain of a cycle from and to `U_in` (J): constant charge up to `U_DE4`, then a slow discharge
+/// into the load at `C2`; `1/2 U_in^2 dC^2 / C2`.
+pub fn largest_net_gain(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    let dc = c3 - c2;
+    0.5 * supply_voltage * supply_voltage * dc * dc / c2
+}
+
+/// Net gain of a cycle that releases its charge at `U_z` (J): `(C3 U_in - C2 U_z) (U_z - U_in)`, and zero
+/// when the constant charge does not reach `U_z`. With a series Zener this is burnt in the Zener.
+pub fn zener_net_gain(supply_voltage: f64, zener_voltage: f64, c2: f64, c3: f64) -> f64 {
+    (c3 * supply_voltage - c2 * zener_voltage).max(0.0) * (zener_voltage - supply_voltage)
+}
+
+/// The `U_z` of the largest [`zener_net_gain`] (V): `U_in (C3 / C2 + 1) / 2`.
+pub fn best_zener_voltage(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    0.5 * supply_voltage * (c3 / c2 + 1.0)
+}
+
+/// [`zener_net_gain`] at [`best_zener_voltage`] (J): `U_in^2 dC^2 / (4 C2)`, half of the largest net gain.
+pub fn best_zener_net_gain(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+    0.5 * largest_net_gain(supply_voltage, c2, c3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const U: f64 = 2000.0;
+    const C2: f64 = 15e-12;
+    const C3: f64 = 24e-12;
+
+    #[test]
+    fn the_best_zener_voltage_is_the_top_of_the_net_gain() {
+        let best = best_zener_voltage(U, C2, C3);
+        let gain = zener_net_gain(U, best, C2, C3);
+        assert_relative_eq!(gain, best_zener_net_gain(U, C2, C3), max_relative = 1e-14);
+        for nearby in [best - 1.0, best + 1.0] {
+            assert!(zener_net_gain(U, nearby, C2, C3) < gain);
+        }
+    }
+
+    #[test]
+    fn the_largest_net_gain_is_the_stored_energy_above_the_supply_minus_the_charge_drawn() {
+        let peak = peak_voltage(U, C2, C3);
+        let to_load = 0.5 * C2 * (peak * peak - U * U);
+        let from_supply = U * cycle_charge(U, C2, C3);
+        assert_relative_eq!(to_load - from_supply, largest_net_gain(U, C2, C3), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn the_shared_node_lowers_the_peak_voltage_and_eq13_is_half_the_supply_energy() {
+        assert_relative_eq!(peak_voltage(U, C2, C3), 3200.0, max_relative = 1e-14);
+        assert_relative_eq!(peak_voltage_shared_node(U, C2, C3), 2600.0, max_relative = 1e-14);
+        assert_relative_eq!(2.0 * eq13_energy(U, C2, C3), U * cycle_charge(U, C2, C3), max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_zener_voltage_out_of_reach_gains_nothing() {
+        assert_eq!(zener_net_gain(U, 3201.0, C2, C3), 0.0);
+    }
+}

@@ -1,0 +1,44 @@
+//! Where the energy and the charge went.
+
+/// Running sums since the start; energies in J, charges in C.
+///
+/// What the mechanics gave is booked twice, on two paths that share no arithmetic: [`converted`](Self::converted)
+/// from the elements and the stored energy, `mechanical` from the work on the capacitances. Their difference,
+/// [`residual`](Self::residual), is the error of the bookkeeping.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ledger {
+    /// Energy drawn from the supply, `U_in` times its charge (J).
+    pub supply: f64,
+    /// Energy given to the load resistor (J).
+    pub load: f64,
+    /// Energy burnt in the Zener diodes (J); zero with a switch.
+    pub zener: f64,
+    /// Energy burnt in the charging diodes (J); with ideal diodes only by inrush from a start below `U_in`.
+    pub diode: f64,
+    /// Change of the stored energy `1/2 C V^2` since the start (J).
+    pub stored: f64,
+    /// Work of the mechanics against the electric field, `-integral 1/2 V^2 dC` (J).
+    pub mechanical: f64,
+    /// Charge drawn from the supply (C).
+    pub supply_charge: f64,
+    /// Charge through the load (C).
+    pub load_charge: f64,
+}
+
+impl Ledger {
+    /// Energy that the mechanics gave, from the electrical side (J): load + zener + diode + stored - supply.
+    pub fn converted(&self) -> f64 {
+        self.load + self.zener + self.diode + self.stored - self.supply
+    }
+
+    /// What a user gains (J): load - supply.
+    pub fn surplus(&self) -> f64 {
+        self.load - self.supply
+    }
+
+    /// Energy that the two ways of booking disagree on (J): converted - mechanical; zero but for rounding
+    /// (ideal diodes) or the integrator's tolerance (exponential diodes).
+    pub fn residual(&self) -> f64 {
+        self.converted() - self.mechanical
+    }
+}

@@ -1,0 +1,200 @@
+//! Parameters of the circuit: the one place for their names, units, defaults and bounds.
+
+use crate::error::{Error, finite, not_negative, positive};
+
+/// Names of parameters and inputs, as an FMU variable table and the error messages spell them.
+pub mod names {
+    /// Supply voltage `U_in` (V).
+    pub const SUPPLY_VOLTAGE: &str = "supply.voltage";
+    /// Voltage `U_z` of the release element (V).
+    pub const ZENER_VOLTAGE: &str = "zener.voltage";
+    /// Load resistance `R` (ohm).
+    pub const LOAD_RESISTANCE: &str = "load.resistance";
+    /// How the membranes are connected.
+    pub const TOPOLOGY: &str = "topology";
+    /// What releases the charge.
+    pub const RELEASE: &str = "release";
+    /// Model of the diodes.
+    pub const DIODE_MODEL: &str = "diode.model";
+    /// Saturation current `IS` of every diode (A).
+    pub const SATURATION_CURRENT: &str = "diode.saturationCurrent";
+    /// Forward emission coefficient `N` of every diode (1).
+    pub const EMISSION_COEFFICIENT: &str = "diode.emissionCoefficient";
+    /// Temperature of every diode (K).
+    pub const TEMPERATURE: &str = "diode.temperature";
+    /// Breakdown current `IBV` of the Zener diodes (A).
+    pub const BREAKDOWN_CURRENT: &str = "zener.breakdownCurrent";
+    /// Emission coefficient `NBV` in breakdown (1).
+    pub const BREAKDOWN_EMISSION: &str = "zener.emissionCoefficient";
+    /// Voltage over which the smooth switch turns on (V).
+    pub const SWITCH_BAND: &str = "switch.band";
+    /// Relative tolerance of the integrator (1).
+    pub const RELATIVE_TOLERANCE: &str = "solver.relativeTolerance";
+    /// Capacitance of the left membrane (F).
+    pub const LEFT_CAPACITANCE: &str = "left.capacitance";
+    /// Capacitance of the right membrane (F).
+    pub const RIGHT_CAPACITANCE: &str = "right.capacitance";
+    /// Voltage of the left membrane (V).
+    pub const LEFT_VOLTAGE: &str = "left.voltage";
+    /// Voltage of the right membrane (V).
+    pub const RIGHT_VOLTAGE: &str = "right.voltage";
+    /// Length of a step (s).
+    pub const STEP: &str = "step";
+}
+
+/// How the two membranes are connected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Topology {
+    /// Fig. 8(a) as drawn: one node with both membranes, one charging diode, one release element.
+    #[default]
+    SharedNode,
+    /// Each membrane has a charging diode and a release element of its own; both feed the one load.
+    /// This is what Eq. (12) assumes.
+    Isolated,
+}
+
+/// What lets the charge out to the load.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Release {
+    /// A Zener diode in series: conducts when `V_de - V_out` would exceed `U_z`, and burns `U_z I`.
+    #[default]
+    Zener,
+    /// An ideal lossless switch, the literal reading of Section 4.1: closed while `V_de > U_z`, with
+    /// `I = V_de / R`; at `V_de = U_z` it is duty-cycled without hysteresis, and the mean current is what
+    /// holds `V_de` there, from 0 to `U_z / R`.
+    Switch,
+}
+
+/// Model of the diodes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Diodes {
+    /// Ideal: no drop, no leakage. Solved exactly, event by event.
+    #[default]
+    Ideal,
+    /// Shockley's exponential, as ngspice evaluates it. Integrated with error control.
+    Exponential(DiodeParameters),
+}
+
+/// Parameters of an exponential diode, with ngspice's meaning; `RS` and `CJO` are zero and `BV` is `U_z`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DiodeParameters {
+    /// `diode.saturationCurrent`: `IS` (A), above 0, default 1e-13.
+    pub saturation_current: f64,
+    /// `diode.emissionCoefficient`: `N` (1), above 0, default 0.01 (near-ideal).
+    pub emission_coefficient: f64,
+    /// `diode.temperature` (K), above 0, default 300.15.
+    pub temperature: f64,
+    /// `zener.breakdownCurrent`: `IBV` (A), above 0, default 1e-13. Below `IS BV / Vt` it has no effect and
+    /// the current at `U_z` is `IS`, as in ngspice.
+    pub breakdown_current: f64,
+    /// `zener.emissionCoefficient`: `NBV` (1), above 0, default 0.01.
+    pub breakdown_emission: f64,
+    /// `switch.band` (V), above 0, default 0.02: [`Release::Switch`] turns on linearly between `U_z` and
+    /// `U_z` + band.
+    pub switch_band: f64,
+    /// Accuracy and effort of the integrator.
+    pub solver: Solver,
+}
+
+impl Default for DiodeParameters {
+    fn default() -> Self {
+        Self {
+            saturation_current: 1e-13,
+            emission_coefficient: 0.01,
+            temperature: 300.15,
+            breakdown_current: 1e-13,
+            breakdown_emission: 0.01,
+            switch_band: 0.02,
+            solver: Solver::default(),
+        }
+    }
+}
+
+/// Accuracy and effort of the integrator of the exponential diodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solver {
+    /// `solver.relativeTolerance` (1), above 0, default 1e-9: largest error of an internal step, charges
+    /// relative to `C U_in` and energies to `C U_in^2`. With `N` much below 0.01 the last bit of a voltage of 2 kV is
+    /// too coarse for so small a tolerance.
+    pub relative_tolerance: f64,
+    /// `solver.maximumSteps`, default 100 000: internal steps, rejected ones included, in one call.
+    pub maximum_steps: usize,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self { relative_tolerance: 1e-9, maximum_steps: 100_000 }
+    }
+}
+
+/// Parameters of the circuit of Fig. 8(a). The default is the paper's (Section 4.1) with a load of 1 Gohm,
+/// which the paper does not give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// `supply.voltage`: `U_in` (V), above 0, default 2000.
+    pub supply_voltage: f64,
+    /// `zener.voltage`: `U_z` (V), at least `U_in`, default 2000.
+    pub zener_voltage: f64,
+    /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends, default 1e9.
+    pub load_resistance: f64,
+    /// `topology`, default [`Topology::SharedNode`].
+    pub topology: Topology,
+    /// `release`, default [`Release::Zener`].
+    pub release: Release,
+    /// Model of the diodes, default [`Diodes::Ideal`].
+    pub diodes: Diodes,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            supply_voltage: 2000.0,
+            zener_voltage: 2000.0,
+            load_resistance: 1e9,
+            topology: Topology::default(),
+            release: Release::default(),
+            diodes: Diodes::default(),
+        }
+    }
+}
+
+impl Parameters {
+    /// Checks every bound.
+    ///
+    /// # Errors
+    /// The first parameter that is not finite (`R` may be infinite), out of its range, or a `U_z` below `U_in`.
+    pub fn validate(&self) -> Result<(), Error> {
+        positive(names::SUPPLY_VOLTAGE, self.supply_voltage, "V")?;
+        finite(names::ZENER_VOLTAGE, self.zener_voltage, "V")?;
+        if self.zener_voltage < self.supply_voltage {
+            return Err(Error::ZenerBelowSupply { zener: self.zener_voltage, supply: self.supply_voltage });
+        }
+        if self.load_resistance != f64::INFINITY {
+            not_negative(names::LOAD_RESISTANCE, self.load_resistance, "ohm")?;
+        }
+        match &self.diodes {
+            Diodes::Ideal => Ok(()),
+            Diodes::Exponential(diode) => diode.validate(),
+        }
+    }
+
+    /// Number of nodes: 1 shared or 2 isolated.
+    pub(crate) fn nodes(&self) -> usize {
+        match self.topology {
+            Topology::SharedNode => 1,
+            Topology::Isolated => 2,
+        }
+    }
+}
+
+impl DiodeParameters {
+    fn validate(&self) -> Result<(), Error> {
+        positive(names::SATURATION_CURRENT, self.saturation_current, "A")?;
+        positive(names::EMISSION_COEFFICIENT, self.emission_coefficient, "1")?;
+        positive(names::TEMPERATURE, self.temperature, "K")?;
+        positive(names::BREAKDOWN_CURRENT, self.breakdown_current, "A")?;
+        positive(names::BREAKDOWN_EMISSION, self.breakdown_emission, "1")?;
+        positive(names::SWITCH_BAND, self.switch_band, "V")?;
+        positive(names::RELATIVE_TOLERANCE, self.solver.relative_tolerance, "1")
+    }
+}

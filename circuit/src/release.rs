@@ -1,0 +1,251 @@
+//! Closed forms of a node that discharges into the load while its capacitance runs linearly in time.
+//!
+//! With `C(t) = C0 + k t`, the load behind a fixed drop `U_d` (`U_z` for a Zener, 0 for a closed switch) and
+//! `w = V - U_d`, Kirchhoff's law `d(C V)/dt = -w / R` reads in the logarithmic time `tau = ln(C / C0) / k`
+//!
+//! `dw/dtau = -a w - k U_d`, with `a = k + 1/R`:
+//!
+//! constant coefficients. In `t` this is the power law `(C / C0)^(-a/k)`, whose cases `k -> 0`, `R k -> 0` and
+//! `R k -> -1` are ordinary points here, because only `phi(b) = (1 - exp(-b tau)) / b` appears.
+
+/// A node, or two joined ones, releasing charge over a linear ramp of its capacitance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Discharge {
+    /// Capacitance at the start (F).
+    pub capacitance: f64,
+    /// Its rate `k` (F/s).
+    pub rate: f64,
+    /// `1/R` (S), finite and above 0.
+    pub conductance: f64,
+    /// Fixed drop `U_d` between node and load (V).
+    pub drop: f64,
+    /// Load voltage `w = V - U_d` at the start (V).
+    pub excess: f64,
+}
+
+/// Integrals over a span of a [`Discharge`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Work {
+    /// Energy of the load, `integral w^2 / R dt` (J).
+    pub load: f64,
+    /// Work of the mechanics, `-integral 1/2 V^2 dC` (J).
+    pub mechanical: f64,
+}
+
+/// `(1 - exp(-b tau)) / b`, without cancellation where `b tau` is small or zero.
+fn phi(b: f64, tau: f64) -> f64 {
+    let x = b * tau;
+    if x == 0.0 {
+        tau
+    } else if x.abs() < 1e300 {
+        -(-x).exp_m1() / b
+    } else {
+        1.0 / b
+    }
+}
+
+impl Discharge {
+    /// Coefficient `a = k + 1/R` of the logarithmic time.
+    fn decay(&self) -> f64 {
+        self.rate + self.conductance
+    }
+
+    /// Logarithmic time `tau` after `t` seconds (s/F).
+    fn tau(&self, t: f64) -> f64 {
+        let x = self.rate * t / self.capacitance;
+        let stretch = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
+        t / self.capacitance * stretch
+    }
+
+    /// Seconds after the logarithmic time `tau`, the inverse of [`Self::tau`].
+    fn time(&self, tau: f64) -> f64 {
+        let y = self.rate * tau;
+        let stretch = if y == 0.0 { 1.0 } else { y.exp_m1() / y };
+        self.capacitance * tau * stretch
+    }
+
+    fn excess_at_tau(&self, tau: f64) -> f64 {
+        let a = self.decay();
+        self.excess * (-a * tau).exp() - self.rate * self.drop * phi(a, tau)
+    }
+
+    /// Capacitance after `t` seconds (F).
+    pub fn capacitance_at(&self, t: f64) -> f64 {
+        self.capacitance + self.rate * t
+    }
+
+    /// Load voltage `w` after `t` seconds (V).
+    pub fn excess_at(&self, t: f64) -> f64 {
+        self.excess_at_tau(self.tau(t))
+    }
+
+    /// `dw/dt` after `t` seconds (V/s).
+    pub fn slope_at(&self, t: f64) -> f64 {
+        let a = self.decay();
+        // a w + k U_d decays as a whole: forming it from w would cancel near the steady state.
+        let initial = a * self.excess + self.rate * self.drop;
+        -initial * (-a * self.tau(t)).exp() / self.capacitance_at(t)
+    }
+
+    /// `d2w/dt2` after `t` seconds (V/s^2).
+    pub fn curvature_at(&self, t: f64) -> f64 {
+        -self.slope_at(t) * (self.decay() + self.rate) / self.capacitance_at(t)
+    }
+
+    /// When the node voltage falls to `threshold` (at least `U_d`), in seconds from the start, if it does.
+    pub fn time_to_fall_to(&self, threshold: f64) -> Option<f64> {
+        let a = self.decay();
+        let floor = threshold - self.drop;
+        // w tends to -k U_d / a when a > 0 and moves away from it otherwise.
+        let above = self.excess - floor;
+        let pull = a * floor + self.rate * self.drop;
+        if pull <= 0.0 {
+            return None;
+        }
+        let x = a * above / pull;
+        let stretch = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
+        Some(self.time((above / pull * stretch).max(0.0)))
+    }
+
+    /// Energies over the first `t` seconds.
+    pub fn work(&self, t: f64) -> Work {
+        let tau = self.tau(t);
+        let a_tau = (self.decay() * tau).abs();
+        let (load, field) = if a_tau > 4.0 {
+            self.squares_split(tau)
+        } else {
+            self.squares_by_quadrature(tau, 2.0 * a_tau + (self.rate * tau).abs())
+        };
+        Work {
+            load: self.conductance * self.capacitance * load,
+            mechanical: -0.5 * self.rate * self.capacitance * field,
+        }
+    }
+
+    /// `integral w^2 exp(k tau) dtau` and the same of `V^2`, with `w = A exp(-a tau) + B` multiplied out; `A`
+    /// and `B` are harmless where `a tau` is not small.
+    fn squares_split(&self, tau: f64) -> (f64, f64) {
+        let a = self.decay();
+        let steady = -self.rate * self.drop / a;
+        let transient = self.excess - steady;
+        let fast = phi(a + self.conductance, tau) * transient * transient;
+        let mixed = 2.0 * transient * phi(self.conductance, tau);
+        let slow = phi(-self.rate, tau);
+        // steady + U_d, written without cancellation for a small R.
+        let steady_voltage = self.conductance * self.drop / a;
+        (fast + steady * (mixed + steady * slow), fast + steady_voltage * (mixed + steady_voltage * slow))
+    }
+
+    /// The same integrals by Gauss-Legendre quadrature. `span` is the largest exponent in the integrands; the
+    /// rule is exact to rounding for spans of 2, which sets the number of panels.
+    fn squares_by_quadrature(&self, tau: f64, span: f64) -> (f64, f64) {
+        let mut panels = 1.0;
+        while span > 2.0 * panels {
+            panels += 1.0;
+        }
+        let half = 0.5 * tau / panels;
+        let mut sums = (0.0, 0.0);
+        let mut panel = 0.0;
+        while panel < panels {
+            let centre = (2.0 * panel + 1.0) * half;
+            for (x, weight) in GAUSS_LEGENDRE_8 {
+                for s in [centre - x * half, centre + x * half] {
+                    let w = self.excess_at_tau(s);
+                    let v = w + self.drop;
+                    let scale = weight * half * (self.rate * s).exp();
+                    sums.0 += scale * w * w;
+                    sums.1 += scale * v * v;
+                }
+            }
+            panel += 1.0;
+        }
+        sums
+    }
+}
+
+/// Positive nodes and their weights of the 8-point Gauss-Legendre rule (Abramowitz and Stegun, Table 25.4).
+const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn discharge(rate: f64, resistance: f64, drop: f64, voltage: f64) -> Discharge {
+        Discharge { capacitance: 30e-12, rate, conductance: 1.0 / resistance, drop, excess: voltage - drop }
+    }
+
+    #[test]
+    fn a_constant_capacitance_gives_the_exponential_of_rc() {
+        let d = discharge(0.0, 1e9, 2000.0, 2100.0);
+        assert_relative_eq!(d.excess_at(0.03), 100.0 * (-1.0_f64).exp(), max_relative = 1e-14);
+        let energy = 0.5 * 30e-12 * 1e4 * (1.0 - (-2.0_f64).exp());
+        assert_relative_eq!(d.work(0.03).load, energy, max_relative = 1e-13);
+    }
+
+    #[test]
+    fn both_ways_to_integrate_agree_where_they_meet() {
+        for (rate, resistance, drop) in
+            [(-1e-10, 1e9, 2000.0), (-1e-10, 1e9, 0.0), (2e-10, 2e8, 2000.0), (-1e-9, 3e8, 2000.0)]
+        {
+            let d = discharge(rate, resistance, drop, 2300.0);
+            let tau = 4.0 / d.decay().abs();
+            let split = d.squares_split(tau);
+            let quadrature = d.squares_by_quadrature(tau, 8.0 + (rate * tau).abs());
+            assert_relative_eq!(split.0, quadrature.0, max_relative = 1e-12);
+            assert_relative_eq!(split.1, quadrature.1, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_power_law_is_smooth_through_its_removable_singularities() {
+        let (t, resistance) = (0.01, 1e9);
+        for singular in [0.0, -1.0 / resistance] {
+            let at = discharge(singular, resistance, 2000.0, 2100.0);
+            for offset in [1e-9, -1e-9] {
+                let near = discharge(singular + offset / resistance, resistance, 2000.0, 2100.0);
+                assert_relative_eq!(at.excess_at(t), near.excess_at(t), max_relative = 1e-7);
+                assert_relative_eq!(at.work(t).load, near.work(t).load, max_relative = 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn slope_and_curvature_are_the_derivatives() {
+        let d = discharge(-3e-10, 4e8, 2000.0, 2050.0);
+        let (t, h) = (0.01, 1e-5);
+        let slope = (d.excess_at(t + h) - d.excess_at(t - h)) / (2.0 * h);
+        let curvature = (d.slope_at(t + h) - d.slope_at(t - h)) / (2.0 * h);
+        assert_relative_eq!(d.slope_at(t), slope, max_relative = 1e-6);
+        assert_relative_eq!(d.curvature_at(t), curvature, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn the_fall_to_the_threshold_is_met_on_time_or_never() {
+        let zener = discharge(1e-10, 1e9, 2000.0, 2010.0);
+        let t = zener.time_to_fall_to(2000.0).unwrap();
+        assert!(zener.excess_at(t).abs() < 1e-9);
+        let switch = discharge(-1e-10, 1e9, 0.0, 2100.0);
+        let t = switch.time_to_fall_to(2000.0).unwrap();
+        assert_relative_eq!(switch.excess_at(t), 2000.0, max_relative = 1e-13);
+        assert_eq!(discharge(-1e-10, 1e9, 2000.0, 2010.0).time_to_fall_to(2000.0), None);
+        assert_eq!(discharge(-2e-9, 1e9, 0.0, 2010.0).time_to_fall_to(2000.0), None);
+    }
+
+    #[test]
+    fn extreme_loads_stay_finite() {
+        for resistance in [1e-250, 1e-3, 1e250] {
+            for rate in [-1e-10, 0.0, 1e-10] {
+                let d = discharge(rate, resistance, 2000.0, 2000.5);
+                let work = d.work(0.1);
+                assert!(d.excess_at(0.1).is_finite() && work.load.is_finite());
+                assert!(work.mechanical.is_finite());
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The nonlinear equations of one implicit stage: node voltages for given charges and step.
+//!
+//! Every equation is reduced to a scalar one that rises monotonically, and is solved inside a bracket: unlike a
+//! plain Newton iteration over exponentials, this cannot diverge or overflow.
+
+use crate::devices::Devices;
+use crate::parameters::Release;
+use crate::roots::increasing;
+
+/// Voltages and currents that solve the node equations.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Point {
+    /// Node voltages (V).
+    pub voltage: [f64; 2],
+    /// Load voltage (V).
+    pub load_voltage: f64,
+    /// Currents of the charging diodes (A).
+    pub supply: [f64; 2],
+    /// Currents of the release elements (A).
+    pub release: [f64; 2],
+}
+
+/// The equations `C_j V_j - charge_j = span (I_supply,j - I_release,j)`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stage<'a> {
+    pub devices: &'a Devices,
+    /// Number of nodes.
+    pub count: usize,
+    /// Capacitances at the end of the stage (F).
+    pub capacitance: [f64; 2],
+    /// Charges without the stage's own currents (C).
+    pub charge: [f64; 2],
+    /// Step times the diagonal coefficient (s).
+    pub span: f64,
+}
+
+impl Stage<'_> {
+    /// Solves, starting from `guess`; `None` if that fails.
+    pub fn solve(&self, guess: &Point) -> Option<Point> {
+        match self.devices.release {
+            Release::Zener => self.zeners(guess),
+            Release::Switch => self.switches(guess),
+        }
+    }
+
+    /// Voltage of node `j` whose release current and its slope depend on the voltage as given.
+    fn node(&self, j: usize, guess: f64, release: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+        let balance = |v: f64| {
+            let (supplied, supply_slope) = self.devices.charging(v);
+            let (released, release_slope) = release(v);
+            (
+                self.capacitance[j] * v - self.charge[j] - self.span * (supplied - released),
+                self.capacitance[j] + self.span * (supply_slope + release_slope),
+            )
+        };
+        increasing(balance, guess, self.devices.reach())
+    }
+
+    /// Nodes behind Zener diodes: solved for a trial load voltage, which Kirchhoff's law at the load corrects.
+    fn zeners(&self, guess: &Point) -> Option<Point> {
+        let g = self.devices.conductance;
+        let mut point = *guess;
+        if g == 0.0 {
+            return self.unloaded(guess);
+        }
+        let load_voltage = if g == f64::INFINITY {
+            0.0
+        } else {
+            let balance = |trial: f64| match self.behind_zeners(trial, &mut point) {
+                Some((current, slope)) => (g * trial - current, g - slope),
+                None => (f64::NAN, f64::NAN),
+            };
+            increasing(balance, guess.load_voltage, self.devices.reach())?
+        };
+        self.behind_zeners(load_voltage, &mut point)?;
+        Some(point)
+    }
+
+    /// An open load takes no charge; its voltage is what a breakdown without leakage would leave.
+    fn unloaded(&self, guess: &Point) -> Option<Point> {
+        let mut point = Point::default();
+        for j in 0..self.count {
+            let v = self.node(j, guess.voltage[j], |_| (0.0, 0.0))?;
+            point.voltage[j] = v;
+            [point.supply[j], _] = self.balanced(j, v, [self.devices.charging(v), (0.0, 0.0)]);
+            point.load_voltage = point.load_voltage.max(v - self.devices.threshold);
+        }
+        Some(point)
+    }
+
+    /// Solves the nodes for a load voltage; sum of the Zener currents and its slope.
+    fn behind_zeners(&self, load_voltage: f64, point: &mut Point) -> Option<(f64, f64)> {
+        let mut sum = (0.0, 0.0);
+        let moved = load_voltage - point.load_voltage;
+        for j in 0..self.count {
+            let guess = point.voltage[j] + moved * self.following(j, point);
+            let v = self.node(j, guess, |v| self.devices.zener(v - load_voltage))?;
+            let (supplied, supply_slope) = self.devices.charging(v);
+            let (released, slope) = self.devices.zener(v - load_voltage);
+            point.voltage[j] = v;
+            let currents = [(supplied, supply_slope), (released, slope)];
+            [point.supply[j], point.release[j]] = self.balanced(j, v, currents);
+            // The node voltage follows the load voltage in part: derivative of the implicit function.
+            let rest = self.capacitance[j] + self.span * supply_slope;
+            sum.0 += released;
+            sum.1 -= slope * (rest / (rest + self.span * slope));
+        }
+        point.load_voltage = load_voltage;
+        Some(sum)
+    }
+
+    /// Supply and release current of node `j`, from their values and slopes at the solution.
+    ///
+    /// Where an element is so steep that the last bit of the voltage moves much current, its current is taken from
+    /// the charge balance instead, which determines it to rounding.
+    fn balanced(&self, j: usize, voltage: f64, currents: [(f64, f64); 2]) -> [f64; 2] {
+        let [(supplied, supply_slope), (released, release_slope)] = currents;
+        let net = (self.capacitance[j] * voltage - self.charge[j]) / self.span;
+        if self.span * supply_slope.max(release_slope) < self.capacitance[j] {
+            [supplied, released]
+        } else if supply_slope > release_slope {
+            [net + released, released]
+        } else {
+            [supplied, supplied - net]
+        }
+    }
+
+    /// How far the voltage of node `j` follows that of the load: 0 when blocked, almost 1 when releasing.
+    fn following(&self, j: usize, point: &Point) -> f64 {
+        let v = point.voltage[j];
+        let release = self.span * self.devices.zener(v - point.load_voltage).1;
+        release / (self.capacitance[j] + self.span * self.devices.charging(v).1 + release)
+    }
+
+    /// Nodes behind switches: node 1 solved for a trial voltage of node 0.
+    fn switches(&self, guess: &Point) -> Option<Point> {
+        let mut point = *guess;
+        if self.count == 1 {
+            point.voltage[0] = self.node(0, guess.voltage[0], |v| self.devices.switch(v))?;
+        } else {
+            let mut second = guess.voltage[1];
+            let balance = |first: f64| self.beside_switch(first, &mut second).unwrap_or((f64::NAN, f64::NAN));
+            let first = increasing(balance, guess.voltage[0], self.devices.reach())?;
+            self.beside_switch(first, &mut second)?;
+            point.voltage = [first, second];
+        }
+        self.switch_currents(&mut point);
+        Some(point)
+    }
+
+    /// Balance of node 0 and its slope, node 1 being solved for the voltage of node 0.
+    fn beside_switch(&self, first: f64, second: &mut f64) -> Option<(f64, f64)> {
+        let v = self.node(1, *second, |v| {
+            let (current, slope, _) = self.switch_beside(v, first);
+            (current, slope)
+        })?;
+        *second = v;
+        let (current_0, own_0, cross_0) = self.switch_beside(first, v);
+        let (_, own_1, cross_1) = self.switch_beside(v, first);
+        let (supplied, supply_slope) = self.devices.charging(first);
+        let diagonal_0 = self.capacitance[0] + self.span * (supply_slope + own_0);
+        let diagonal_1 = self.capacitance[1] + self.span * (self.devices.charging(v).1 + own_1);
+        let coupling = self.span * cross_0 * (self.span * cross_1 / diagonal_1);
+        Some((self.capacitance[0] * first - self.charge[0] - self.span * (supplied - current_0), diagonal_0 - coupling))
+    }
+
+    /// Current of a switch beside another node, with its slopes in its own and the other voltage.
+    fn switch_beside(&self, voltage: f64, other: f64) -> (f64, f64, f64) {
+        let (current, slope) = self.devices.switch(voltage);
+        let (part, part_slope) = self.devices.precedence(voltage, other);
+        (current * part, slope * part + current * part_slope, -current * part_slope)
+    }
+
+    fn switch_currents(&self, point: &mut Point) {
+        for j in 0..self.count {
+            let v = point.voltage[j];
+            let release = if self.count == 1 {
+                self.devices.switch(v)
+            } else {
+                let (current, slope, _) = self.switch_beside(v, point.voltage[1 - j]);
+                (current, slope)
+            };
+            let currents = [self.devices.charging(v), release];
+            [point.supply[j], point.release[j]] = self.balanced(j, v, currents);
+        }
+        let current: f64 = point.release[..self.count].iter().sum();
+        // An open load has no current, and no voltage that would follow from it.
+        point.load_voltage = if current == 0.0 { 0.0 } else { current * self.devices.resistance };
+    }
+}

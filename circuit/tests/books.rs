@@ -1,0 +1,167 @@
+//! The ledger closes, charge is conserved and steps can be cut, whatever the signal.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
+
+mod common;
+
+use approx::assert_relative_eq;
+use common::{Ramp, moved, run};
+use proptest::prelude::*;
+use videg_circuit::{Circuit, Error, Parameters, Release, Topology};
+
+const START: [f64; 2] = [15e-12, 12e-12];
+
+/// Ramps, some of them jumps, over three decades of capacitance.
+fn ramps() -> impl Strategy<Value = Vec<Ramp>> {
+    let dt = prop_oneof![Just(0.0), 1e-9..1e-5_f64, 1e-4..1e-1_f64];
+    let c = || prop_oneof![(-13.0..-10.0_f64).prop_map(|d| 10.0_f64.powf(d)), Just(15e-12)];
+    let ramp = (dt, c(), c()).prop_map(|(dt, l, r)| (dt, [l, r]));
+    prop::collection::vec(ramp, 1..40)
+}
+
+fn parameters() -> impl Strategy<Value = Parameters> {
+    let load_resistance = prop_oneof![
+        Just(0.0),
+        Just(f64::INFINITY),
+        (-3.0..20.0_f64).prop_map(|d| 10.0_f64.powf(d)),
+        (8.0..11.0_f64).prop_map(|d| 10.0_f64.powf(d)),
+    ];
+    let ratio = prop_oneof![Just(1.0), 1.0..2.0_f64];
+    let topology = prop_oneof![Just(Topology::SharedNode), Just(Topology::Isolated)];
+    let release = prop_oneof![Just(Release::Zener), Just(Release::Switch)];
+    (ratio, load_resistance, topology, release).prop_map(|(ratio, r, topology, release)| Parameters {
+        zener_voltage: 2000.0 * ratio,
+        load_resistance: r,
+        topology,
+        release,
+        ..Parameters::default()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn energy_and_charge_balance(parameters in parameters(), ramps in ramps()) {
+        let mut circuit = Circuit::new(parameters, START).unwrap();
+        let initial: f64 = circuit.state().charge.iter().sum();
+        let mut throughput = 0.0;
+        for &(dt, ends) in &ramps {
+            let before = circuit.ledger();
+            circuit.advance(dt, ends).unwrap();
+            throughput += moved(&common::difference(&circuit.ledger(), &before));
+        }
+        let ledger = circuit.ledger();
+        prop_assert!(ledger.residual().abs() <= 1e-9 * throughput, "{ledger:?} of {throughput}");
+        let now: f64 = circuit.state().charge.iter().sum();
+        let lost = initial + ledger.supply_charge - ledger.load_charge - now;
+        prop_assert!(lost.abs() <= 1e-12 * (initial + ledger.supply_charge), "{lost} C lost");
+    }
+
+    #[test]
+    fn voltages_stay_between_the_elements(parameters in parameters(), ramps in ramps()) {
+        let mut circuit = Circuit::new(parameters, START).unwrap();
+        for &(dt, ends) in &ramps {
+            circuit.advance(dt, ends).unwrap();
+            for v in circuit.voltage() {
+                prop_assert!(v >= 2000.0 * (1.0 - 1e-14), "{v} V is below the supply");
+                if parameters.load_resistance == 0.0 {
+                    prop_assert!(v <= parameters.zener_voltage * (1.0 + 1e-14), "{v} V is above U_z");
+                }
+            }
+            prop_assert!(circuit.load_current() >= -1e-18 && circuit.supply_current() >= 0.0);
+            prop_assert!(circuit.load_voltage().is_finite());
+        }
+    }
+
+    #[test]
+    fn cutting_a_ramp_changes_only_rounding(
+        parameters in parameters(),
+        ramps in ramps(),
+        parts in 2..9_u32,
+    ) {
+        let mut whole = Circuit::new(parameters, START).unwrap();
+        let mut cut = whole.clone();
+        for &(dt, ends) in &ramps {
+            let from = whole.capacitance();
+            whole.advance(dt, ends).unwrap();
+            for i in 1..parts {
+                let part = f64::from(i) / f64::from(parts);
+                let c = [0, 1].map(|j| from[j] + (ends[j] - from[j]) * part);
+                cut.advance(dt / f64::from(parts), c).unwrap();
+            }
+            cut.advance(dt / f64::from(parts), ends).unwrap();
+        }
+        let (a, b) = (whole.ledger(), cut.ledger());
+        let scale = whole.state().charge[0] + a.supply_charge;
+        prop_assert!((a.load_charge - b.load_charge).abs() <= 1e-10 * scale, "{a:?} {b:?}");
+        prop_assert!((a.supply_charge - b.supply_charge).abs() <= 1e-10 * scale, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_restored_state_goes_on_to_the_last_bit() {
+    for topology in [Topology::SharedNode, Topology::Isolated] {
+        let parameters = Parameters { topology, ..Parameters::default() };
+        let mut circuit = Circuit::new(parameters, START).unwrap();
+        let first = common::pulse(START, 6e-12, 0.03, 0.04, 20);
+        run(&mut circuit, &first[..15]);
+        let saved = circuit.state();
+        let mut other = Circuit::new(parameters, [1e-12; 2]).unwrap();
+        other.restore(&saved).unwrap();
+        run(&mut circuit, &first);
+        run(&mut other, &first);
+        assert_eq!(circuit, other);
+    }
+}
+
+#[test]
+fn a_contradictory_or_broken_state_is_rejected_and_changes_nothing() {
+    let mut circuit = Circuit::new(Parameters::default(), START).unwrap();
+    let good = circuit.clone();
+    let mut state = circuit.state();
+    state.holding[0] = true;
+    let error = circuit.restore(&state).unwrap_err();
+    assert_eq!(error, Error::ContradictoryMode { node: 0 });
+    state.holding[0] = false;
+    state.charge[1] = f64::NAN;
+    assert!(matches!(circuit.restore(&state), Err(Error::NotFinite { name: "right.charge", .. })));
+    assert_eq!(circuit, good);
+}
+
+#[test]
+fn a_jump_up_is_topped_up_and_a_jump_down_conserves_charge() {
+    let mut circuit = Circuit::new(Parameters::default(), [15e-12; 2]).unwrap();
+    circuit.advance(0.0, [20e-12, 15e-12]).unwrap();
+    assert_relative_eq!(circuit.ledger().supply_charge, 1e-8, max_relative = 1e-12);
+    assert_eq!(circuit.voltage(), [2000.0; 2]);
+    circuit.advance(0.0, [15e-12, 15e-12]).unwrap();
+    assert_eq!(circuit.ledger().load_charge, 0.0);
+    assert_relative_eq!(circuit.voltage()[0], 2000.0 * 35.0 / 30.0, max_relative = 1e-14);
+    assert_relative_eq!(circuit.load_voltage(), 2000.0 / 6.0, max_relative = 1e-12);
+    circuit.advance(10.0, [15e-12, 15e-12]).unwrap();
+    assert_relative_eq!(circuit.ledger().load_charge, 1e-8, max_relative = 1e-12);
+}
+
+#[test]
+fn an_idle_circuit_does_nothing_for_ever() {
+    let mut circuit = Circuit::new(Parameters::default(), START).unwrap();
+    for _ in 0..1000 {
+        circuit.advance(1.0, START).unwrap();
+    }
+    assert_eq!(circuit.ledger(), videg_circuit::Ledger::default());
+    assert_eq!(circuit.events(), 0);
+}
+
+#[test]
+fn a_start_below_the_supply_or_above_a_shorted_zener_is_booked() {
+    let parameters = Parameters { topology: Topology::Isolated, load_resistance: 0.0, ..Parameters::default() };
+    let circuit = Circuit::with_voltages(parameters, [10e-12; 2], [500.0, 3000.0]).unwrap();
+    let ledger = circuit.ledger();
+    for v in circuit.voltage() {
+        assert_relative_eq!(v, 2000.0, max_relative = 1e-15);
+    }
+    assert_relative_eq!(ledger.diode, 0.5 * 10e-12 * 1500.0 * 1500.0, max_relative = 1e-12);
+    assert_relative_eq!(ledger.zener, 2000.0 * 10e-12 * 1000.0, max_relative = 1e-12);
+    assert_relative_eq!(ledger.load, 0.5 * 10e-12 * 1e6, max_relative = 1e-9);
+    assert!(ledger.residual().abs() < 1e-12 * ledger.supply);
+}

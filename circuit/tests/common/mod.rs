@@ -1,0 +1,167 @@
+//! Shared by the tests: capacitance signals, and a solver that has nothing in common with the crate's.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use videg_circuit::{Circuit, Ledger, Parameters, Release, Topology};
+
+/// A piece of a piecewise linear signal: its length [s] and the capacitances at its end [F].
+pub type Ramp = (f64, [f64; 2]);
+
+/// Half-sine pulse of the left capacitance by `height`, cut into `pieces` ramps, then rest until `period`.
+pub fn pulse(rest: [f64; 2], height: f64, length: f64, period: f64, pieces: u32) -> Vec<Ramp> {
+    let dt = length / f64::from(pieces);
+    let at = |i: u32| {
+        let phase = std::f64::consts::PI * f64::from(i) / f64::from(pieces);
+        [rest[0] + height * phase.sin(), rest[1]]
+    };
+    let mut ramps: Vec<Ramp> = (1..pieces).map(|i| (dt, at(i))).collect();
+    ramps.push((dt, rest));
+    ramps.push((period - length, rest));
+    ramps
+}
+
+pub fn run(circuit: &mut Circuit, ramps: &[Ramp]) {
+    for &(dt, ends) in ramps {
+        circuit.advance(dt, ends).unwrap();
+    }
+}
+
+/// Ledger of the last of `cycles` cycles.
+pub fn last_cycle(circuit: &mut Circuit, ramps: &[Ramp], cycles: usize) -> Ledger {
+    for _ in 1..cycles {
+        run(circuit, ramps);
+    }
+    let before = circuit.ledger();
+    run(circuit, ramps);
+    difference(&circuit.ledger(), &before)
+}
+
+pub fn difference(a: &Ledger, b: &Ledger) -> Ledger {
+    Ledger {
+        supply: a.supply - b.supply,
+        load: a.load - b.load,
+        zener: a.zener - b.zener,
+        diode: a.diode - b.diode,
+        stored: a.stored - b.stored,
+        mechanical: a.mechanical - b.mechanical,
+        supply_charge: a.supply_charge - b.supply_charge,
+        load_charge: a.load_charge - b.load_charge,
+    }
+}
+
+/// Energy that passed through the books, the scale of their error.
+pub fn moved(ledger: &Ledger) -> f64 {
+    ledger.supply.abs() + ledger.load.abs() + ledger.zener.abs() + ledger.mechanical.abs() + ledger.stored.abs()
+}
+
+/// What the independent solver books: supply charge, load charge, load energy, Zener energy, final charges.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Reference {
+    pub supply_charge: f64,
+    pub load_charge: f64,
+    pub load: f64,
+    pub zener: f64,
+    pub charge: [f64; 2],
+}
+
+/// Implicit Euler time stepping of the complementarity problem, `steps` to a ramp, with one Richardson
+/// extrapolation. No events, no modes: every step intersects the nodes' charge with the load line.
+pub fn reference(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32) -> Reference {
+    let coarse = stepped(parameters, start, ramps, steps);
+    let fine = stepped(parameters, start, ramps, 2 * steps);
+    let extrapolate = |c: f64, f: f64| 2.0 * f - c;
+    Reference {
+        supply_charge: extrapolate(coarse.supply_charge, fine.supply_charge),
+        load_charge: extrapolate(coarse.load_charge, fine.load_charge),
+        load: extrapolate(coarse.load, fine.load),
+        zener: extrapolate(coarse.zener, fine.zener),
+        charge: [extrapolate(coarse.charge[0], fine.charge[0]), extrapolate(coarse.charge[1], fine.charge[1])],
+    }
+}
+
+fn stepped(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32) -> Reference {
+    let node = |c: [f64; 2]| match parameters.topology {
+        Topology::SharedNode => [c[0] + c[1], f64::MIN_POSITIVE],
+        Topology::Isolated => c,
+    };
+    let mut from = start;
+    let mut book = Reference { charge: node(from).map(|c| c * parameters.supply_voltage), ..Reference::default() };
+    let mut conducting = [false; 5];
+    for &(dt, to) in ramps {
+        // Short against the time constant of the load, too.
+        let relaxation = dt / (parameters.load_resistance * 5e-12);
+        let mut refine = 1;
+        while 20.0 * f64::from(refine) < relaxation && refine < 20 {
+            refine += 1;
+        }
+        let steps = steps * refine;
+        let h = dt / f64::from(steps);
+        for i in 0..steps {
+            let at = |part: f64| {
+                let part = (f64::from(i) + part) / f64::from(steps);
+                node([0, 1].map(|j| from[j] + (to[j] - from[j]) * part))
+            };
+            let before = book;
+            let after = euler(parameters, &mut book, at(1.0), h);
+            if after != conducting {
+                // A current may jump inside this step: go through it again in small ones.
+                book = before;
+                for fine in 1..=REFINEMENT {
+                    let part = f64::from(fine) / f64::from(REFINEMENT);
+                    euler(parameters, &mut book, at(part), h / f64::from(REFINEMENT));
+                }
+                conducting = after;
+            }
+        }
+        from = to;
+    }
+    book
+}
+
+/// Parts of a step in which a current may jump.
+const REFINEMENT: u32 = 1000;
+
+/// One step to the capacitances `c`; which diodes and release elements conducted, and if above `U_z`.
+fn euler(parameters: &Parameters, book: &mut Reference, c: [f64; 2], h: f64) -> [bool; 5] {
+    let (u_in, u_z) = (parameters.supply_voltage, parameters.zener_voltage);
+    let drop = if parameters.release == Release::Zener { u_z } else { 0.0 };
+    let free = [0, 1].map(|j| book.charge[j] / c[j]);
+    let top = load_line(c, free, h, u_z, drop, parameters.load_resistance);
+    let mut current = 0.0;
+    let mut conducting = [false; 5];
+    for j in 0..2 {
+        if free[j] < u_in {
+            let drawn = u_in * c[j] - book.charge[j];
+            book.supply_charge += drawn;
+            book.charge[j] += drawn;
+            conducting[j] = true;
+        } else if free[j] > top {
+            let passed = c[j] * (free[j] - top);
+            book.charge[j] -= passed;
+            current += passed / h;
+            conducting[2 + j] = true;
+        }
+    }
+    conducting[4] = top > u_z;
+    book.load_charge += h * current;
+    book.zener += h * current * drop;
+    book.load += h * current * (top - drop);
+    conducting
+}
+
+/// Voltage at which what the nodes give in a step, `C (free - V) / h` each if positive, is what the load takes.
+fn load_line(c: [f64; 2], free: [f64; 2], h: f64, u_z: f64, drop: f64, r: f64) -> f64 {
+    let given = |v: f64| -> f64 { (0..2).map(|j| (c[j] * (free[j] - v) / h).max(0.0)).sum() };
+    if given(u_z) * r <= u_z - drop {
+        return u_z;
+    }
+    let meet = |nodes: &[usize]| {
+        let (mut charge, mut capacitance) = (0.0, 0.0);
+        for &j in nodes {
+            charge += c[j] * free[j];
+            capacitance += c[j];
+        }
+        (charge * r / h + drop) / (capacitance * r / h + 1.0)
+    };
+    let both = meet(&[0, 1]);
+    if both <= free[0] && both <= free[1] { both } else { meet(if free[0] > free[1] { &[0] } else { &[1] }) }
+}

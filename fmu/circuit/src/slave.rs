@@ -1,0 +1,74 @@
+//! The slave: what the importer sets, and the circuit that it drives.
+
+use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, Variable};
+use videg_circuit::{Circuit, Error, Settings};
+
+use crate::variables::VARIABLES;
+
+/// Capacitance of the paper's membranes at rest, F: the start value of the inputs.
+pub(crate) const REST_CAPACITANCE: f64 = 1.501_476_744_842_152e-11;
+
+/// The harvesting circuit as a slave.
+#[derive(Clone)]
+pub struct Harvesting {
+    pub(crate) settings: Settings,
+    /// Capacitances at the communication point, left and right, F.
+    pub(crate) capacitance: [f64; 2],
+    /// Their rates over the next step, F/s; none: the capacitance set is taken to be reached at the step's end.
+    pub(crate) rate: [Option<f64>; 2],
+    /// The circuit; before initialisation it is made anew from the parameters whenever they are read.
+    circuit: Result<Circuit, Error>,
+}
+
+impl Harvesting {
+    /// Reads a value from the circuit; NaN while the parameters contradict each other (before initialisation only).
+    pub(crate) fn read(&self, value: impl FnOnce(&Circuit) -> f64) -> f64 {
+        self.circuit.as_ref().map_or(f64::NAN, value)
+    }
+
+    fn running(&mut self) -> Result<&mut Circuit, SlaveError> {
+        self.circuit.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+    }
+}
+
+impl Slave for Harvesting {
+    const INFO: ModelInfo = ModelInfo::new("HarvestingCircuit")
+        .description("Energy-harvesting circuit with two time-varying capacitors: diode, Zener or switch, load")
+        .author("The videg developers")
+        .version(env!("CARGO_PKG_VERSION"))
+        .copyright("Copyright (c) The videg developers")
+        .license("MIT OR Apache-2.0")
+        .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
+        .default_experiment(0.0, 100.0, 1e-3);
+
+    fn variables() -> &'static [Variable<Self>] {
+        &VARIABLES
+    }
+
+    fn new() -> Self {
+        let (settings, capacitance) = (Settings::default(), [REST_CAPACITANCE; 2]);
+        Self { settings, capacitance, rate: [None; 2], circuit: Circuit::new(settings.parameters(), capacitance) }
+    }
+
+    fn update(&mut self) {
+        self.circuit = Circuit::new(self.settings.parameters(), self.capacitance);
+    }
+
+    fn initialize(&mut self, _log: &Logger) -> Result<(), SlaveError> {
+        self.running().map(|_| ())
+    }
+
+    /// The capacitances run linearly over the step: from the values set, at the rates set, or else from where they were
+    /// to the values set.
+    fn do_step(&mut self, _t: f64, h: f64, _log: &Logger) -> Result<(), SlaveError> {
+        let (capacitance, rate) = (self.capacitance, core::mem::take(&mut self.rate));
+        let circuit = self.running()?;
+        let present = circuit.capacitance();
+        let start = [0, 1].map(|j| if rate[j].is_some() { capacitance[j] } else { present[j] });
+        let end = [0, 1].map(|j| rate[j].map_or(capacitance[j], |rate| capacitance[j] + rate * h));
+        let stepped = circuit.advance(0.0, start).and_then(|()| circuit.advance(h, end));
+        stepped.map_err(|error| SlaveError::error(error.to_string()))?;
+        self.capacitance = end;
+        Ok(())
+    }
+}

@@ -1,0 +1,103 @@
+//! The variable table: each name, unit and description stands here once, those of the parameters in the table of the
+//! circuit.
+
+use std::sync::LazyLock;
+
+use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use videg_circuit::{Circuit, Settings, names};
+
+use crate::slave::{Harvesting, REST_CAPACITANCE};
+
+type V = Variable<Harvesting>;
+
+/// Real parameter number `INDEX` of the circuit's table.
+const fn quantity<const INDEX: usize>() -> V {
+    let quantity = &Settings::QUANTITIES[INDEX];
+    let mut row = V::parameter(quantity.name, quantity.unit, quantity.start, quantity.description).min(quantity.min);
+    if quantity.max == f64::INFINITY {
+        row = row.infinity_allowed();
+    } else {
+        row = row.max(quantity.max);
+    }
+    row.access(
+        |slave| (Settings::QUANTITIES[INDEX].get)(&slave.settings),
+        |slave, value| (Settings::QUANTITIES[INDEX].set)(&mut slave.settings, value),
+    )
+}
+
+const fn items<const INDEX: usize>() -> [EnumerationItem; 2] {
+    let items = Settings::CHOICES[INDEX].items;
+    [EnumerationItem::new(items[0].0, items[0].1), EnumerationItem::new(items[1].0, items[1].1)]
+}
+
+const fn enumeration<const INDEX: usize>(name: &'static str, items: &'static [EnumerationItem]) -> EnumerationType {
+    EnumerationType::new(name, Settings::CHOICES[INDEX].description, items)
+}
+
+static TOPOLOGY_ITEMS: [EnumerationItem; 2] = items::<0>();
+static RELEASE_ITEMS: [EnumerationItem; 2] = items::<1>();
+static DIODE_ITEMS: [EnumerationItem; 2] = items::<2>();
+static TOPOLOGY: EnumerationType = enumeration::<0>("Topology", &TOPOLOGY_ITEMS);
+static RELEASE: EnumerationType = enumeration::<1>("Release", &RELEASE_ITEMS);
+static DIODE_MODEL: EnumerationType = enumeration::<2>("DiodeModel", &DIODE_ITEMS);
+
+/// Choice number `INDEX` of the circuit's table. FMI counts items from 1, the table from 0.
+const fn choice<const INDEX: usize>(of: &'static EnumerationType) -> V {
+    let choice = &Settings::CHOICES[INDEX];
+    V::enumeration_parameter(choice.name, of, 1, choice.description).access(
+        |slave| if (Settings::CHOICES[INDEX].get)(&slave.settings) == 0 { 1 } else { 2 },
+        |slave, item| (Settings::CHOICES[INDEX].set)(&mut slave.settings, usize::from(item == 2)),
+    )
+}
+
+macro_rules! quantities {
+    ($($index:literal)*) => { [$(quantity::<$index>()),*] };
+}
+
+static QUANTITIES: [V; Settings::QUANTITIES.len()] = quantities!(0 1 2 3 4 5 6 7 8 9);
+
+static CHOICES: [V; Settings::CHOICES.len()] =
+    [choice::<0>(&TOPOLOGY), choice::<1>(&RELEASE), choice::<2>(&DIODE_MODEL)];
+
+macro_rules! capacitance {
+    ($index:literal, $name:expr, $side:literal) => {
+        V::input($name, "F", REST_CAPACITANCE, concat!("C: capacitance of the ", $side, " membrane, Eq. (1); with its first derivative set it runs from this value over the step, without from the value before to this one"))
+            .min(0.0)
+            .nominal(1e-11)
+            .input_derivatives(1, |slave, _order, rate| slave.rate[$index] = Some(rate))
+            .access(|slave| slave.capacitance[$index], |slave, value| slave.capacitance[$index] = value)
+    };
+}
+
+static INPUTS: [V; 2] =
+    [capacitance!(0, names::LEFT_CAPACITANCE, "left"), capacitance!(1, names::RIGHT_CAPACITANCE, "right")];
+
+/// The outputs. The membranes hold charge, so no output depends on an input of the same communication point.
+macro_rules! outputs {
+    ($($name:expr, $unit:literal, $description:literal, $get:expr;)*) => {
+        [$(V::output($name, $unit, $description).depends_on(&[]).get(|slave| slave.read($get))),*]
+    };
+}
+
+static OUTPUTS: [V; 14] = outputs! {
+    names::LEFT_VOLTAGE, "V", "U_DE: voltage of the left membrane, Table 1", |c| c.voltage()[0];
+    names::RIGHT_VOLTAGE, "V", "U_DE: voltage of the right membrane, Table 1", |c| c.voltage()[1];
+    "load.voltage", "V", "U_out: voltage across the load, Fig. 8", Circuit::load_voltage;
+    "load.current", "A", "Current through the load", Circuit::load_current;
+    "supply.current", "A", "Current drawn from the supply", Circuit::supply_current;
+    "supply.energy", "J", "Energy drawn from the supply since the start", |c| c.ledger().supply;
+    "load.energy", "J", "Energy given to the load since the start", |c| c.ledger().load;
+    "zener.energy", "J", "Energy burnt in the Zener diodes since the start", |c| c.ledger().zener;
+    "diode.energy", "J", "Energy burnt in the charging diodes since the start", |c| c.ledger().diode;
+    "stored.energy", "J", "Change of the energy stored in the membranes since the start", |c| c.ledger().stored;
+    "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + stored - supply", |c| c.ledger().converted();
+    "mechanical.energy", "J", "The same, as the work -1/2 U^2 dC on the capacitances: an independent sum", |c| c.ledger().mechanical;
+    "supply.charge", "C", "Charge drawn from the supply since the start", |c| c.ledger().supply_charge;
+    "load.charge", "C", "Charge through the load since the start", |c| c.ledger().load_charge;
+};
+
+/// The whole table; the value reference of a variable is its index.
+pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
+    let groups: [&[V]; 4] = [&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS];
+    groups.concat()
+});

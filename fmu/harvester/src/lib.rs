@@ -1,0 +1,12 @@
+//! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the FMI 2.0 interface for co-simulation.
+//!
+//! Only glue lives here: [`Harvester`] keeps what the importer sets and hands it to [`videg_model`]; the variables are
+//! in [`variables`], the parameters among them in the model's own table.
+#![allow(non_snake_case)] // the library is named after the model identifier
+
+mod slave;
+mod variables;
+
+pub use slave::Harvester;
+
+fmi2_export::export_fmu!(Harvester);

@@ -1,0 +1,234 @@
+//! The variable table: each name, unit and description stands here once, those of the real parameters in the table of
+//! the model.
+
+use std::sync::LazyLock;
+
+use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use videg_model::{NoiseModel, OutsideGap, Parameters, Side};
+
+use crate::slave::{ContactLaw, Harvester};
+
+type V = Variable<Harvester>;
+
+static CONTACT_LAW: EnumerationType = EnumerationType::new(
+    "ContactLaw",
+    "Law of the contact between ball and membrane",
+    &[
+        EnumerationItem::new("impulsive", "An impact takes no time, Eqs. (10) and (11)"),
+        EnumerationItem::new("compliant", "The membrane is a nonlinear spring with losses"),
+    ],
+);
+
+static NOISE_MODEL: EnumerationType = EnumerationType::new(
+    "NoiseModel",
+    "How the phase noise of Section 5.2 is read",
+    &[
+        EnumerationItem::new("held", "A fresh Gaussian sample in each hold interval, as the formula of the paper says"),
+        EnumerationItem::new("wiener", "A Wiener process, sampled at each hold interval"),
+    ],
+);
+
+static OUTSIDE_GAP: EnumerationType = EnumerationType::new(
+    "OutsideGap",
+    "What a start with abs(z_M - z_m) > s/2 means",
+    &[
+        EnumerationItem::new("project", "The ball is put on the membrane that it is beyond"),
+        EnumerationItem::new("free", "The ball is free until it has come inside the gap"),
+    ],
+);
+
+/// Real parameter number `INDEX` of the model's table.
+const fn parameter<const INDEX: usize>() -> V {
+    let quantity = &Parameters::TABLE[INDEX];
+    V::parameter(quantity.name, quantity.unit, quantity.start, quantity.description)
+        .min(quantity.min)
+        .max(quantity.max)
+        .access(
+            |slave| (Parameters::TABLE[INDEX].get)(&slave.parameters),
+            |slave, value| (Parameters::TABLE[INDEX].set)(&mut slave.parameters, value),
+        )
+}
+
+macro_rules! parameters {
+    ($($index:literal)*) => { [$(parameter::<$index>()),*] };
+}
+
+/// Every real parameter of the model.
+static PARAMETERS: [V; Parameters::TABLE.len()] = parameters!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21);
+
+/// Parameters that choose or count.
+static CHOICES: [V; 5] = [
+    V::integer_parameter("excitation.seed", 1, "Seed of the phase noise: equal seeds, equal noise")
+        .access(|slave| slave.parameters.seed, |slave, value| slave.parameters.seed = value),
+    V::enumeration_parameter("excitation.noiseModel", &NOISE_MODEL, 1, "How the phase noise is read, Section 5.2")
+        .access(
+            |slave| if slave.parameters.noise_model == NoiseModel::Held { 1 } else { 2 },
+            |slave, item| slave.parameters.noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
+        ),
+    V::enumeration_parameter(
+        "initial.outsideGap",
+        &OUTSIDE_GAP,
+        1,
+        "Meaning of a start beyond a membrane, as in Fig. 12",
+    )
+    .access(
+        |slave| if slave.parameters.outside_gap == OutsideGap::Project { 1 } else { 2 },
+        |slave, item| {
+            slave.parameters.outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free };
+        },
+    ),
+    V::enumeration_parameter(
+        "contact.law",
+        &CONTACT_LAW,
+        1,
+        "Law of the contact between ball and membrane, Section 3.2",
+    )
+    .access(
+        |slave| if slave.law == ContactLaw::Impulsive { 1 } else { 2 },
+        |slave, item| slave.law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
+    ),
+    V::boolean_parameter(
+        "contact.electrostaticFeedback",
+        false,
+        "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in Section 2.1",
+    )
+    .access(|slave| slave.electrostatic_feedback, |slave, on| slave.electrostatic_feedback = on),
+];
+
+/// What follows from the parameters.
+static CALCULATED: [V; 4] = [
+    V::calculated_parameter("membrane.radius", "m", "R_2 = lambda R_1: radius of the membrane in its frame, Table 1")
+        .get(|slave| slave.parameters.membrane_radius()),
+    V::calculated_parameter("membrane.thickness", "m", "h_2 = h_1 / lambda^2: thickness of the flat membrane, Table 1")
+        .get(|slave| slave.parameters.membrane_thickness()),
+    V::calculated_parameter("membrane.restCapacitance", "F", "C_2: capacitance of the flat membrane, Eq. (1)")
+        .get(|slave| slave.read(|model| model.membrane().rest_capacitance())),
+    V::calculated_parameter(
+        "ball.travel",
+        "m",
+        "s = d + 2 w - 2 r_b: largest distance that the ball moves, Section 3.2",
+    )
+    .get(|slave| slave.parameters.travel()),
+];
+
+static INPUTS: [V; 3] = [
+    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7)")
+        .input_derivatives(1, |slave, _order, value| slave.external_force_rate = value)
+        .access(|slave| slave.external_force, |slave, force| slave.external_force = force),
+    V::input(
+        "left.voltage",
+        "V",
+        2000.0,
+        "U_DE: voltage across the left membrane; acts with contact.electrostaticFeedback",
+    )
+    .access(|slave| slave.voltages[0], |slave, voltage| slave.voltages[0] = voltage),
+    V::input(
+        "right.voltage",
+        "V",
+        2000.0,
+        "U_DE: voltage across the right membrane; acts with contact.electrostaticFeedback",
+    )
+    .access(|slave| slave.voltages[1], |slave, voltage| slave.voltages[1] = voltage),
+];
+
+/// The outputs of the membrane at one side, and the names of the three. No output depends on an input of the same
+/// communication point.
+macro_rules! membrane_outputs {
+    ($side:expr, $capacitance:literal, $deflection:literal, $area_ratio:literal, $which:literal) => {
+        [
+            V::output($capacitance, "F", concat!("C: capacitance of the ", $which, " membrane, Eq. (1)"))
+                .nominal(1e-11)
+                .output_derivatives(1, |slave, _order| slave.read(|model| model.capacitance_rate($side)))
+                .depends_on(&[])
+                .get(|slave| slave.read(|model| model.capacitance($side))),
+            V::output(
+                $deflection,
+                "m",
+                concat!("x: deflection of the ", $which, " membrane, at most delta of Eq. (10)"),
+            )
+            .nominal(1e-3)
+            .output_derivatives(1, |slave, _order| slave.read(|model| model.deflection($side).rate))
+            .depends_on(&[])
+            .get(|slave| slave.read(|model| model.deflection($side).value)),
+            V::output(
+                $area_ratio,
+                "1",
+                concat!("A_3 / A_2: area of the ", $which, " membrane over its flat area, Eq. (3)"),
+            )
+            .depends_on(&[])
+            .get(|slave| slave.read(|model| model.membrane().area_ratio(model.deflection($side).value))),
+        ]
+    };
+}
+
+static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left.capacitance", "left.deflection", "left.areaRatio", "left");
+static RIGHT: [V; 3] =
+    membrane_outputs!(Side::Right, "right.capacitance", "right.deflection", "right.areaRatio", "right");
+
+static MOTION: [V; 5] = [
+    V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
+        .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_velocity))
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::cylinder_position)),
+    V::output("cylinder.velocity", "m/s", "z_M': velocity of the cylinder, Eq. (7)")
+        .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_acceleration))
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
+    V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
+        .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::ball_velocity))
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::ball_position)),
+    V::output("ball.velocity", "m/s", "z_m': velocity of the ball, Eq. (11)")
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
+    V::output("relativeDisplacement", "m", "z_M - z_m: relative displacement, Eq. (8)")
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::relative_displacement)),
+];
+
+static EVENTS: [V; 8] = [
+    V::integer_output("impact.count", "Number of impacts since the start; the endless tail of a chattering end is not counted")
+        .depends_on(&[])
+        .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().impacts).unwrap_or(i32::MAX))),
+    V::output("impact.lastVelocity", "m/s", "abs(v_m - v_M) before the last impact, Eq. (10); 0 before the first")
+        .discrete()
+        .depends_on(&[])
+        .get(|slave| slave.read(|model| model.totals().last_speed)),
+    V::output(
+        "impact.nextTime",
+        "s",
+        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period",
+    )
+    .discrete()
+    .depends_on(&[])
+    .get(|slave| slave.read(|model| model.next_impact().unwrap_or(f64::MAX))),
+    V::output(
+        "pulse.nextKnot",
+        "s",
+        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse); the largest double if none",
+    )
+    .discrete()
+    .depends_on(&[])
+    .get(|slave| slave.read(|model| model.next_knot().unwrap_or(f64::MAX))),
+    V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
+        .discrete()
+        .depends_on(&[])
+        .get(|slave| slave.read(|model| model.totals().voltage_gain)),
+    V::output("gain.energyEq13", "J", "Sum of W over all impacts, Eqs. (13) and (14)")
+        .discrete()
+        .nominal(1e-6)
+        .depends_on(&[])
+        .get(|slave| slave.read(|model| model.totals().energy)),
+    V::boolean_output("contact.resting", "The ball rests on a membrane, pressed by the acceleration of the cylinder")
+        .depends_on(&[])
+        .get(|slave| slave.model().is_some_and(|model| model.resting().is_some())),
+    V::integer_output("solver.events", "Number of events computed since the start: impacts and releases")
+        .depends_on(&[])
+        .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
+];
+
+/// The whole table; the value reference of a variable is its index.
+pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
+    let groups: [&[V]; 8] = [&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS];
+    groups.concat()
+});

@@ -1,0 +1,262 @@
+//! `videg cosim`: the harvester FMU coupled with a harvesting circuit.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use videg_circuit::{Release, Settings, Topology, formulas, names};
+
+use super::options::RunOptions;
+use super::progress::TimeBar;
+use super::simulate::{Paper, file_list, heading, text_table};
+use super::{Verdict, cosim_report, output, packaging, picture};
+use crate::cosim::{
+    CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
+    Trace,
+};
+use crate::fmi::Fmu;
+use crate::scenario::{Scenario, Setting};
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    run: RunOptions,
+    /// Which circuit the harvester is coupled with
+    #[arg(long, value_enum, default_value_t = Backend::Embedded)]
+    circuit: Backend,
+}
+
+/// What solves the circuit.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Backend {
+    /// The exact solver, called directly
+    Embedded,
+    /// The FMU HarvestingCircuit
+    Fmu,
+}
+
+/// A circuit and what it comes to.
+#[derive(Serialize)]
+pub struct Compared {
+    /// What the circuit is.
+    pub label: String,
+    /// Energies and charges.
+    #[serde(flatten)]
+    pub summary: CircuitSummary,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    case: &'a str,
+    description: &'a str,
+    until: f64,
+    step: f64,
+    window: [f64; 2],
+    #[serde(flatten)]
+    mechanics: MechanicsSummary,
+    circuit: &'a str,
+    #[serde(flatten)]
+    summary: &'a CircuitSummary,
+    comparison: &'a [Compared],
+    paper: Paper,
+    warnings: &'a [String],
+    files: &'a [PathBuf],
+}
+
+/// A finished run.
+pub struct Finished {
+    /// What was run.
+    pub scenario: Scenario,
+    /// The mechanics.
+    pub mechanics: MechanicsSummary,
+    /// The circuit asked for, then those to compare it with.
+    pub circuits: Vec<Compared>,
+    /// Supply voltage, V.
+    pub supply_voltage: f64,
+    /// What the user should know before believing the numbers.
+    pub warnings: Vec<String>,
+    /// The figure.
+    pub svg: String,
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    let options = &arguments.run;
+    let scenario = options.scenario()?;
+    let fmu = packaging::open("VibroImpactHarvester")?;
+    let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
+    let csv = folder.join("timeseries.csv");
+    let finished = couple(arguments.circuit, &fmu, scenario, &csv)?;
+    let files = write_files(&folder, &csv, &finished)?;
+    let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
+    output::write(&folder.join("result.json"), &json)?;
+    if options.json {
+        output::print(&json)?;
+    } else {
+        output::print(&text(&finished, &files))?;
+    }
+    finished.warnings.iter().for_each(|warning| eprintln!("videg: warning: {warning}"));
+    Ok(Verdict::Passed)
+}
+
+/// Runs the co-simulation and writes the time series to `csv`.
+fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
+    let (mechanical, electrical) = split_settings(fmu, &scenario)?;
+    let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
+    let settings = circuit_settings(&electrical, harvester.bias_voltage())?;
+    let warnings = warnings(&settings, harvester.bias_voltage());
+    let circuits = circuits(backend, fmu, &scenario, &mechanical, &settings, &harvester)?;
+    let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
+    let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
+    let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
+    let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
+    let master = Master::new(harvester, circuits, &scenario);
+    let (mechanics, samples) = master.run(&mut [&mut recorder, &mut trace, &mut bar])?;
+    bar.finish();
+    recorder.finish()?;
+    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
+    let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
+    let svg = picture::cosim(&trace, &scenario)?;
+    Ok(Finished { scenario, mechanics, circuits, supply_voltage: settings.circuit.supply_voltage, warnings, svg })
+}
+
+/// Settings of the harvester, and those of the circuit. A name that both have is the harvester's.
+fn split_settings(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
+    let (mut mechanical, mut electrical) = (Vec::new(), Vec::new());
+    for setting in &scenario.settings {
+        let of_circuit = EmbeddedCircuit::apply(&mut Settings::default(), setting)?;
+        match fmu.description().variable(&setting.name) {
+            Ok(_) => mechanical.push(setting.clone()),
+            Err(_) if of_circuit => electrical.push(setting.clone()),
+            Err(error) => {
+                let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
+                let names: Vec<_> = quantities.chain(Settings::CHOICES.iter().map(|choice| choice.name)).collect();
+                anyhow::bail!("{error}; the circuit has {}", names.join(", "));
+            }
+        }
+    }
+    Ok((mechanical, electrical))
+}
+
+/// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
+/// Section 4.1, unless the settings say otherwise.
+fn circuit_settings(electrical: &[Setting], bias: f64) -> anyhow::Result<Settings> {
+    let mut settings = Settings::default();
+    settings.circuit.supply_voltage = bias;
+    for setting in electrical {
+        EmbeddedCircuit::apply(&mut settings, setting)?;
+    }
+    if !electrical.iter().any(|setting| setting.name == names::ZENER_VOLTAGE) {
+        settings.circuit.zener_voltage = settings.circuit.supply_voltage;
+    }
+    Ok(settings)
+}
+
+fn warnings(settings: &Settings, bias: f64) -> Vec<String> {
+    let supply = settings.circuit.supply_voltage;
+    if supply == bias {
+        return Vec::new();
+    }
+    vec![format!(
+        "{} = {supply} V differs from biasVoltage = {bias} V: Eqs. (12) to (15) are evaluated at the latter, the circuit \
+         runs at the former",
+        names::SUPPLY_VOLTAGE
+    )]
+}
+
+/// The circuit asked for, and two to compare it with: the same with an ideal switch, and the better one, with isolated
+/// membranes and the release voltage that suits the mean impact best.
+fn circuits(
+    backend: Backend,
+    fmu: &Fmu,
+    scenario: &Scenario,
+    mechanical: &[Setting],
+    settings: &Settings,
+    harvester: &HarvesterFmu,
+) -> anyhow::Result<Vec<Box<dyn CircuitSlave>>> {
+    let capacitance = harvester.sample()?.capacitance();
+    let first: Box<dyn CircuitSlave> = match backend {
+        Backend::Embedded => Box::new(EmbeddedCircuit::new(&label(settings), settings, capacitance)?),
+        Backend::Fmu => {
+            let fmu = packaging::open("HarvestingCircuit")?;
+            let all = every_setting(settings);
+            Box::new(FmuCircuit::new(&label(settings), &fmu, &all, capacitance, scenario.until)?)
+        }
+    };
+    let mut switch = Settings { exponential: false, ..*settings };
+    switch.circuit.release = Release::Switch;
+    let mut better = switch;
+    better.circuit.topology = Topology::Isolated;
+    let ratio = mean_capacitance_ratio(fmu, scenario, mechanical)?;
+    better.circuit.zener_voltage = formulas::best_zener_voltage(settings.circuit.supply_voltage, 1.0, ratio);
+    let mut circuits = vec![first];
+    for compared in [switch, better] {
+        circuits.push(Box::new(EmbeddedCircuit::new(&label(&compared), &compared, capacitance)?));
+    }
+    Ok(circuits)
+}
+
+/// Mean `C_3` / `C_2` of the impacts of the scenario, from a run of the mechanics ahead; 1 without impacts.
+fn mean_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
+    let mut ahead = HarvesterFmu::new(fmu, scenario, mechanical)?;
+    ahead.step(0.0, scenario.until)?;
+    let [impacts, _] = ahead.counts()?;
+    let gain = ahead.sample()?.voltage_gain();
+    Ok(if impacts > 0 { 1.0 + gain / (f64::from(impacts) * ahead.bias_voltage()) } else { 1.0 })
+}
+
+/// The settings as text, for an FMU. Numbers read back to the same bits.
+fn every_setting(settings: &Settings) -> Vec<Setting> {
+    let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
+    let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
+    quantities.chain(choices).map(|(name, value)| Setting { name: name.to_owned(), value }).collect()
+}
+
+/// What a circuit is called in tables.
+fn label(settings: &Settings) -> String {
+    let chosen = |index: usize| {
+        let choice = &Settings::CHOICES[index];
+        choice.items[(choice.get)(settings)].0
+    };
+    format!("{}, {} at {:.0} V", chosen(0), chosen(1), settings.circuit.zener_voltage)
+}
+
+fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {
+    let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
+    output::write(&figure, &finished.svg)?;
+    output::write(&html, &cosim_report::html(finished)?)?;
+    Ok(vec![csv.to_owned(), figure, html, folder.join("result.json")])
+}
+
+fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Output<'a>> {
+    let scenario = &finished.scenario;
+    let (first, comparison) = finished.circuits.split_first().context("a co-simulation without a circuit")?;
+    Ok(Output {
+        case: &scenario.name,
+        description: &scenario.description,
+        until: scenario.until,
+        step: scenario.step,
+        window: scenario.window,
+        mechanics: finished.mechanics,
+        circuit: &first.label,
+        summary: &first.summary,
+        comparison,
+        paper: Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power },
+        warnings: &finished.warnings,
+        files,
+    })
+}
+
+fn text(finished: &Finished, files: &[PathBuf]) -> String {
+    let parts = [
+        heading("cosim", &finished.scenario),
+        text_table(&finished.scenario, &finished.mechanics),
+        cosim_report::energy_table(finished),
+        cosim_report::EXPLANATION.join("\n"),
+        file_list(files),
+    ];
+    parts.join("\n\n")
+}

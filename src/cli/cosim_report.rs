@@ -1,0 +1,106 @@
+//! The energy table of a co-simulation, as text and in the HTML report, and why its rows differ.
+
+use super::cosim::{Compared, Finished};
+use super::{format, output, simulate};
+use crate::report::{self, Column, Report, ReportError, Section, Table};
+
+/// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
+pub const EXPLANATION: [&str; 4] = [
+    "Why they differ: an impact moves the charge dQ = U_in dC from the supply, which gives U_in dQ. W of Eq. (13) is half",
+    "of that: the change of the stored energy, not a gain. A Zener in series then burns U_z dQ, and the load sees only what",
+    "is above U_z: the surplus of the paper's circuit is negative. An ideal switch at U_z = U_in hands the same energy on,",
+    "so the surplus is about zero; with isolated membranes and U_z above U_in the mechanics' work reaches the load.",
+];
+
+/// A row of the energy table: its name and how to read it from a circuit, in J.
+type EnergyRow = (&'static str, fn(&Compared) -> f64);
+
+const ENERGIES: [EnergyRow; 8] = [
+    ("W, Eq. (13)", |c| c.summary.energy.eq13),
+    ("supply", |c| c.summary.energy.supply),
+    ("Zener", |c| c.summary.energy.zener),
+    ("diode", |c| c.summary.energy.diode),
+    ("load", |c| c.summary.energy.load),
+    ("stored", |c| c.summary.energy.stored),
+    ("converted = load + Zener + diode + stored - supply", |c| c.summary.energy.converted),
+    ("surplus = load - supply", |c| c.summary.energy.surplus),
+];
+
+/// Significant digits of energies.
+const DIGITS: usize = 5;
+
+/// Cells of the table, row by row: energies in mJ and the charge moved against `U_in` dC.
+fn cells(finished: &Finished) -> Vec<Vec<String>> {
+    let mut rows: Vec<Vec<String>> = ENERGIES
+        .iter()
+        .map(|(name, value)| {
+            let values = finished.circuits.iter().map(|circuit| format::significant(1e3 * value(circuit), DIGITS));
+            std::iter::once((*name).to_owned()).chain(values).collect()
+        })
+        .collect();
+    // Eq. (13) is 1/2 U_in (U_in dC): the charge that the paper has in mind is twice its sum over U_in.
+    let ideal = 2.0 * finished.mechanics.energy_eq13 / finished.supply_voltage;
+    let ratio = |circuit: &Compared| format::significant(circuit.summary.charge.supply / ideal, DIGITS);
+    let charge = std::iter::once("supply charge / (U_in dC)".to_owned()).chain(finished.circuits.iter().map(ratio));
+    if ideal > 0.0 {
+        rows.push(charge.collect());
+    }
+    rows
+}
+
+fn headings(finished: &Finished) -> Vec<String> {
+    std::iter::once("energy over the whole run, mJ".to_owned())
+        .chain(finished.circuits.iter().map(|circuit| circuit.label.clone()))
+        .collect()
+}
+
+/// The energy table as text.
+pub fn energy_table(finished: &Finished) -> String {
+    let headings: Vec<_> = headings(finished).iter().map(|heading| heading.replace(", ", "\n")).collect();
+    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
+    let mut table = format::table(&headings);
+    for cells in cells(finished) {
+        table.add_row(format::row(&cells));
+    }
+    table.to_string()
+}
+
+/// The HTML report.
+pub fn html(finished: &Finished) -> Result<String, ReportError> {
+    let scenario = &finished.scenario;
+    let [from, to] = scenario.window;
+    let mut mechanics = Table::new([
+        Column::words("quantity"),
+        Column::words("unit"),
+        Column::numbers("paper"),
+        Column::numbers("videg"),
+        Column::numbers("deviation"),
+    ]);
+    for cells in simulate::rows(scenario, &finished.mechanics) {
+        mechanics = mechanics.row(cells);
+    }
+    let columns = headings(finished).into_iter().enumerate();
+    let mut energies =
+        Table::new(columns.map(|(k, heading)| if k == 0 { Column::words(heading) } else { Column::numbers(heading) }));
+    for cells in cells(finished) {
+        energies = energies.row(cells);
+    }
+    let mut result = Section::new("Result").table(mechanics);
+    for warning in &finished.warnings {
+        result = result.warning(warning.clone());
+    }
+    let report = Report::new(
+        format!("Co-simulation of {}", scenario.name),
+        format!("{}; 0 to {} s, averages over {from} to {to} s.", scenario.description, scenario.until),
+    )
+    .command(output::command_line())
+    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
+    .section(result)
+    .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies))
+    .section(Section::new("Motion, capacitances, voltages and energies").figure(
+        finished.svg.clone(),
+        "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds of the run; (d) \
+         energies of the first circuit since its start.",
+    ));
+    report::render_html(&report)
+}

@@ -1,0 +1,163 @@
+//! `videg fmu`: build and describe FMUs.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde::Serialize;
+
+use super::progress::spinner;
+use super::{Verdict, format, output};
+use crate::fmi::{Archive, Kind, ModelDescription, Variable};
+use crate::package::{self, Options};
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Build the FMUs of this project into target/fmu
+    Build {
+        /// Folder for the FMUs [default: target/fmu of the source tree]
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        /// Print one JSON object on stdout instead of the list
+        #[arg(long)]
+        json: bool,
+    },
+    /// Describe an FMU: platforms, capabilities, variables. Nothing of it is unpacked or run
+    Info {
+        /// The FMU
+        file: PathBuf,
+        /// Print one JSON object on stdout instead of the tables
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    match &arguments.task {
+        Task::Build { output, json } => build(output.clone(), *json)?,
+        Task::Info { file, json } => info(file, *json)?,
+    }
+    Ok(Verdict::Passed)
+}
+
+fn build(folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+    #[derive(Serialize)]
+    struct Built {
+        fmus: Vec<PathBuf>,
+    }
+    let waiting = spinner("building the FMUs");
+    let built =
+        package::build_all(&Options { output: folder, progress: |line| eprintln!("{line}"), ..Options::default() });
+    waiting.finish_and_clear();
+    let fmus = built?;
+    if json {
+        output::print(&serde_json::to_string_pretty(&Built { fmus })?)?;
+    } else {
+        fmus.iter().try_for_each(|path| output::print(&path.display().to_string()))?;
+    }
+    Ok(())
+}
+
+/// One variable as `--json` shows it.
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    value_reference: u32,
+    r#type: &'static str,
+    causality: String,
+    variability: String,
+    unit: Option<String>,
+    start: Option<String>,
+    min: Option<f64>,
+    max: Option<f64>,
+    description: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Info<'a> {
+    file: &'a Path,
+    model_name: &'a str,
+    model_identifier: &'a str,
+    guid: &'a str,
+    fmi_version: &'static str,
+    description: Option<&'a str>,
+    platforms: Vec<String>,
+    variables: Vec<Row>,
+}
+
+fn info(file: &Path, json: bool) -> anyhow::Result<()> {
+    let mut archive = Archive::open(file)?;
+    let description = archive.description()?;
+    let variables = description.variables.iter().map(|variable| row(&description, variable)).collect();
+    let info = Info {
+        file,
+        model_name: &description.model_name,
+        model_identifier: &description.co_simulation.model_identifier,
+        guid: &description.guid,
+        fmi_version: "2.0",
+        description: description.description.as_deref(),
+        platforms: archive.platforms(),
+        variables,
+    };
+    if json {
+        output::print(&serde_json::to_string_pretty(&info)?)?;
+    } else {
+        output::print(&text(&info))?;
+    }
+    Ok(())
+}
+
+fn row(description: &ModelDescription, variable: &Variable) -> Row {
+    let item = |number: i32| {
+        let items = description.enumeration(variable).map(|enumeration| &enumeration.items);
+        let found = items.and_then(|items| items.iter().find(|item| item.value == number));
+        found.map_or_else(|| number.to_string(), |item| item.name.clone())
+    };
+    let (kind, start, min, max) = match &variable.kind {
+        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| value.to_string()), *min, *max),
+        Kind::Integer { start, min, max } => {
+            ("Integer", start.map(|value| value.to_string()), min.map(f64::from), max.map(f64::from))
+        }
+        Kind::Boolean { start } => ("Boolean", start.map(|value| value.to_string()), None, None),
+        Kind::String { start } => ("String", start.clone(), None, None),
+        Kind::Enumeration { start } => ("Enumeration", start.map(item), None, None),
+    };
+    Row {
+        name: variable.name.clone(),
+        value_reference: variable.value_reference,
+        r#type: kind,
+        causality: variable.causality.as_str().to_owned(),
+        variability: variable.variability.as_str().to_owned(),
+        unit: variable.unit().map(ToOwned::to_owned),
+        start,
+        min,
+        max,
+        description: variable.description.clone(),
+    }
+}
+
+fn text(info: &Info) -> String {
+    let mut table = format::table(&["variable", "start", "unit", "causality"]);
+    for variable in &info.variables {
+        let start = variable.start.clone().unwrap_or_default();
+        let unit = variable.unit.clone().unwrap_or_default();
+        let unit = if unit.is_empty() { variable.r#type.to_lowercase() } else { unit };
+        table.add_row(format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]));
+    }
+    let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
+    format!(
+        "{} (model identifier {}, FMI {})\n{}\nGUID {}, platforms: {platforms}\n\n{table}",
+        info.model_name,
+        info.model_identifier,
+        info.fmi_version,
+        info.description.unwrap_or_default(),
+        info.guid,
+    )
+}

@@ -1,0 +1,60 @@
+//! Numbers and tables as people read them.
+
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+
+/// A rule above, below the heading and below the table; nothing between rows.
+const RULE: LineStyle = LineStyle::none().fill('\u{2500}').junction('\u{2500}');
+const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
+
+/// `value` with `digits` significant digits, without an exponent where that stays readable.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let exponential = format!("{:.*e}", digits.saturating_sub(1), value);
+    let exponent: i32 = exponential.split('e').nth(1).and_then(|text| text.parse().ok()).unwrap_or(0);
+    let wanted = i32::try_from(digits).unwrap_or(i32::MAX);
+    if !(-4..=8).contains(&exponent) {
+        return exponential;
+    }
+    let decimals = usize::try_from(wanted - 1 - exponent).unwrap_or(0);
+    format!("{value:.decimals$}")
+}
+
+/// Deviation of `found` from `expected` in per cent.
+pub fn deviation(found: f64, expected: f64) -> String {
+    format!("{:+.3} %", (found / expected - 1.0) * 100.0)
+}
+
+/// An empty table with a heading; columns but the first are aligned to the right.
+pub fn table(heading: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(row(heading));
+    table
+}
+
+/// A row of such a table.
+pub fn row<S: AsRef<str>>(cells: &[S]) -> Vec<Cell> {
+    let aligned = cells.iter().enumerate().map(|(column, text)| {
+        let cell = Cell::new(text.as_ref());
+        if column == 0 { cell } else { cell.set_alignment(CellAlignment::Right) }
+    });
+    aligned.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits_are_kept_and_exponents_only_where_they_help() {
+        assert_eq!(significant(8_078.869_512, 6), "8078.87");
+        assert_eq!(significant(0.000_121_3, 4), "0.0001213");
+        assert_eq!(significant(1.213e-7, 4), "1.213e-7");
+        assert_eq!(significant(0.0, 4), "0");
+        assert_eq!(significant(-0.061_249, 3), "-0.0612");
+        assert_eq!(significant(2_191_352.9, 5), "2191353");
+        assert_eq!(significant(f64::NAN, 3), "NaN");
+    }
+}

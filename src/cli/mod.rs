@@ -1,0 +1,74 @@
+//! The command-line tool: one verb a file.
+//!
+//! Data goes to stdout, messages and progress to stderr. Exit codes: 0 done; 1 checked, and a check failed; 2 could not
+//! run, with one line on stderr that says why.
+
+mod completions;
+mod cosim;
+mod cosim_report;
+mod fmu;
+mod format;
+mod options;
+mod output;
+mod packaging;
+mod picture;
+mod progress;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Vibro-impact dielectric elastomer generator: co-simulate the harvester FMU with a harvesting circuit.
+#[derive(Parser)]
+#[command(name = "videg", version, about, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Co-simulate the harvester FMU with a harvesting circuit
+    Cosim(cosim::Arguments),
+    /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
+    Simulate(simulate::Arguments),
+    /// Build, describe and check FMUs
+    Fmu(fmu::Arguments),
+    /// Print shell completions
+    Completions(completions::Arguments),
+}
+
+/// Whether everything that was checked holds.
+pub(crate) enum Verdict {
+    /// Done, or checked and found right.
+    Passed,
+    /// A check failed; what was found is printed.
+    #[allow(dead_code)]
+    Failed,
+}
+
+/// Runs the tool with the arguments of the process.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().verb {
+        Verb::Cosim(arguments) => cosim::run(&arguments),
+        Verb::Simulate(arguments) => simulate::run(&arguments),
+        Verb::Fmu(arguments) => fmu::run(&arguments),
+        Verb::Completions(arguments) => completions::run(&arguments),
+    };
+    match result {
+        Ok(Verdict::Passed) => ExitCode::SUCCESS,
+        Ok(Verdict::Failed) => ExitCode::from(1),
+        // A reader that has seen enough (`videg ... | head`) is no failure.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("videg: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let kind = error.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
+    kind == Some(std::io::ErrorKind::BrokenPipe)
+}

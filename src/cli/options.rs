@@ -1,0 +1,66 @@
+//! Options that several verbs share.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::scenario::{CaseFile, Request, Scenario, ScenarioError, Setting};
+
+/// What to run and where results go.
+#[derive(Args)]
+pub struct RunOptions {
+    /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
+    #[arg(long, value_name = "NAME")]
+    case: Option<String>,
+    /// Set a variable of an FMU, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated
+    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
+    settings: Vec<String>,
+    /// Case file (TOML) with case, until, step, window and a [set] table
+    #[arg(long, value_name = "FILE.toml")]
+    case_file: Option<PathBuf>,
+    /// End of the run, s [default: 100]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Communication step, s; impacts and peaks of C(t) are landed on as well [default: 1e-3]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
+    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
+    window: Option<Window>,
+    /// Folder for time series, figure and report [default: out/VERB-CASE]
+    #[arg(long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Print one JSON object on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// An averaging window, s. A type of its own, because clap would take a plain array for a repeated option.
+#[derive(Clone, Copy)]
+struct Window([f64; 2]);
+
+fn parse_window(text: &str) -> Result<Window, String> {
+    let times: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match times.as_deref() {
+        Some(&[from, to]) => Ok(Window([from, to])),
+        _ => Err("two times with a comma between them are expected, e.g. 50,100".to_owned()),
+    }
+}
+
+impl RunOptions {
+    /// Resolves the options.
+    ///
+    /// # Errors
+    /// Whatever in them makes no sense.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        let request = Request {
+            case: self.case.clone(),
+            file: self.case_file.as_deref().map(CaseFile::read).transpose()?,
+            settings: self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?,
+            until: self.until,
+            step: self.step,
+            window: self.window.map(|Window(window)| window),
+        };
+        request.resolve()
+    }
+}

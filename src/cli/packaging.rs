@@ -1,0 +1,18 @@
+//! The FMUs of this project, put together when a verb needs them.
+
+use anyhow::Context as _;
+
+use super::progress::spinner;
+use crate::fmi::Fmu;
+use crate::package::{self, FMUS, Options};
+
+/// Packages the FMUs, with progress, and opens the one with this identifier.
+pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
+    let waiting = spinner("packaging the FMUs");
+    let paths = package::build_all(&Options { progress: |line| eprintln!("{line}"), ..Options::default() });
+    waiting.finish_and_clear();
+    let paths = paths.context("cannot package the FMUs")?;
+    let index = FMUS.iter().position(|fmu| fmu.identifier == identifier);
+    let path = index.and_then(|index| paths.get(index)).with_context(|| format!("no FMU is called {identifier}"))?;
+    Ok(Fmu::open(path)?)
+}

@@ -1,0 +1,121 @@
+//! The figure of a run: the last cycles in detail, energies over the whole run.
+
+use crate::cosim::{HarvesterSample, Trace, TracePoint};
+use crate::report::{Figure, Panel, ReportError, Series, render_svg};
+use crate::scenario::Scenario;
+
+/// Points of one curve: time and value.
+type Points = Vec<(f64, f64)>;
+
+/// Length of the detail, s: some periods of the paper's 2 Hz.
+pub const DETAIL: f64 = 2.0;
+
+fn points(trace: &[TracePoint], value: impl Fn(&TracePoint) -> f64) -> Points {
+    trace.iter().map(|point| (point.time, value(point))).collect()
+}
+
+fn column(name: &str) -> impl Fn(&TracePoint) -> f64 + use<> {
+    let index = HarvesterSample::names().iter().position(|column| *column == name);
+    move |point| index.map_or(f64::NAN, |index| point.harvester.columns()[index])
+}
+
+/// The curves of the mechanics.
+struct Mechanics {
+    dz: Points,
+    left: Points,
+    right: Points,
+}
+
+impl Mechanics {
+    fn new(trace: &Trace) -> Self {
+        Self {
+            dz: points(&trace.detail, |point| 1e3 * point.harvester.relative_displacement()),
+            left: points(&trace.detail, |point| 1e12 * point.harvester.capacitance()[0]),
+            right: points(&trace.detail, |point| 1e12 * point.harvester.capacitance()[1]),
+        }
+    }
+
+    fn panels<'a>(&'a self, figure: Figure<'a>, [from, to]: [f64; 2]) -> Figure<'a> {
+        figure
+            .panel(
+                Panel::new("(a)", "", "z_M - z_m (mm)")
+                    .x_range(from, to)
+                    .height(120.0)
+                    .series(Series::points("relative displacement", &self.dz).color(6))
+                    .share_x_with_next(),
+            )
+            .panel(
+                Panel::new("(b)", "", "capacitance (pF)")
+                    .height(120.0)
+                    .series(Series::points("left membrane", &self.left))
+                    .series(Series::points("right membrane", &self.right))
+                    .share_x_with_next(),
+            )
+    }
+}
+
+fn detail_range(trace: &Trace, scenario: &Scenario) -> [f64; 2] {
+    [trace.detail.first().map_or(0.0, |point| point.time), scenario.until]
+}
+
+fn title(scenario: &Scenario) -> String {
+    format!("{}: {}", scenario.name, scenario.description)
+}
+
+/// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit.
+pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<String, ReportError> {
+    let mechanics = Mechanics::new(trace);
+    let circuit = |value: fn(&crate::cosim::CircuitSample) -> f64| {
+        move |point: &TracePoint| point.circuits.first().map_or(f64::NAN, value)
+    };
+    let left = points(&trace.detail, circuit(|c| 1e-3 * c.voltage[0]));
+    let right = points(&trace.detail, circuit(|c| 1e-3 * c.voltage[1]));
+    let energy = |value: fn(&crate::cosim::CircuitSample) -> f64| points(&trace.overview, circuit(value));
+    let supply = energy(|c| 1e3 * c.ledger.supply);
+    let zener = energy(|c| 1e3 * c.ledger.zener);
+    let load = energy(|c| 1e3 * c.ledger.load);
+    let converted = energy(|c| 1e3 * c.ledger.converted());
+    let eq13 = points(&trace.overview, |point| 1e3 * point.harvester.energy_eq13());
+    // On a shared node the two voltages are one.
+    let shared = left == right;
+    let mut voltages = Panel::new("(c)", "time (s)", "voltage (kV)").height(120.0);
+    voltages = if shared {
+        voltages.series(Series::points("both membranes", &left))
+    } else {
+        voltages.series(Series::points("left membrane", &left)).series(Series::points("right membrane", &right))
+    };
+    let energies = Panel::new("(d)", "time (s)", "energy (mJ)")
+        .height(150.0)
+        .series(Series::points("supply", &supply).color(0))
+        .series(Series::points("Zener", &zener).color(1))
+        .series(Series::points("load", &load).color(2))
+        .series(Series::points("converted", &converted).color(3))
+        .series(Series::points("W, Eq. (13)", &eq13).color(6));
+    let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
+    let figure = figure.panel(voltages).panel(energies).caption(
+        "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
+         and the energies since its start.",
+    );
+    render_svg(&figure)
+}
+
+/// Relative displacement, C(t) and velocities (in detail) and the gains (whole run).
+pub fn simulate(trace: &Trace, scenario: &Scenario) -> Result<String, ReportError> {
+    let mechanics = Mechanics::new(trace);
+    let cylinder = points(&trace.detail, column("cylinder.velocity"));
+    let ball = points(&trace.detail, column("ball.velocity"));
+    let gain = points(&trace.overview, |point| 1e-3 * point.harvester.voltage_gain());
+    let velocities = Panel::new("(c)", "time (s)", "velocity (m/s)")
+        .height(120.0)
+        .series(Series::points("cylinder", &cylinder))
+        .series(Series::points("ball", &ball));
+    let gains = Panel::new("(d)", "time (s)", "sum of gains (kV)")
+        .height(150.0)
+        .series(Series::points("sum of U_DE4 - U_in", &gain).color(2));
+    let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
+    let figure = figure.panel(velocities).panel(gains).caption(
+        "Relative displacement of the ball, capacitances of the membranes and velocities in the last seconds of the \
+         run, and the sum of the voltage gains since its start.",
+    );
+    render_svg(&figure)
+}

@@ -1,0 +1,49 @@
+//! Progress on a terminal; silence elsewhere.
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::cosim::{CosimError, Observer, Row};
+
+/// Parts into which the bar divides a run.
+const PARTS: u64 = 1000;
+
+/// A bar that follows the simulated time. It draws on stderr, and only if that is a terminal.
+pub struct TimeBar {
+    bar: ProgressBar,
+    until: f64,
+    shown: u64,
+}
+
+impl TimeBar {
+    /// A bar up to `until`, s.
+    pub fn new(message: impl Into<String>, until: f64) -> Self {
+        let bar = ProgressBar::new(PARTS).with_message(message.into());
+        let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} %, {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        Self { bar, until, shown: 0 }
+    }
+
+    /// Removes the bar.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Observer for TimeBar {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to PARTS
+        let part = (row.time / self.until * PARTS as f64) as u64;
+        if part > self.shown {
+            self.shown = part;
+            self.bar.set_position(part);
+        }
+        Ok(())
+    }
+}
+
+/// A spinner for work of unknown length.
+pub fn spinner(message: &str) -> ProgressBar {
+    let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
+    spinner.enable_steady_tick(std::time::Duration::from_millis(100));
+    spinner
+}

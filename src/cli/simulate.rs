@@ -1,0 +1,172 @@
+//! `videg simulate`: the harvester FMU alone.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use clap::Args;
+use serde::Serialize;
+
+use super::options::RunOptions;
+use super::progress::TimeBar;
+use super::{Verdict, format, output, packaging, picture};
+use crate::cosim::{CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Trace};
+use crate::report::{self, Column, Report, Section};
+use crate::scenario::Scenario;
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    run: RunOptions,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    case: &'a str,
+    description: &'a str,
+    until: f64,
+    step: f64,
+    window: [f64; 2],
+    #[serde(flatten)]
+    mechanics: MechanicsSummary,
+    paper: Paper,
+    files: Vec<PathBuf>,
+}
+
+/// What the paper prints; absent where it prints nothing.
+#[derive(Serialize)]
+pub struct Paper {
+    /// `<U>`, V/s.
+    pub average_voltage_gain: Option<f64>,
+    /// P, W.
+    pub average_power: Option<f64>,
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    let options = &arguments.run;
+    let scenario = options.scenario()?;
+    let fmu = packaging::open("VibroImpactHarvester")?;
+    let harvester = HarvesterFmu::new(&fmu, &scenario, &scenario.settings)?;
+    let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
+    let csv = folder.join("timeseries.csv");
+    let mut recorder = CsvRecorder::create(&output::partial(&csv), false)?;
+    let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
+    let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
+    let (mechanics, _) =
+        Master::new(harvester, Vec::new(), &scenario).run(&mut [&mut recorder, &mut trace, &mut bar])?;
+    bar.finish();
+    recorder.finish()?;
+    std::fs::rename(output::partial(&csv), &csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    let files = write_files(&folder, &csv, &trace, &scenario, &mechanics)?;
+    let paper = Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power };
+    let result = Output {
+        case: &scenario.name,
+        description: &scenario.description,
+        until: scenario.until,
+        step: scenario.step,
+        window: scenario.window,
+        mechanics,
+        paper,
+        files,
+    };
+    let json = serde_json::to_string_pretty(&result)?;
+    output::write(&folder.join("result.json"), &json)?;
+    if options.json {
+        output::print(&json)?;
+    } else {
+        output::print(&text(&scenario, &mechanics, &result.files))?;
+    }
+    Ok(Verdict::Passed)
+}
+
+fn write_files(
+    folder: &Path,
+    csv: &Path,
+    trace: &Trace,
+    scenario: &Scenario,
+    mechanics: &MechanicsSummary,
+) -> anyhow::Result<Vec<PathBuf>> {
+    let svg = picture::simulate(trace, scenario)?;
+    let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
+    output::write(&figure, &svg)?;
+    let mut table = report::Table::new([
+        Column::words("quantity"),
+        Column::words("unit"),
+        Column::numbers("paper"),
+        Column::numbers("videg"),
+        Column::numbers("deviation"),
+    ]);
+    for cells in rows(scenario, mechanics) {
+        table = table.row(cells);
+    }
+    let page = Report::new(
+        format!("Simulation of {}", scenario.name),
+        format!(
+            "{}; 0 to {} s, averages over {} to {} s.",
+            scenario.description, scenario.until, scenario.window[0], scenario.window[1]
+        ),
+    )
+    .command(output::command_line())
+    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
+    .section(Section::new("Result").table(table))
+    .section(Section::new("Motion, capacitances and gains").figure(svg, figure_caption()));
+    output::write(&html, &report::render_html(&page)?)?;
+    Ok(vec![csv.to_owned(), figure, html, folder.join("result.json")])
+}
+
+fn figure_caption() -> &'static str {
+    "(a) Relative displacement, (b) capacitances, (c) velocities in the last seconds of the run; (d) sum of the voltage \
+     gains U_DE4 - U_in since its start."
+}
+
+/// Rows of the result table: quantity, unit, paper, videg, deviation.
+pub fn rows(scenario: &Scenario, mechanics: &MechanicsSummary) -> Vec<[String; 5]> {
+    let compared = |quantity: &str, unit: &str, paper: Option<f64>, found: f64, scale: f64| {
+        [
+            quantity.to_owned(),
+            unit.to_owned(),
+            paper.map_or_else(String::new, |paper| format::significant(paper * scale, 4)),
+            format::significant(found * scale, 6),
+            paper.map_or_else(String::new, |paper| format::deviation(found, paper)),
+        ]
+    };
+    let count = |quantity: &str, number: i32| {
+        [quantity.to_owned(), "1".to_owned(), String::new(), number.to_string(), String::new()]
+    };
+    vec![
+        compared("<U>, Eq. (15)", "V/s", scenario.paper.voltage_gain, mechanics.average_voltage_gain, 1.0),
+        compared("P, Eq. (14)", "mW", scenario.paper.power, mechanics.average_power_eq13, 1e3),
+        count("impacts, whole run", mechanics.impacts),
+        count("events computed", mechanics.events),
+    ]
+}
+
+/// The result table of the mechanics as text.
+pub fn text_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> String {
+    let mut table = format::table(&["quantity", "unit", "paper", "videg", "deviation"]);
+    for cells in rows(scenario, mechanics) {
+        table.add_row(format::row(&cells));
+    }
+    table.to_string()
+}
+
+/// The line above the tables.
+pub fn heading(verb: &str, scenario: &Scenario) -> String {
+    let [from, to] = scenario.window;
+    format!(
+        "{verb} {}: {}\n0 to {} s, averages over {from} to {to} s",
+        scenario.name, scenario.description, scenario.until
+    )
+}
+
+/// The list of files written.
+pub fn file_list(files: &[PathBuf]) -> String {
+    let shown: Vec<_> = files.iter().map(|file| format!("  {}", file.display())).collect();
+    format!("written:\n{}", shown.join("\n"))
+}
+
+fn text(scenario: &Scenario, mechanics: &MechanicsSummary, files: &[PathBuf]) -> String {
+    let parts = [heading("simulate", scenario), text_table(scenario, mechanics), file_list(files)];
+    parts.join("\n\n")
+}

@@ -1,0 +1,144 @@
+//! The harvester FMU as the master sees it.
+
+use super::CosimError;
+use crate::fmi::{Fmu, Instance, Logging};
+use crate::scenario::{Scenario, Setting};
+
+/// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
+const REALS: [&str; 16] = [
+    "left.capacitance",
+    "right.capacitance",
+    "left.deflection",
+    "right.deflection",
+    "left.areaRatio",
+    "right.areaRatio",
+    "cylinder.position",
+    "cylinder.velocity",
+    "ball.position",
+    "ball.velocity",
+    "relativeDisplacement",
+    "impact.lastVelocity",
+    "gain.voltage",
+    "gain.energyEq13",
+    "impact.nextTime",
+    "pulse.nextKnot",
+];
+
+/// Of those, how many make a row of a time series: all but the two that look ahead.
+const RECORDED: usize = 14;
+
+/// Outputs of the harvester at one communication point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HarvesterSample([f64; REALS.len()]);
+
+impl HarvesterSample {
+    /// Names of [`HarvesterSample::columns`]: variables of the FMU.
+    pub fn names() -> &'static [&'static str] {
+        &REALS[..RECORDED]
+    }
+
+    /// The values of a row of the time series.
+    pub fn columns(&self) -> &[f64] {
+        &self.0[..RECORDED]
+    }
+
+    /// Capacitances of the membranes, left and right, F.
+    pub fn capacitance(&self) -> [f64; 2] {
+        [self.0[0], self.0[1]]
+    }
+
+    /// `z_M` - `z_m`, m.
+    pub fn relative_displacement(&self) -> f64 {
+        self.0[10]
+    }
+
+    /// Sum of `U_DE4` - `U_in` so far, V.
+    pub fn voltage_gain(&self) -> f64 {
+        self.0[12]
+    }
+
+    /// Sum of W, Eq. (13), so far, J.
+    pub fn energy_eq13(&self) -> f64 {
+        self.0[13]
+    }
+
+    /// Next time at which a capacitance has a kink or an extremum, or at which the ball hits a membrane, s.
+    pub fn next_knot(&self) -> f64 {
+        self.0[14].min(self.0[15])
+    }
+}
+
+/// The FMU `VibroImpactHarvester`, initialised for a scenario.
+pub struct HarvesterFmu {
+    instance: Instance,
+    reals: [u32; REALS.len()],
+    counts: [u32; 2],
+    bias_voltage: f64,
+}
+
+impl HarvesterFmu {
+    /// Instantiates `fmu` and initialises it with `settings`, from 0 s on.
+    ///
+    /// # Errors
+    /// A setting that the FMU refuses, or an FMU that lacks a variable.
+    pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
+        let mut instance = fmu.instantiate("harvester", Logging::default())?;
+        for setting in settings {
+            instance.set_by_name(&setting.name, &setting.value)?;
+        }
+        let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
+        let mut reals = [0; REALS.len()];
+        for (slot, name) in reals.iter_mut().zip(REALS) {
+            *slot = reference(name)?;
+        }
+        let counts = [reference("impact.count")?, reference("solver.events")?];
+        let bias = [reference("biasVoltage")?];
+        instance.setup_experiment(0.0, Some(scenario.until), None)?;
+        instance.enter_initialization_mode()?;
+        instance.exit_initialization_mode()?;
+        let mut bias_voltage = [0.0];
+        instance.get_real(&bias, &mut bias_voltage)?;
+        Ok(Self { instance, reals, counts, bias_voltage: bias_voltage[0] })
+    }
+
+    /// Steps from `time` by `step`, s.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn step(&mut self, time: f64, step: f64) -> Result<(), CosimError> {
+        Ok(self.instance.do_step(time, step)?)
+    }
+
+    /// Outputs at the communication point.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn sample(&self) -> Result<HarvesterSample, CosimError> {
+        let mut values = [0.0; REALS.len()];
+        self.instance.get_real(&self.reals, &mut values)?;
+        Ok(HarvesterSample(values))
+    }
+
+    /// Impacts, and events computed, so far.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn counts(&self) -> Result<[i32; 2], CosimError> {
+        let mut counts = [0; 2];
+        self.instance.get_integer(&self.counts, &mut counts)?;
+        Ok(counts)
+    }
+
+    /// `U_in`, V.
+    pub fn bias_voltage(&self) -> f64 {
+        self.bias_voltage
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn terminate(&mut self) -> Result<(), CosimError> {
+        Ok(self.instance.terminate()?)
+    }
+}

@@ -1,0 +1,102 @@
+//! Observers that keep a run: all of it in a CSV file, and what a figure needs in memory.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
+
+/// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
+/// are called as the FMU variables are, units are SI.
+pub struct CsvRecorder {
+    path: PathBuf,
+    writer: csv::Writer<BufWriter<File>>,
+    circuit: bool,
+    row: Vec<f64>,
+}
+
+impl CsvRecorder {
+    /// Creates the file at `path`; with `circuit`, the columns of the first circuit are in it, too.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn create(path: &Path, circuit: bool) -> Result<Self, CosimError> {
+        let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
+        let file = File::create(path).map_err(fail)?;
+        let mut writer = csv::Writer::from_writer(BufWriter::new(file));
+        let names = ["time"].into_iter().chain(HarvesterSample::names().iter().copied());
+        let circuit_names = CircuitSample::NAMES.into_iter().take(if circuit { usize::MAX } else { 0 });
+        writer.write_record(names.chain(circuit_names)).map_err(|error| fail(error.into()))?;
+        Ok(Self { path: path.to_owned(), writer, circuit, row: Vec::new() })
+    }
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn finish(mut self) -> Result<(), CosimError> {
+        self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
+    }
+}
+
+impl Observer for CsvRecorder {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        self.row.clear();
+        self.row.push(row.time);
+        self.row.extend_from_slice(row.harvester.columns());
+        if self.circuit
+            && let Some(circuit) = row.circuits.first()
+        {
+            self.row.extend_from_slice(&circuit.columns());
+        }
+        let written = self.writer.serialize(&self.row);
+        written.map_err(|error| CosimError::Write { path: self.path.clone(), cause: error.into() })
+    }
+}
+
+/// One point of a [`Trace`].
+#[derive(Debug, Clone)]
+pub struct TracePoint {
+    /// Time, s.
+    pub time: f64,
+    /// The harvester.
+    pub harvester: HarvesterSample,
+    /// The circuits.
+    pub circuits: Vec<CircuitSample>,
+}
+
+/// What a figure shows: every point near the end of the run, and a thinned-out rest.
+pub struct Trace {
+    detail_from: f64,
+    spacing: f64,
+    due: f64,
+    /// Every communication point from `detail_from` on.
+    pub detail: Vec<TracePoint>,
+    /// Points of the whole run, about evenly spaced.
+    pub overview: Vec<TracePoint>,
+}
+
+impl Trace {
+    /// Points of the overview.
+    const OVERVIEW: f64 = 1000.0;
+
+    /// A trace of a run up to `until`, s, with its last `detail`, s, in full.
+    pub fn new(until: f64, detail: f64) -> Self {
+        let spacing = until / Self::OVERVIEW;
+        Self { detail_from: until - detail, spacing, due: 0.0, detail: Vec::new(), overview: Vec::new() }
+    }
+}
+
+impl Observer for Trace {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        let point = || TracePoint { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() };
+        if row.time >= self.detail_from {
+            self.detail.push(point());
+        }
+        if row.time >= self.due {
+            self.overview.push(point());
+            self.due += self.spacing;
+        }
+        Ok(())
+    }
+}

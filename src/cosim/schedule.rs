@@ -1,0 +1,66 @@
+//! When to communicate.
+
+/// Communication points: a regular grid, the edges of the averaging window, the end, and the knots of C(t).
+#[derive(Debug, Clone, Copy)]
+pub struct Schedule {
+    step: f64,
+    until: f64,
+    window: [f64; 2],
+}
+
+impl Schedule {
+    /// Shortest step, in units of the regular one. A ball that comes to rest has knots without end; those closer to
+    /// another communication point than this are not landed on.
+    const CLOSEST: f64 = 1e-3;
+
+    /// A grid of `step`, s, up to `until`, s, with the edges of `window`, s.
+    pub fn new(step: f64, until: f64, window: [f64; 2]) -> Self {
+        Self { step, until, window }
+    }
+
+    /// The next communication point after `now`, s, if a capacitance has a kink or an extremum at `knot`, s. Points of
+    /// the grid are products, not sums, so that they do not drift.
+    pub fn next(&self, now: f64, knot: f64) -> f64 {
+        let closest = Self::CLOSEST * self.step;
+        let index = ((now + closest) / self.step).floor() + 1.0;
+        let edges = self.window.into_iter().filter(|&edge| edge > now + closest);
+        let target = edges.fold((index * self.step).min(self.until), f64::min);
+        // Stop a hair after `until` rather than a hair before it.
+        let target = if self.until - target < closest { self.until } else { target };
+        // A knot that is too close is passed with the shortest step, so that it does not hide the one behind it.
+        let landing = knot.max(now + closest);
+        if landing < target - closest { landing } else { target }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(schedule: Schedule, until: f64, knots: &[f64]) -> Vec<f64> {
+        let (mut now, mut points) = (0.0, Vec::new());
+        while now < until {
+            let knot = knots.iter().copied().find(|&knot| knot > now).unwrap_or(f64::MAX);
+            now = schedule.next(now, knot);
+            points.push(now);
+        }
+        points
+    }
+
+    #[test]
+    fn the_grid_the_window_and_the_end_are_met_exactly() {
+        let found = points(Schedule::new(0.25, 1.1, [0.3, 0.9]), 1.1, &[]);
+        assert_eq!(found, [0.25, 0.3, 0.5, 0.75, 0.9, 1.0, 1.1]);
+        let fine = points(Schedule::new(1e-3, 100.0, [50.0, 100.0]), 100.0, &[]);
+        assert_eq!(fine.len(), 100_000);
+        assert!(fine.contains(&50.0) && fine.last() == Some(&100.0));
+    }
+
+    #[test]
+    fn knots_are_landed_on_unless_they_crowd() {
+        let crowd: Vec<f64> = (0..1000).map(|k| 0.3 + 1e-7 * f64::from(k)).collect();
+        let found =
+            points(Schedule::new(0.25, 0.5, [0.0, 0.5]), 0.5, &[&[0.1, 0.250_000_1], crowd.as_slice()].concat());
+        assert_eq!(found, [0.1, 0.25, 0.25 + 0.25e-3, 0.3, 0.3 + 0.25e-3, 0.5]);
+    }
+}

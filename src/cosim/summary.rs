@@ -1,0 +1,86 @@
+//! What a run comes to. Field names are the keys of `--json`; units are SI.
+
+use serde::Serialize;
+
+use super::CircuitSample;
+
+/// The mechanics: impacts and what the paper's equations make of them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MechanicsSummary {
+    /// Impacts in the whole run.
+    pub impacts: i32,
+    /// Events computed in the whole run.
+    pub events: i32,
+    /// `<U>`, Eq. (15), over the averaging window, V/s.
+    pub average_voltage_gain: f64,
+    /// P, Eq. (14), over the averaging window, W.
+    pub average_power_eq13: f64,
+    /// Sum of `U_DE4` - `U_in` over the whole run, V.
+    #[serde(skip)]
+    pub voltage_gain: f64,
+    /// Sum of W, Eq. (13), over the whole run, J.
+    #[serde(skip)]
+    pub energy_eq13: f64,
+}
+
+/// A circuit: where energy and charge went over the whole run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CircuitSummary {
+    /// Energies, J.
+    pub energy: Energies,
+    /// Charges, C.
+    pub charge: Charges,
+}
+
+/// Energies over the whole run, J.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Energies {
+    /// Drawn from the supply.
+    pub supply: f64,
+    /// Given to the load.
+    pub load: f64,
+    /// Burnt in the Zener diodes.
+    pub zener: f64,
+    /// Burnt in the charging diodes.
+    pub diode: f64,
+    /// Change of what the membranes store.
+    pub stored: f64,
+    /// What the mechanics gave: load + zener + diode + stored - supply.
+    pub converted: f64,
+    /// The same, summed independently as the work -1/2 U^2 dC.
+    pub mechanical: f64,
+    /// What a user gains: load - supply.
+    pub surplus: f64,
+    /// What Eq. (13) counts.
+    pub eq13: f64,
+}
+
+/// Charges over the whole run, C.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Charges {
+    /// Drawn from the supply.
+    pub supply: f64,
+    /// Through the load.
+    pub load: f64,
+}
+
+impl CircuitSummary {
+    /// Sums up a circuit from its last sample; `energy_eq13` is the harvester's sum of W, J.
+    pub fn new(sample: &CircuitSample, energy_eq13: f64) -> Self {
+        let ledger = &sample.ledger;
+        Self {
+            energy: Energies {
+                supply: ledger.supply,
+                load: ledger.load,
+                zener: ledger.zener,
+                diode: ledger.diode,
+                stored: ledger.stored,
+                converted: ledger.converted(),
+                mechanical: ledger.mechanical,
+                surplus: ledger.surplus(),
+                eq13: energy_eq13,
+            },
+            charge: Charges { supply: ledger.supply_charge, load: ledger.load_charge },
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! The .fmu file as an untrusted zip archive: bounds, names that stay inside, and nothing believed that can be measured.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+use zip::ZipArchive;
+use zip::read::ZipFile;
+use zip::result::ZipError;
+
+use super::description::ModelDescription;
+use super::error::{DescriptionError, FmiError, Refusal, Result};
+
+const DESCRIPTION: &str = "modelDescription.xml";
+/// An entry may always unpack to this size, however well it is compressed.
+const FREE_BYTES: u64 = 1 << 20;
+
+/// Bounds on an archive. The default leaves room for large industrial FMUs and stops bombs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Size of the file, bytes.
+    pub archive_bytes: u64,
+    /// Number of entries.
+    pub entries: usize,
+    /// Size of all entries unpacked, bytes.
+    pub unpacked_bytes: u64,
+    /// Unpacked over packed size of an entry, once it is larger than 1 MiB.
+    pub ratio: u64,
+    /// Size of the model description, bytes.
+    pub description_bytes: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            archive_bytes: 512 << 20,
+            entries: 10_000,
+            unpacked_bytes: 1 << 30,
+            ratio: 100,
+            description_bytes: ModelDescription::MAX_BYTES,
+        }
+    }
+}
+
+/// An opened .fmu file. Nothing is unpacked until [`Archive::unpack`].
+#[derive(Debug)]
+pub struct Archive {
+    path: PathBuf,
+    zip: ZipArchive<File>,
+    limits: Limits,
+    names: Vec<String>,
+}
+
+impl Archive {
+    /// Opens an archive with the default limits and checks the names of its entries.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no zip archive, passes a bound, or holds an unsafe entry.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        Self::open_with(path, Limits::default())
+    }
+
+    /// As [`Archive::open`], with other limits.
+    ///
+    /// # Errors
+    /// As [`Archive::open`].
+    pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
+        let path = path.as_ref();
+        let refuse = |reason| FmiError::Refused { path: path.into(), reason };
+        let mut file = File::open(path).map_err(FmiError::io("open", path))?;
+        let found = file.metadata().map_err(FmiError::io("read", path))?;
+        if found.is_dir() {
+            return Err(FmiError::io("read", path)(io::ErrorKind::IsADirectory.into()));
+        }
+        if found.len() > limits.archive_bytes {
+            return Err(refuse(Refusal::ArchiveSize { found: found.len(), allowed: limits.archive_bytes }));
+        }
+        if has_zip64_directory(&mut file).map_err(FmiError::io("read", path))? {
+            return Err(refuse(Refusal::Zip64));
+        }
+        let zip = ZipArchive::new(file).map_err(|cause| FmiError::NotAnArchive { path: path.into(), cause })?;
+        if zip.len() > limits.entries {
+            return Err(refuse(Refusal::Entries { found: zip.len(), allowed: limits.entries }));
+        }
+        let mut archive = Self { path: path.into(), zip, limits, names: Vec::new() };
+        archive.vet_entries()?;
+        Ok(archive)
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Names of all entries, folders with a slash at the end.
+    pub fn entries(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Whether there is an entry of this name.
+    pub fn contains(&self, name: &str) -> bool {
+        self.names.iter().any(|entry| entry == name)
+    }
+
+    /// Names of the folders in `binaries/`, sorted.
+    pub fn platforms(&self) -> Vec<String> {
+        let inside = self.names.iter().filter_map(|name| name.strip_prefix("binaries/"));
+        let mut platforms: Vec<_> =
+            inside.filter_map(|rest| rest.split_once('/')).map(|(first, _)| first.into()).collect();
+        platforms.sort();
+        platforms.dedup();
+        platforms
+    }
+
+    /// Reads the model description.
+    ///
+    /// # Errors
+    /// When it is missing, too large, or not usable.
+    pub fn description(&mut self) -> Result<ModelDescription> {
+        let path = self.path.clone();
+        let Some(index) = self.zip.index_for_name(DESCRIPTION) else {
+            return Err(FmiError::MissingEntry { path, entry: DESCRIPTION });
+        };
+        let origin = format!("{}: {DESCRIPTION}", path.display());
+        let allowed = self.limits.description_bytes.min(ModelDescription::MAX_BYTES);
+        let entry = self.zip.by_index(index).map_err(|cause| FmiError::NotAnArchive { path: path.clone(), cause })?;
+        let mut text = Vec::new();
+        // One byte more than allowed tells whether there is more.
+        entry
+            .take(allowed + 1)
+            .read_to_end(&mut text)
+            .map_err(FmiError::io("unpack modelDescription.xml of", &path))?;
+        if text.len() as u64 > allowed {
+            let cause = DescriptionError::Size { found: text.len() as u64, allowed };
+            return Err(FmiError::Description { origin, cause });
+        }
+        ModelDescription::parse(&text, &origin)
+    }
+
+    /// Unpacks everything into a new temporary folder, which is removed with the returned value.
+    ///
+    /// # Errors
+    /// When a bound is passed, an entry is broken, or the file system refuses.
+    pub fn unpack(&mut self) -> Result<TempDir> {
+        let broken = |path: &Path| {
+            let path = path.to_path_buf();
+            move |cause| FmiError::NotAnArchive { path, cause }
+        };
+        let temporary = std::env::temp_dir();
+        let folder = tempfile::Builder::new().prefix("videg-fmu-").tempdir();
+        let folder = folder.map_err(FmiError::io("make a folder in", &temporary))?;
+        let mut left = self.limits.unpacked_bytes;
+        for index in 0..self.zip.len() {
+            let mut entry = self.zip.by_index(index).map_err(broken(&self.path))?;
+            let name = entry.name().map_err(broken(&self.path))?.into_owned();
+            let target = folder.path().join(&name);
+            if entry.is_dir() {
+                fs::create_dir_all(&target).map_err(FmiError::io("create", &target))?;
+                continue;
+            }
+            if let Some(parent) = target.parent() {
+                fs::create_dir_all(parent).map_err(FmiError::io("create", parent))?;
+            }
+            // An entry never replaces another, even where names differ in case only.
+            let mut file = File::create_new(&target).map_err(FmiError::io("create", &target))?;
+            unpack_entry(&mut entry, &name, &mut file, &mut left, &self.limits, &self.path)?;
+        }
+        Ok(folder)
+    }
+
+    fn vet_entries(&mut self) -> Result<()> {
+        for index in 0..self.zip.len() {
+            let path = || self.path.clone();
+            let broken = |cause| FmiError::NotAnArchive { path: path(), cause };
+            let entry = self.zip.by_index_data(index).map_err(broken)?;
+            let name = entry.name().map_err(broken)?.into_owned();
+            if let Some(why) = leaves_folder(&name) {
+                let reason = Refusal::Path { entry: name, why };
+                return Err(FmiError::Refused { path: path(), reason });
+            }
+            if !is_plain(entry.unix_mode()) {
+                return Err(FmiError::Refused { path: path(), reason: Refusal::SpecialFile { entry: name } });
+            }
+            self.names.push(name);
+        }
+        Ok(())
+    }
+}
+
+/// Copies one entry, counting what really comes out.
+fn unpack_entry(
+    entry: &mut ZipFile<'_, File>,
+    name: &str,
+    file: &mut File,
+    left: &mut u64,
+    limits: &Limits,
+    path: &Path,
+) -> Result<()> {
+    let refuse = |reason| Err(FmiError::Refused { path: path.into(), reason });
+    let packed = entry.compressed_size();
+    let allowed_by_ratio = packed.saturating_mul(limits.ratio).max(FREE_BYTES);
+    let mut written = 0_u64;
+    let mut buffer = [0_u8; 1 << 14];
+    loop {
+        let count = match entry.read(&mut buffer) {
+            Ok(0) => return Ok(()),
+            Ok(count) => count,
+            Err(cause) => return Err(FmiError::NotAnArchive { path: path.into(), cause: ZipError::Io(cause) }),
+        };
+        written += count as u64;
+        if written > allowed_by_ratio {
+            return refuse(Refusal::Ratio { entry: name.into(), packed, allowed: limits.ratio });
+        }
+        let Some(rest) = left.checked_sub(count as u64) else {
+            return refuse(Refusal::UnpackedSize { entry: name.into(), allowed: limits.unpacked_bytes });
+        };
+        *left = rest;
+        file.write_all(buffer.get(..count).unwrap_or(&buffer)).map_err(FmiError::io("unpack", path))?;
+    }
+}
+
+/// Why a name does not stay inside the folder, on any operating system.
+fn leaves_folder(name: &str) -> Option<&'static str> {
+    let bytes = name.as_bytes();
+    if name.is_empty() || name.contains('\0') {
+        Some("its name is empty or holds a zero byte")
+    } else if name.contains('\\') {
+        Some("its name holds a backslash; FMI uses forward slashes")
+    } else if name.starts_with('/') {
+        Some("its name is absolute")
+    } else if bytes.get(1) == Some(&b':') && bytes.first().is_some_and(u8::is_ascii_alphabetic) {
+        Some("its name begins with a drive letter")
+    } else if name.split('/').any(|part| part == "..") {
+        Some("its name holds \"..\"")
+    } else {
+        None
+    }
+}
+
+/// Whether a Unix mode says a regular file or a folder, or nothing.
+fn is_plain(mode: Option<u32>) -> bool {
+    const TYPE: u32 = 0o170_000;
+    const FOLDER: u32 = 0o040_000;
+    const REGULAR: u32 = 0o100_000;
+    mode.is_none_or(|mode| matches!(mode & TYPE, 0 | FOLDER | REGULAR))
+}
+
+/// Whether the archive ends with a zip64 directory. Only that can announce more than 65535 entries, so its absence
+/// bounds the memory that the directory takes before the entries can be counted.
+fn has_zip64_directory(file: &mut File) -> io::Result<bool> {
+    const END: &[u8] = b"PK\x05\x06";
+    const ZIP64_LOCATOR: &[u8] = b"PK\x06\x07";
+    const LOCATOR_LENGTH: usize = 20;
+    // The end record may be followed by a comment of at most 64 KiB.
+    const TAIL: u64 = 65_536 + 22 + LOCATOR_LENGTH as u64;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(TAIL)))?;
+    let mut tail = Vec::new();
+    file.take(TAIL).read_to_end(&mut tail)?;
+    file.rewind()?;
+    let mut records = tail.windows(LOCATOR_LENGTH + END.len());
+    Ok(records.any(|window| window.starts_with(ZIP64_LOCATOR) && window.ends_with(END)))
+}
+
+#[cfg(test)]
+mod tests;

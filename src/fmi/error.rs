@@ -1,0 +1,226 @@
+//! What can go wrong with an FMU.
+//!
+//! Every message is one line that names what, where, found and allowed. Causes are part of that line instead of a
+//! chain of sources, so that no way of printing loses or repeats them.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::logging::{LogRecord, Status};
+
+mod causes;
+
+pub use causes::{DescriptionError, Refusal, ValueError};
+
+/// Result of the importer.
+pub type Result<T> = std::result::Result<T, FmiError>;
+
+/// Why an FMU could not be opened, loaded or called.
+#[derive(Debug, Error)]
+pub enum FmiError {
+    /// The file system refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On which file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The file is no zip archive, or a broken one.
+    #[error("{}: not a readable FMU (zip) archive: {cause}", path.display())]
+    NotAnArchive {
+        /// The file.
+        path: PathBuf,
+        /// What the reader said.
+        cause: zip::result::ZipError,
+    },
+    /// The archive has no file of this name.
+    #[error("{}: the archive has no {entry}", path.display())]
+    MissingEntry {
+        /// The archive.
+        path: PathBuf,
+        /// The name of the missing file.
+        entry: &'static str,
+    },
+    /// The archive breaks a safety rule.
+    #[error("{}: refused: {reason}", path.display())]
+    Refused {
+        /// The archive.
+        path: PathBuf,
+        /// The broken rule.
+        reason: Refusal,
+    },
+    /// The model description cannot be used.
+    #[error("{origin}: {cause}")]
+    Description {
+        /// Where it came from.
+        origin: String,
+        /// What is wrong with it.
+        cause: DescriptionError,
+    },
+    /// There is no binary for this machine.
+    #[error("{}: no binary for this platform (wanted {wanted}, the FMU has: {})", path.display(), list(found))]
+    NoBinary {
+        /// The archive.
+        path: PathBuf,
+        /// The entry looked for.
+        wanted: String,
+        /// Platforms that the FMU brings.
+        found: Vec<String>,
+    },
+    /// The dynamic linker refused the library.
+    #[error("cannot load {}: {cause}", path.display())]
+    Load {
+        /// The library, as a path into the archive.
+        path: PathBuf,
+        /// What the linker said.
+        cause: libloading::Error,
+    },
+    /// The library lacks a function of the co-simulation interface.
+    #[error("{} does not export {symbol}, which FMI 2.0 for co-simulation requires", path.display())]
+    MissingSymbol {
+        /// The library, as a path into the archive.
+        path: PathBuf,
+        /// The missing function.
+        symbol: &'static str,
+    },
+    /// The library speaks another version of FMI or uses other C types.
+    #[error("{}: {function} returned \"{found}\", allowed is \"{allowed}\"", path.display())]
+    WrongInterface {
+        /// The library, as a path into the archive.
+        path: PathBuf,
+        /// The function asked.
+        function: &'static str,
+        /// What it returned.
+        found: String,
+        /// What it should return.
+        allowed: &'static str,
+    },
+    /// `fmi2Instantiate` returned NULL.
+    #[error(
+        "fmi2Instantiate of '{instance}' (model {model}, guid {guid}) failed{}; a model description that belongs \
+             to another build of the library is a usual reason",
+        tail(messages)
+    )]
+    Instantiate {
+        /// Name of the instance.
+        instance: String,
+        /// Model identifier.
+        model: String,
+        /// The guid of the model description, which the library compares with its own.
+        guid: String,
+        /// What the FMU logged meanwhile.
+        messages: Vec<LogRecord>,
+    },
+    /// A call returned something else than OK or Warning.
+    #[error("{function} of '{instance}' returned {status}{}", tail(messages))]
+    Call {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// What it returned.
+        status: Status,
+        /// The FMU's last log messages, oldest first.
+        messages: Vec<LogRecord>,
+    },
+    /// An earlier call returned Fatal: no instance of this FMU may be called any more.
+    #[error("{function} of '{instance}' was not called: the FMU {model} reported a fatal error before")]
+    Dead {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// Model identifier.
+        model: String,
+    },
+    /// The FMU does not offer an optional function.
+    #[error("{function} of '{instance}' was not called: the FMU does not declare {capability}")]
+    NotSupported {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// The flag of the model description that would allow it.
+        capability: &'static str,
+    },
+    /// Slices that belong together have different lengths.
+    #[error("{function} of '{instance}': {references} value references but {values} {what}")]
+    Length {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// Number of value references.
+        references: usize,
+        /// Number of the others.
+        values: usize,
+        /// What the others are.
+        what: &'static str,
+    },
+    /// A state of one instance was given to another.
+    #[error("{function} of '{instance}': the state belongs to another instance, '{owner}'")]
+    ForeignState {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// Name of the instance that made the state.
+        owner: String,
+    },
+    /// A text holds a zero byte, or a name is empty.
+    #[error("{what} \"{}\" cannot be passed to an FMU: it is empty or holds a zero byte", text.escape_debug())]
+    Text {
+        /// What the text is.
+        what: &'static str,
+        /// The text.
+        text: String,
+    },
+    /// A variable does not exist.
+    #[error("model {model} has no variable \"{name}\"{}", hint(suggestion.as_ref()))]
+    UnknownVariable {
+        /// Name of the model.
+        model: String,
+        /// What was asked for.
+        name: String,
+        /// The nearest existing name.
+        suggestion: Option<String>,
+    },
+    /// A value does not suit its variable.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+}
+
+impl FmiError {
+    /// The status of a failed call, if this is one.
+    pub fn status(&self) -> Option<Status> {
+        match self {
+            Self::Call { status, .. } => Some(*status),
+            _ => None,
+        }
+    }
+
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |cause| Self::Io { action, path: path.to_path_buf(), cause }
+    }
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+fn hint(suggestion: Option<&String>) -> String {
+    suggestion.map_or_else(String::new, |name| format!("; did you mean \"{name}\"?"))
+}
+
+fn tail(messages: &[LogRecord]) -> String {
+    if messages.is_empty() {
+        return String::new();
+    }
+    let lines: Vec<_> = messages.iter().map(ToString::to_string).collect();
+    format!("; the FMU said: {}", lines.join(" | "))
+}

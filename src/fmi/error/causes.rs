@@ -1,0 +1,184 @@
+//! Causes: what is wrong with an archive, a description or a value.
+
+use thiserror::Error;
+
+/// Which safety rule an archive breaks.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum Refusal {
+    /// The file is too large.
+    #[error("the archive has {found} bytes, allowed are {allowed}")]
+    ArchiveSize {
+        /// Size of the file.
+        found: u64,
+        /// Bound.
+        allowed: u64,
+    },
+    /// Too many entries.
+    #[error("the archive has {found} entries, allowed are {allowed}")]
+    Entries {
+        /// Number of entries.
+        found: usize,
+        /// Bound.
+        allowed: usize,
+    },
+    /// The archive uses the zip64 directory.
+    #[error("the archive has a zip64 directory, which only archives beyond 65535 entries or 4 GiB need")]
+    Zip64,
+    /// Unpacked it would be too large.
+    #[error("unpacking passed {allowed} bytes at entry \"{entry}\"")]
+    UnpackedSize {
+        /// Entry at which the bound was passed.
+        entry: String,
+        /// Bound.
+        allowed: u64,
+    },
+    /// An entry inflates too much.
+    #[error("entry \"{entry}\" inflates its {packed} bytes more than {allowed} times")]
+    Ratio {
+        /// The entry.
+        entry: String,
+        /// Its compressed size.
+        packed: u64,
+        /// Bound.
+        allowed: u64,
+    },
+    /// An entry would be written outside its folder.
+    #[error("entry \"{}\" leaves the folder: {why}", entry.escape_debug())]
+    Path {
+        /// The entry.
+        entry: String,
+        /// What is wrong with its name.
+        why: &'static str,
+    },
+    /// An entry is neither a file nor a folder.
+    #[error("entry \"{entry}\" is a symbolic link or a special file")]
+    SpecialFile {
+        /// The entry.
+        entry: String,
+    },
+}
+
+/// What is wrong with a model description.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum DescriptionError {
+    /// The document is too large.
+    #[error("the model description has {found} bytes, allowed are {allowed}")]
+    Size {
+        /// Size of the document.
+        found: u64,
+        /// Bound.
+        allowed: u64,
+    },
+    /// The document is neither UTF-8 nor declared as ISO-8859-1.
+    #[error("the model description is not UTF-8 (first bad byte at {position})")]
+    Encoding {
+        /// Position of the first byte that is not.
+        position: usize,
+    },
+    /// The document is not well-formed.
+    #[error("the model description is not well-formed XML at byte {position}: {cause}")]
+    Syntax {
+        /// Byte position.
+        position: u64,
+        /// What the parser said.
+        cause: String,
+    },
+    /// An element or attribute stands where it must not, or a reference cannot be resolved.
+    #[error("the model description cannot be read: {cause}")]
+    Content {
+        /// What the parser said.
+        cause: String,
+    },
+    /// A document type declaration could define entities.
+    #[error("the model description has a DOCTYPE, which is not allowed (entities are never expanded)")]
+    Doctype,
+    /// Elements are nested too deeply.
+    #[error("the model description nests elements deeper than {allowed}")]
+    Depth {
+        /// Bound.
+        allowed: usize,
+    },
+    /// The root element is another one.
+    #[error("the root element is <{found}>, allowed is <fmiModelDescription>")]
+    Root {
+        /// Name of the root element.
+        found: String,
+    },
+    /// The FMU is of another FMI version.
+    #[error("fmiVersion is \"{found}\", allowed is \"2.0\"")]
+    Version {
+        /// The version found.
+        found: String,
+    },
+    /// A required attribute or element is missing.
+    #[error("{place} has no {what}")]
+    Missing {
+        /// Where.
+        place: String,
+        /// The missing attribute or element.
+        what: &'static str,
+    },
+    /// An attribute has a value that it must not have.
+    #[error("{place}: {attribute} is \"{found}\", allowed is {allowed}")]
+    Attribute {
+        /// Where.
+        place: String,
+        /// The attribute.
+        attribute: &'static str,
+        /// Its value.
+        found: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// Two variables share a name.
+    #[error("two variables are named \"{name}\"")]
+    Duplicate {
+        /// The name.
+        name: String,
+    },
+}
+
+/// Why a value does not suit its variable.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum ValueError {
+    /// The variable cannot be set from outside.
+    #[error("{variable} cannot be set: it is {variability} {causality}; inputs and parameters can be set")]
+    NotSettable {
+        /// Name of the variable.
+        variable: String,
+        /// Its variability.
+        variability: &'static str,
+        /// Its causality.
+        causality: &'static str,
+    },
+    /// The text does not read as the type of the variable.
+    #[error("{variable} = \"{}\": allowed is {allowed}", found.escape_debug())]
+    Parse {
+        /// Name of the variable.
+        variable: String,
+        /// The text.
+        found: String,
+        /// What would be allowed.
+        allowed: String,
+    },
+    /// The value lies outside its bounds.
+    #[error("{variable} = {found} is out of range: allowed is {allowed}")]
+    Range {
+        /// Name of the variable.
+        variable: String,
+        /// The value.
+        found: String,
+        /// The bounds, with the unit.
+        allowed: String,
+    },
+    /// The value is of another type than its variable.
+    #[error("{variable} is of type {wanted}, not {found}")]
+    Type {
+        /// Name of the variable.
+        variable: String,
+        /// Type of the variable.
+        wanted: &'static str,
+        /// Type of the value.
+        found: &'static str,
+    },
+}

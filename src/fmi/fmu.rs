@@ -1,0 +1,175 @@
+//! A loaded FMU, from which instances are made.
+
+use std::ffi::CString;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use libloading::Library;
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
+use tempfile::TempDir;
+
+use super::archive::{Archive, Limits};
+use super::description::ModelDescription;
+use super::error::{FmiError, Result};
+use super::instance::Instance;
+use super::library::{self, Functions, HOST_PLATFORM};
+use super::logging::Logging;
+
+/// A co-simulation FMU, unpacked and loaded. Clones share it; it is unloaded and its folder removed with the last
+/// clone and the last instance.
+#[derive(Clone)]
+pub struct Fmu {
+    loaded: Arc<Loaded>,
+}
+
+/// What the instances share.
+pub(super) struct Loaded {
+    path: PathBuf,
+    pub(super) description: ModelDescription,
+    pub(super) functions: Functions,
+    guid: CString,
+    resources: CString,
+    /// Some instance returned Fatal: no function of the library may be called any more.
+    fatal: AtomicBool,
+    // In the order of dropping: the library goes before the folder that holds it.
+    library: Option<Library>,
+    _folder: Option<TempDir>,
+}
+
+impl Fmu {
+    /// Opens an FMU with the default limits: reads it, unpacks it into a temporary folder and loads its library.
+    /// Loading runs code of the FMU.
+    ///
+    /// # Errors
+    /// When the archive is broken or unsafe, the description unusable, or the library missing or of another interface.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        Self::open_with(path, Limits::default())
+    }
+
+    /// As [`Fmu::open`], with other limits.
+    ///
+    /// # Errors
+    /// As [`Fmu::open`].
+    pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
+        let path = path.as_ref();
+        let mut archive = Archive::open_with(path, limits)?;
+        let description = archive.description()?;
+        let entry = library::entry_name(HOST_PLATFORM, &description.co_simulation.model_identifier);
+        if !archive.contains(&entry) {
+            return Err(FmiError::NoBinary { path: path.into(), wanted: entry, found: archive.platforms() });
+        }
+        let folder = archive.unpack()?;
+        let resources = folder.path().join("resources");
+        std::fs::create_dir_all(&resources).map_err(FmiError::io("create", &resources))?;
+        let (library, functions) = library::load(&folder.path().join(&entry), &path.join(&entry))?;
+        let loaded = Loaded {
+            path: path.into(),
+            guid: c_string("guid", &description.guid)?,
+            resources: c_string("resource location", &file_uri(&resources))?,
+            description,
+            functions,
+            fatal: AtomicBool::new(false),
+            library: Some(library),
+            _folder: Some(folder),
+        };
+        Ok(Self { loaded: Arc::new(loaded) })
+    }
+
+    /// An FMU whose functions live in this program.
+    #[cfg(test)]
+    pub(super) fn of(functions: &Functions, description: ModelDescription) -> Self {
+        let loaded = Loaded {
+            path: "memory".into(),
+            guid: c_string("guid", &description.guid).unwrap(),
+            resources: c"file:///nowhere".into(),
+            description,
+            functions: *functions,
+            fatal: AtomicBool::new(false),
+            library: None,
+            _folder: None,
+        };
+        Self { loaded: Arc::new(loaded) }
+    }
+
+    /// The model description.
+    pub fn description(&self) -> &ModelDescription {
+        &self.loaded.description
+    }
+
+    /// The archive that this was opened from.
+    pub fn path(&self) -> &Path {
+        &self.loaded.path
+    }
+
+    /// Makes an instance. Instances are independent, and may live on different threads.
+    ///
+    /// # Errors
+    /// When the name is empty or the FMU refuses; what it logged is part of the error.
+    pub fn instantiate(&self, name: &str, logging: Logging) -> Result<Instance> {
+        Instance::new(Arc::clone(&self.loaded), name, logging)
+    }
+}
+
+impl fmt::Debug for Fmu {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_struct("Fmu").field("path", &self.loaded.path).finish_non_exhaustive()
+    }
+}
+
+impl Loaded {
+    pub(super) fn guid(&self) -> &CString {
+        &self.guid
+    }
+
+    pub(super) fn resources(&self) -> &CString {
+        &self.resources
+    }
+
+    pub(super) fn is_dead(&self) -> bool {
+        self.fatal.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn kill(&self) {
+        self.fatal.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Loaded {
+    fn drop(&mut self) {
+        if self.is_dead() {
+            // Instances that were never freed may still run code of the library: it stays.
+            std::mem::forget(self.library.take());
+        }
+    }
+}
+
+/// Turns a text into a C string.
+pub(super) fn c_string(what: &'static str, text: &str) -> Result<CString> {
+    let usable = CString::new(text).ok().filter(|text| !text.is_empty());
+    usable.ok_or_else(|| FmiError::Text { what, text: text.to_owned() })
+}
+
+/// `file:///folder/file`, percent-encoded.
+fn file_uri(path: &Path) -> String {
+    const KEPT: &AsciiSet =
+        &NON_ALPHANUMERIC.remove(b'/').remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b':');
+    let bytes = path.as_os_str().as_encoded_bytes();
+    if cfg!(windows) {
+        let forward: Vec<u8> = bytes.iter().map(|&byte| if byte == b'\\' { b'/' } else { byte }).collect();
+        format!("file:///{}", percent_encode(&forward, KEPT))
+    } else {
+        format!("file://{}", percent_encode(bytes, KEPT))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    #[cfg(unix)]
+    fn resource_locations_are_uris() {
+        let uri = super::file_uri(std::path::Path::new("/tmp/a b%c/\u{e9}/resources"));
+        assert_eq!(uri, "file:///tmp/a%20b%25c/%C3%A9/resources");
+    }
+}

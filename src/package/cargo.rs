@@ -1,0 +1,142 @@
+//! Building the libraries with Cargo, which alone knows whether they are fresh and where it puts them.
+
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde::Deserialize;
+
+use super::FMUS;
+use super::error::{PackageError, Result};
+use super::platform::Platform;
+use crate::fmi::library_extension;
+
+/// How many lines of Cargo's output an error shows.
+const TAIL: usize = 40;
+
+/// One line of `cargo build --message-format=json`.
+#[derive(Deserialize)]
+struct Message {
+    target: Option<Target>,
+    #[serde(default)]
+    filenames: Vec<PathBuf>,
+}
+
+#[derive(Deserialize)]
+struct Target {
+    name: String,
+}
+
+/// Builds the libraries of all FMUs in release mode and returns them in the order of [`FMUS`].
+///
+/// This may run inside `cargo run` and `cargo test`: both have given up the lock of the build folder by then.
+pub(super) fn build(
+    workspace: &Path,
+    target: Option<&str>,
+    platform: Platform,
+    progress: fn(&str),
+) -> Result<Vec<PathBuf>> {
+    let mut command = command(workspace, target);
+    let program = PathBuf::from(command.get_program());
+    let shown = shown(target);
+    let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
+    let mut child = command.spawn().map_err(failed)?;
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let (artifacts, tail) = std::thread::scope(|scope| {
+        let errors = scope.spawn(|| stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default());
+        let artifacts = stdout.map(|stdout| read_artifacts(stdout, platform)).unwrap_or_default();
+        (artifacts, errors.join().unwrap_or_default())
+    });
+    let status = child.wait().map_err(failed)?;
+    if !status.success() {
+        return Err(PackageError::Build { command: shown, status: status.to_string(), tail });
+    }
+    let library = |identifier| {
+        let found = artifacts.iter().find(|(name, _)| name == identifier).map(|(_, path)| path.clone());
+        found.ok_or_else(|| PackageError::NotBuilt { command: shown.clone(), identifier })
+    };
+    FMUS.iter().map(|fmu| library(fmu.identifier)).collect()
+}
+
+fn command(workspace: &Path, target: Option<&str>) -> Command {
+    // Inside `cargo run`, CARGO names the very Cargo that runs.
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")));
+    command.current_dir(workspace).args(arguments(target)).arg("--message-format=json-render-diagnostics");
+    // A relative folder is meant relative to where the user is.
+    if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR")
+        && let Ok(folder) = std::path::absolute(folder)
+    {
+        command.env("CARGO_TARGET_DIR", folder);
+    }
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn arguments(target: Option<&str>) -> Vec<&str> {
+    let mut arguments = vec!["build", "--release"];
+    for fmu in &FMUS {
+        arguments.extend(["-p", fmu.package]);
+    }
+    arguments.extend(target.into_iter().flat_map(|triple| ["--target", triple]));
+    arguments
+}
+
+/// The command line, for errors.
+fn shown(target: Option<&str>) -> String {
+    format!("cargo {}", arguments(target).join(" "))
+}
+
+/// Names and files of the shared libraries that Cargo reports, fresh ones included.
+fn read_artifacts(stdout: impl Read, platform: Platform) -> Vec<(String, PathBuf)> {
+    let extension = library_extension(platform.folder);
+    let mut artifacts = Vec::new();
+    for line in BufReader::new(stdout).lines().map_while(std::result::Result::ok) {
+        let Ok(message) = serde_json::from_str::<Message>(&line) else { continue };
+        let Some(target) = message.target else { continue };
+        let library = message.filenames.into_iter().find(|path| path.extension().is_some_and(|it| it == extension));
+        artifacts.extend(library.map(|library| (target.name, library)));
+    }
+    artifacts
+}
+
+/// Reads Cargo's messages to the end, passes those about work on, and returns the last of the others.
+fn follow(stderr: impl Read, progress: fn(&str)) -> String {
+    let mut tail = VecDeque::new();
+    for line in BufReader::new(stderr).lines().map_while(std::result::Result::ok) {
+        let word = line.split_whitespace().next().unwrap_or_default();
+        if matches!(word, "Compiling" | "Downloading" | "Downloaded" | "Blocking" | "Updating") {
+            progress(line.trim());
+            continue;
+        }
+        if tail.len() == TAIL {
+            tail.pop_front();
+        }
+        tail.push_back(line);
+    }
+    tail.into_iter().collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Platform, follow, read_artifacts};
+
+    #[test]
+    fn libraries_are_picked_from_the_messages() {
+        let lines = concat!(
+            "{\"reason\":\"compiler-artifact\",\"target\":{\"name\":\"serde\"},\"filenames\":[\"/t/libserde.rlib\"]}\n",
+            "{\"reason\":\"compiler-artifact\",\"target\":{\"name\":\"Toy\"},",
+            "\"filenames\":[\"/t/libToy.rlib\",\"/t/libToy.so\"],\"fresh\":true}\n",
+            "not json\n{\"reason\":\"build-finished\",\"success\":true}\n"
+        );
+        let linux = Platform::of_triple("x86_64-unknown-linux-gnu").unwrap();
+        assert_eq!(read_artifacts(lines.as_bytes(), linux), [("Toy".to_owned(), "/t/libToy.so".into())]);
+    }
+
+    #[test]
+    fn progress_is_kept_out_of_the_tail() {
+        let text = "   Compiling a v1\nerror: no\n    Finished\n";
+        assert_eq!(follow(text.as_bytes(), |_| {}), "error: no\n    Finished");
+    }
+}

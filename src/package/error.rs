@@ -1,0 +1,110 @@
+//! What can go wrong while packaging; as in the importer, every message is one line (and Cargo's own words).
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::fmi::FmiError;
+
+/// Result of the packager.
+pub type Result<T> = std::result::Result<T, PackageError>;
+
+/// Why an FMU could not be packaged.
+#[derive(Debug, Error)]
+pub enum PackageError {
+    /// The file system refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On which file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The archive could not be written.
+    #[error("cannot write {}: {cause}", path.display())]
+    Zip {
+        /// The archive.
+        path: PathBuf,
+        /// What the writer said.
+        cause: zip::result::ZipError,
+    },
+    /// Cargo could not be started.
+    #[error("cannot run {}: {cause}", program.display())]
+    Cargo {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// Cargo failed.
+    #[error("{command} failed ({status}):\n{tail}")]
+    Build {
+        /// The command line.
+        command: String,
+        /// Exit status.
+        status: String,
+        /// The last lines that it printed.
+        tail: String,
+    },
+    /// Cargo was content, but made no library.
+    #[error("{command} made no shared library of {identifier}")]
+    NotBuilt {
+        /// The command line.
+        command: String,
+        /// Model identifier.
+        identifier: &'static str,
+    },
+    /// A library was not found.
+    #[error("cannot find the library of {identifier} ({why}); looked for: {}", list(looked))]
+    NoLibrary {
+        /// Model identifier.
+        identifier: &'static str,
+        /// Why it was not built.
+        why: String,
+        /// Files looked for.
+        looked: Vec<PathBuf>,
+    },
+    /// A model description was not found.
+    #[error("cannot find the model description of {identifier}; looked for: {}", list(looked))]
+    NoDescription {
+        /// Model identifier.
+        identifier: &'static str,
+        /// Files looked for.
+        looked: Vec<PathBuf>,
+    },
+    /// A model description cannot be used.
+    #[error(transparent)]
+    Description(#[from] FmiError),
+    /// A model description belongs to another model.
+    #[error("{}: modelIdentifier is \"{found}\", allowed is \"{allowed}\"", path.display())]
+    Identifier {
+        /// The file.
+        path: PathBuf,
+        /// The identifier found.
+        found: String,
+        /// The model that is packaged.
+        allowed: String,
+    },
+    /// FMI 2.0 has no name for a platform.
+    #[error(
+        "no FMI 2.0 platform for the target {triple}; allowed are Linux, Windows and macOS targets of 32 or 64 bits"
+    )]
+    Platform {
+        /// The target triple.
+        triple: String,
+    },
+}
+
+impl PackageError {
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |cause| Self::Io { action, path: path.to_path_buf(), cause }
+    }
+}
+
+fn list(paths: &[PathBuf]) -> String {
+    let names: Vec<_> = paths.iter().map(|path| path.display().to_string()).collect();
+    names.join(", ")
+}

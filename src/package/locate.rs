@@ -1,0 +1,100 @@
+//! Where things are: the source tree, the libraries, the model descriptions.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::error::{PackageError, Result};
+use super::platform::Platform;
+use super::{FMUS, FmuPackage, NO_BUILD, Options, cargo, fresh};
+
+/// The source tree: the one that holds the running program, the one it was compiled in, or the one around the
+/// working folder.
+pub(super) fn workspace() -> Option<PathBuf> {
+    let program = std::env::current_exe().ok();
+    let here = std::env::current_dir().ok();
+    let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let around = |path: Option<&Path>| {
+        path.and_then(|path| path.ancestors().find(|folder| is_workspace(folder)).map(Path::to_path_buf))
+    };
+    around(program.as_deref())
+        .or_else(|| is_workspace(compiled).then(|| compiled.to_path_buf()))
+        .or_else(|| around(here.as_deref()))
+}
+
+fn is_workspace(folder: &Path) -> bool {
+    FMUS.iter().all(|fmu| folder.join(fmu.folder).join("Cargo.toml").is_file()) && folder.join("Cargo.toml").is_file()
+}
+
+/// The libraries for one target, in the order of [`FMUS`]: built, or else found.
+pub(super) fn libraries(
+    options: &Options,
+    workspace: Option<&Path>,
+    target: Option<&str>,
+    platform: Platform,
+) -> Result<Vec<PathBuf>> {
+    if let (None, true, Some(workspace)) = (target, options.build, workspace)
+        && let Some(libraries) = fresh_beside_program(workspace, platform)
+    {
+        return Ok(libraries);
+    }
+    let why = match workspace {
+        None => "there is no source tree to build it from".to_owned(),
+        Some(_) if !options.build => format!("building is switched off, by option or {NO_BUILD}"),
+        Some(workspace) => match cargo::build(workspace, target, platform, options.progress) {
+            // A program that was handed over without a toolchain.
+            Err(error @ PackageError::Cargo { .. }) if is_not_found(&error) => error.to_string(),
+            other => return other,
+        },
+    };
+    let folders = folders(workspace, target);
+    FMUS.iter().map(|fmu| find(fmu, platform, &folders, &why)).collect()
+}
+
+/// The release libraries beside the running program, if all are as new as their sources: what `cargo run --release` has
+/// just built.
+fn fresh_beside_program(workspace: &Path, platform: Platform) -> Option<Vec<PathBuf>> {
+    let program = std::env::current_exe().ok()?;
+    let beside = program.parent().filter(|folder| folder.ends_with("release"))?;
+    let libraries = FMUS.iter().map(|fmu| beside.join(platform.cargo_name(fmu.identifier)));
+    libraries.map(|library| fresh::is_fresh(&library, workspace).then_some(library)).collect()
+}
+
+fn is_not_found(error: &PackageError) -> bool {
+    matches!(error, PackageError::Cargo { cause, .. } if cause.kind() == io::ErrorKind::NotFound)
+}
+
+/// Folders in which libraries may lie: beside the program (tests run in `deps`), then where Cargo puts them.
+fn folders(workspace: Option<&Path>, target: Option<&str>) -> Vec<PathBuf> {
+    let mut folders = Vec::new();
+    if target.is_none() {
+        let program = std::env::current_exe().ok();
+        if let Some(beside) = program.as_deref().and_then(Path::parent) {
+            folders.extend([beside.to_path_buf(), beside.join("deps")]);
+            if beside.ends_with("deps") || beside.ends_with("examples") {
+                folders.extend(beside.parent().map(Path::to_path_buf));
+            }
+        }
+    }
+    if let Some(workspace) = workspace {
+        let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
+        folders.push(target.map_or_else(|| base.clone(), |triple| base.join(triple)).join("release"));
+    }
+    folders
+}
+
+fn find(fmu: &FmuPackage, platform: Platform, folders: &[PathBuf], why: &str) -> Result<PathBuf> {
+    let looked: Vec<_> = folders.iter().map(|folder| folder.join(platform.cargo_name(fmu.identifier))).collect();
+    let found = looked.iter().find(|path| path.is_file()).cloned();
+    found.ok_or_else(|| PackageError::NoLibrary { identifier: fmu.identifier, why: why.to_owned(), looked })
+}
+
+/// The model description: of the source tree, or of a folder beside the program.
+pub(super) fn description(fmu: &FmuPackage, workspace: Option<&Path>) -> Result<PathBuf> {
+    let program = std::env::current_exe().ok();
+    let beside = program.as_deref().and_then(Path::parent);
+    let name = format!("{}.xml", fmu.identifier);
+    let roots = [workspace, beside].into_iter().flatten();
+    let looked: Vec<_> = roots.map(|root| root.join("modelDescription").join(&name)).collect();
+    let found = looked.iter().find(|path| path.is_file()).cloned();
+    found.ok_or(PackageError::NoDescription { identifier: fmu.identifier, looked })
+}

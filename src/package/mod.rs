@@ -1,0 +1,118 @@
+//! Packager: from the compiled libraries to `.fmu` archives.
+//!
+//! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and documentation.
+//! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
+//! is packaged always belongs to the sources. Without it, the libraries beside the running program are taken.
+//!
+//! ```no_run
+//! use videg::package::{Options, build_all};
+//!
+//! # fn main() -> Result<(), videg::package::PackageError> {
+//! for path in build_all(&Options { progress: |line| eprintln!("{line}"), ..Options::default() })? {
+//!     println!("{}", path.display());
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+mod cargo;
+mod contents;
+mod error;
+mod fresh;
+mod locate;
+mod platform;
+
+use std::path::{Path, PathBuf};
+
+pub use contents::Contents;
+pub use error::{PackageError, Result};
+pub use platform::Platform;
+
+/// An FMU of this project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FmuPackage {
+    /// Model identifier: name of the library and of the archive.
+    pub identifier: &'static str,
+    /// Name of the Cargo package that builds the library.
+    pub package: &'static str,
+    /// Its folder in the source tree.
+    pub folder: &'static str,
+}
+
+/// All FMUs of this project.
+pub const FMUS: [FmuPackage; 2] = [
+    FmuPackage { identifier: "VibroImpactHarvester", package: "videg-fmu-harvester", folder: "fmu/harvester" },
+    FmuPackage { identifier: "HarvestingCircuit", package: "videg-fmu-circuit", folder: "fmu/circuit" },
+];
+
+/// Environment variable that keeps the packager from running Cargo, if set to anything but nothing.
+pub const NO_BUILD: &str = "VIDEG_NO_BUILD";
+
+/// How to package. The default is for this machine, into `target/fmu` of the source tree (without one: of the working
+/// folder), and builds unless [`NO_BUILD`] is set.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Folder of the archives.
+    pub output: Option<PathBuf>,
+    /// Root of the source tree; found if not given.
+    pub workspace: Option<PathBuf>,
+    /// Whether Cargo may be run.
+    pub build: bool,
+    /// Target triples to package for, all into one archive; none means this machine.
+    pub targets: Vec<String>,
+    /// Gets a line of Cargo's progress whenever something is really compiled.
+    pub progress: fn(&str),
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
+        Self { output: None, workspace: None, build, targets: Vec::new(), progress: |_| {} }
+    }
+}
+
+/// Where FMUs are written by default, for a source tree.
+fn default_output(workspace: Option<&Path>) -> PathBuf {
+    workspace.unwrap_or_else(|| Path::new(".")).join("target").join("fmu")
+}
+
+/// Packages all FMUs of this project and returns the archives, in the order of [`FMUS`].
+///
+/// # Errors
+/// When a library cannot be built or found, a model description is missing or belongs to another model, or a file
+/// cannot be read or written.
+pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
+    let workspace = options.workspace.clone().or_else(locate::workspace);
+    let workspace = workspace.as_deref();
+    let output = options.output.clone().unwrap_or_else(|| default_output(workspace));
+    let targets: Vec<_> = if options.targets.is_empty() {
+        vec![None]
+    } else {
+        options.targets.iter().map(|triple| Some(triple.as_str())).collect()
+    };
+    let mut binaries = Vec::new();
+    for target in targets {
+        let platform = target.map_or(Ok(Platform::HOST), Platform::of_triple)?;
+        binaries.push((platform, locate::libraries(options, workspace, target, platform)?));
+    }
+    let mut archives = Vec::new();
+    for (index, fmu) in FMUS.iter().enumerate() {
+        let mut contents = Contents::new(fmu.identifier, &locate::description(fmu, workspace)?)?;
+        for (platform, libraries) in &binaries {
+            if let Some(library) = libraries.get(index) {
+                contents.add_library(*platform, library);
+            }
+        }
+        if let Some(workspace) = workspace {
+            contents.add_folder("documentation", &workspace.join(fmu.folder).join("documentation"))?;
+            contents.add_licenses(workspace)?;
+        }
+        let archive = output.join(format!("{}.fmu", fmu.identifier));
+        contents.write(&archive)?;
+        archives.push(archive);
+    }
+    Ok(archives)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,74 @@
+//! Platforms: from Rust's target triples to the folder names of FMI 2.0.
+
+use super::error::{PackageError, Result};
+use crate::fmi::{HOST_PLATFORM, library_extension};
+
+/// A folder of `binaries/`. FMI 2.0 tells platforms by system and pointer size only, so an archive holds either the
+/// x86-64 or the `AArch64` library of a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Platform {
+    /// Name of the folder.
+    pub folder: &'static str,
+}
+
+impl Platform {
+    /// The platform that this program runs on.
+    pub const HOST: Self = Self { folder: HOST_PLATFORM };
+
+    /// The platform of a target triple, such as `x86_64-unknown-linux-gnu`.
+    ///
+    /// # Errors
+    /// When FMI 2.0 has no name for it.
+    pub fn of_triple(triple: &str) -> Result<Self> {
+        let unknown = || PackageError::Platform { triple: triple.to_owned() };
+        let architecture = triple.split('-').next().unwrap_or_default();
+        let wide = match architecture {
+            "x86_64" | "aarch64" | "riscv64gc" | "powerpc64le" => true,
+            "i586" | "i686" | "armv7" | "arm" => false,
+            _ => return Err(unknown()),
+        };
+        let has = |part| triple.split('-').any(|other| other == part);
+        let folder = match (has("linux"), has("windows"), has("darwin"), wide) {
+            (true, false, false, true) => "linux64",
+            (true, false, false, false) => "linux32",
+            (false, true, false, true) => "win64",
+            (false, true, false, false) => "win32",
+            (false, false, true, true) => "darwin64",
+            _ => return Err(unknown()),
+        };
+        Ok(Self { folder })
+    }
+
+    /// Name of the library inside the archive: no `lib` in front.
+    pub fn entry(self, identifier: &str) -> String {
+        format!("binaries/{}/{identifier}.{}", self.folder, library_extension(self.folder))
+    }
+
+    /// Name that Cargo gives to the library.
+    pub fn cargo_name(self, identifier: &str) -> String {
+        let prefix = if self.folder.starts_with("win") { "" } else { "lib" };
+        format!("{prefix}{identifier}.{}", library_extension(self.folder))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Platform;
+
+    #[test]
+    fn triples_map_to_the_folders_of_fmi() {
+        for (triple, entry, cargo) in [
+            ("x86_64-unknown-linux-gnu", "binaries/linux64/Toy.so", "libToy.so"),
+            ("aarch64-unknown-linux-musl", "binaries/linux64/Toy.so", "libToy.so"),
+            ("i686-unknown-linux-gnu", "binaries/linux32/Toy.so", "libToy.so"),
+            ("x86_64-pc-windows-gnu", "binaries/win64/Toy.dll", "Toy.dll"),
+            ("i686-pc-windows-msvc", "binaries/win32/Toy.dll", "Toy.dll"),
+            ("aarch64-apple-darwin", "binaries/darwin64/Toy.dylib", "libToy.dylib"),
+        ] {
+            let platform = Platform::of_triple(triple).unwrap();
+            assert_eq!((platform.entry("Toy").as_str(), platform.cargo_name("Toy").as_str()), (entry, cargo));
+        }
+        let error = Platform::of_triple("wasm32-unknown-unknown").unwrap_err().to_string();
+        assert!(error.starts_with("no FMI 2.0 platform for the target wasm32-unknown-unknown"), "{error}");
+    }
+}

@@ -1,0 +1,121 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::{Contents, FMUS, Options, PackageError, Platform, build_all, locate};
+use crate::fmi::{Archive, Fmu};
+
+const DESCRIPTION: &str = include_str!("../fmi/testdata/good.xml");
+
+/// A tree with the files that packaging reads, but nothing to build.
+fn tree() -> TempDir {
+    let tree = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = tree.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    write("Toy.xml", DESCRIPTION);
+    write("target/release/libToy.so", "library");
+    write("documentation/index.html", "<html/>");
+    write("documentation/images/a.svg", "<svg/>");
+    write("LICENSE-MIT", "free");
+    tree
+}
+
+fn contents(tree: &Path) -> Contents {
+    let mut contents = Contents::new("Toy", &tree.join("Toy.xml")).unwrap();
+    contents.add_library(Platform { folder: "linux64" }, &tree.join("target/release/libToy.so"));
+    contents.add_folder("documentation", &tree.join("documentation")).unwrap();
+    contents.add_folder("resources", &tree.join("absent")).unwrap();
+    contents.add_licenses(tree).unwrap();
+    contents
+}
+
+#[test]
+fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
+    let tree = tree();
+    let path = tree.path().join("out/deep/Toy.fmu");
+    contents(tree.path()).write(&path).unwrap();
+    let mut archive = Archive::open(&path).unwrap();
+    let wanted = [
+        "binaries/linux64/Toy.so",
+        "documentation/images/a.svg",
+        "documentation/index.html",
+        "documentation/licenses/LICENSE-MIT",
+        "modelDescription.xml",
+    ];
+    assert_eq!(archive.entries(), wanted);
+    assert_eq!(archive.description().unwrap().model_name, "Toy <model>");
+    let unpacked = archive.unpack().unwrap();
+    assert_eq!(fs::read(unpacked.path().join("binaries/linux64/Toy.so")).unwrap(), b"library");
+}
+
+#[test]
+fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
+    let (first, second) = (tree(), tree());
+    let archive = |tree: &TempDir| {
+        let path = tree.path().join("Toy.fmu");
+        fs::write(&path, "old").unwrap();
+        contents(tree.path()).write(&path).unwrap();
+        fs::read(path).unwrap()
+    };
+    let bytes = archive(&first);
+    fs::File::open(second.path().join("Toy.xml")).unwrap().set_modified(std::time::UNIX_EPOCH).unwrap();
+    assert_eq!(bytes, archive(&second));
+    let leftovers = fs::read_dir(first.path())
+        .unwrap()
+        .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".part"));
+    assert_eq!(leftovers.count(), 0);
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_archive_alone() {
+    let tree = tree();
+    let path = tree.path().join("Toy.fmu");
+    fs::write(&path, "old").unwrap();
+    let mut contents = contents(tree.path());
+    contents.add_file("resources/gone", &tree.path().join("gone"));
+    let error = contents.write(&path).unwrap_err().to_string();
+    assert!(error.starts_with("cannot read ") && error.contains("gone"), "{error}");
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+}
+
+#[test]
+fn a_description_of_another_model_is_refused() {
+    let tree = tree();
+    let error = Contents::new("Other", &tree.path().join("Toy.xml")).unwrap_err().to_string();
+    assert!(error.ends_with("modelIdentifier is \"Toy\", allowed is \"Other\""), "{error}");
+}
+
+#[test]
+fn without_libraries_the_error_says_where_it_looked_and_why_nothing_was_built() {
+    let tree = tree();
+    let workspace = Some(tree.path().to_path_buf());
+    let targets = vec!["x86_64-pc-windows-gnu".to_owned()];
+    let options = Options { workspace, build: false, targets, ..Options::default() };
+    let error = build_all(&options).unwrap_err();
+    assert!(matches!(error, PackageError::NoLibrary { .. }), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("building is switched off") && text.contains("VibroImpactHarvester.dll"), "{text}");
+}
+
+#[test]
+fn the_source_tree_is_found_and_lists_the_same_packages() {
+    let workspace = locate::workspace().unwrap();
+    assert!(workspace.join("fmu/harvester/Cargo.toml").is_file());
+    for fmu in FMUS {
+        let manifest = fs::read_to_string(workspace.join(fmu.folder).join("Cargo.toml")).unwrap();
+        assert!(manifest.contains(&format!("name = \"{}\"", fmu.package)), "{manifest}");
+        assert!(manifest.contains(&format!("name = \"{}\"", fmu.identifier)), "{manifest}");
+    }
+}
+
+#[test]
+fn an_archive_without_this_platform_is_not_loaded() {
+    let tree = tree();
+    let path = tree.path().join("Toy.fmu");
+    Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().write(&path).unwrap();
+    assert!(Fmu::open(PathBuf::from(&path)).unwrap_err().to_string().contains("no binary for this platform"));
+}

@@ -1,0 +1,202 @@
+//! Ranges, ticks and tick labels.
+
+use plotters::coord::ranged1d::Ranged;
+use plotters::coord::types::RangedCoordf64;
+
+/// Relative span below which a range counts as one value: digits beyond are rounding.
+const CONSTANT: f64 = 1e-9;
+
+/// An axis, drawn in multiples of a power of ten so that its span is 1 to 10: whatever the unit of
+/// the data, ticks are sought among numbers of that size.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    /// Ends in data units.
+    pub low: f64,
+    pub high: f64,
+    exponent: i32,
+    decimals: usize,
+    scientific: bool,
+}
+
+impl Axis {
+    /// An axis with exactly these ends; `None` if they are no finite, ascending interval.
+    pub(super) fn exact(low: f64, high: f64, max_ticks: usize) -> Option<Self> {
+        let span = high - low;
+        if !span.is_finite() || span <= 0.0 || span < CONSTANT * low.abs().max(high.abs()) {
+            return None;
+        }
+        let exponent = decade(span);
+        if exponent.abs() > 250 {
+            return None;
+        }
+        let mut axis = Self { low, high, exponent, decimals: 0, scientific: false };
+        axis.choose_format(max_ticks);
+        Some(axis)
+    }
+
+    /// An axis around data from `low` to `high` with a margin (a share of the span).
+    ///
+    /// A constant gets room on either side, no data at all (`low > high`) the range 0 to 1.
+    pub(super) fn around(low: f64, high: f64, margin: f64, max_ticks: usize) -> Option<Self> {
+        if low > high {
+            return Self::exact(0.0, 1.0, max_ticks);
+        }
+        let size = low.abs().max(high.abs());
+        let pad = if high - low <= CONSTANT * size {
+            if size == 0.0 { 1.0 } else { 0.1 * size }
+        } else {
+            margin * (high - low)
+        };
+        let (low, high) = if pad == 0.0 { snapped(low, high) } else { (low - pad, high + pad) };
+        Self::exact(low, high, max_ticks)
+    }
+
+    /// A value in drawing units.
+    pub(super) fn scaled(&self, value: f64) -> f64 {
+        value / 10_f64.powi(self.exponent)
+    }
+
+    /// Ends in drawing units.
+    pub(super) fn scaled_range(&self) -> std::ops::Range<f64> {
+        self.scaled(self.low)..self.scaled(self.high)
+    }
+
+    /// The text at a tick given in drawing units.
+    pub(super) fn label(&self, scaled: f64) -> String {
+        let text = if self.scientific {
+            scientific(scaled, self.exponent)
+        } else {
+            format!("{:.*}", self.decimals, scaled * 10_f64.powi(self.exponent))
+        };
+        // A typographic minus; a rounded negative zero loses its sign.
+        match text.strip_prefix('-') {
+            Some(digits) if digits.chars().any(|c| ('1'..='9').contains(&c)) => {
+                format!("\u{2212}{digits}")
+            }
+            Some(digits) => digits.to_owned(),
+            None => text,
+        }
+    }
+
+    /// The longest tick label, in characters.
+    pub(super) fn label_length(&self, max_ticks: usize) -> usize {
+        let ticks = self.ticks(max_ticks).into_iter();
+        ticks.map(|t| self.label(t).chars().count()).max().unwrap_or(0)
+    }
+
+    /// Ticks in drawing units, as the plotting library will choose them.
+    fn ticks(&self, max_ticks: usize) -> Vec<f64> {
+        RangedCoordf64::from(self.scaled_range()).key_points(max_ticks)
+    }
+
+    /// As many decimals as tell all ticks apart; powers of ten for the very large and very small.
+    fn choose_format(&mut self, max_ticks: usize) {
+        let ticks = self.ticks(max_ticks);
+        let fine = (0_i32..6).find(|&d| {
+            let shift = 10_f64.powi(d);
+            ticks.iter().all(|t| (t * shift - (t * shift).round()).abs() < 1e-6 * shift.max(1.0))
+        });
+        let decimals = fine.unwrap_or(6) - self.exponent;
+        self.decimals = usize::try_from(decimals.max(0)).unwrap_or(0);
+        let largest = self.low.abs().max(self.high.abs());
+        self.scientific = !(1e-3..1e6).contains(&largest);
+    }
+}
+
+/// Moves an end to the round number just outside, so that a run to 99.999 s has a tick at 100 s.
+fn snapped(low: f64, high: f64) -> (f64, f64) {
+    let span = high - low;
+    let step = 10_f64.powi(decade(span)) / 10.0;
+    let (below, above) = ((low / step).floor() * step, (high / step).ceil() * step);
+    let near = 0.005 * span;
+    (if low - below < near { below } else { low }, if above - high < near { above } else { high })
+}
+
+/// `2.5 x 10^6`, typeset; zero is plain.
+fn scientific(scaled: f64, exponent: i32) -> String {
+    if scaled.abs() < 1e-9 {
+        return "0".to_owned();
+    }
+    let shift = decade(scaled.abs() * (1.0 + 1e-12));
+    let mantissa = (scaled / 10_f64.powi(shift) * 1e6).round() / 1e6;
+    format!("{mantissa}\u{d7}10{}", superscript(exponent + shift))
+}
+
+fn superscript(exponent: i32) -> String {
+    let raised = |c| match c {
+        '-' => '\u{207b}',
+        '1' => '\u{b9}',
+        '2' => '\u{b2}',
+        '3' => '\u{b3}',
+        digit => char::from_u32(0x2070 + u32::from(digit) - u32::from('0')).unwrap_or(digit),
+    };
+    exponent.to_string().chars().map(raised).collect()
+}
+
+/// Exponent of the power of ten at or below a positive value.
+#[expect(clippy::cast_possible_truncation, reason = "the exponent of an f64 is within -324..=308")]
+fn decade(value: f64) -> i32 {
+    value.log10().floor() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(low: f64, high: f64) -> Vec<String> {
+        let axis = Axis::exact(low, high, 6).unwrap();
+        axis.ticks(6).into_iter().map(|t| axis.label(t)).collect()
+    }
+
+    #[test]
+    fn labels_are_short_and_equally_precise() {
+        assert_eq!(labels(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(98.0, 100.0), ["98.0", "98.5", "99.0", "99.5", "100.0"]);
+        assert_eq!(labels(-22.0, 22.0), ["\u{2212}20", "\u{2212}10", "0", "10", "20"]);
+        assert_eq!(labels(0.0, 100.0), ["0", "20", "40", "60", "80", "100"]);
+    }
+
+    #[test]
+    fn very_large_and_very_small_take_powers_of_ten() {
+        assert_eq!(labels(0.0, 2e6)[1], "5\u{d7}10\u{2075}");
+        assert_eq!(labels(0.0, 1.5e-11)[1], "5\u{d7}10\u{207b}\u{b9}\u{b2}");
+        assert!(labels(-3e-9, 3e-9).contains(&"0".to_owned()));
+    }
+
+    #[test]
+    fn ticks_of_any_decade_are_ticks_of_the_first() {
+        for exponent in [-200, -17, -3, 0, 5, 200] {
+            let unit = 10_f64.powi(exponent);
+            let axis = Axis::exact(0.0, 4.2 * unit, 6).unwrap();
+            assert_eq!(axis.ticks(6).len(), 5, "10^{exponent}");
+        }
+    }
+
+    #[test]
+    fn a_constant_gets_room_and_no_data_a_default() {
+        let flat = Axis::around(2000.0, 2000.0, 0.05, 6).unwrap();
+        assert_eq!((flat.low, flat.high), (1800.0, 2200.0));
+        let zero = Axis::around(0.0, 0.0, 0.05, 6).unwrap();
+        assert_eq!((zero.low, zero.high), (-1.0, 1.0));
+        let empty = Axis::around(f64::INFINITY, f64::NEG_INFINITY, 0.05, 6).unwrap();
+        assert_eq!((empty.low, empty.high), (0.0, 1.0));
+    }
+
+    #[test]
+    fn an_end_next_to_a_round_number_moves_there() {
+        assert_eq!(snapped(0.0, 99.9998), (0.0, 100.0));
+        assert_eq!(snapped(0.2, 99.0), (0.0, 99.0));
+        assert_eq!(snapped(3.37, 8.84), (3.37, 8.84));
+        let axis = Axis::around(0.001, 99.9998, 0.0, 8).unwrap();
+        assert_eq!((axis.low, axis.high), (0.0, 100.0));
+    }
+
+    #[test]
+    fn an_interval_that_is_none_is_refused() {
+        for (low, high) in [(1.0, 1.0), (2.0, 1.0), (0.0, f64::INFINITY), (f64::NAN, 1.0)] {
+            assert!(Axis::exact(low, high, 6).is_none(), "{low} to {high}");
+        }
+        assert!(Axis::exact(-1e308, 1e308, 6).is_none());
+        assert!(Axis::exact(1e9, 1e9 + 1e-3, 6).is_none());
+    }
+}

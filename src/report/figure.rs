@@ -1,0 +1,215 @@
+//! What a figure shows: panels, series, reference lines.
+
+/// A column of panels, rendered by [`render_svg`](super::render_svg).
+#[derive(Debug, Clone)]
+pub struct Figure<'a> {
+    /// Drawn above the panels, and the accessible name; an empty title takes no space.
+    pub title: String,
+    /// Long description for screen readers; not drawn.
+    pub caption: String,
+    /// Nominal width in px; the SVG scales with its container.
+    pub width: f64,
+    /// From top to bottom.
+    pub panels: Vec<Panel<'a>>,
+}
+
+impl<'a> Figure<'a> {
+    /// A figure of 720 px without panels.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), caption: String::new(), width: 720.0, panels: Vec::new() }
+    }
+
+    /// Sets the long description.
+    #[must_use]
+    pub fn caption(mut self, caption: impl Into<String>) -> Self {
+        self.caption = caption.into();
+        self
+    }
+
+    /// Adds a panel below the others.
+    #[must_use]
+    pub fn panel(mut self, panel: Panel<'a>) -> Self {
+        self.panels.push(panel);
+        self
+    }
+}
+
+/// One pair of axes with its series.
+#[derive(Debug, Clone)]
+pub struct Panel<'a> {
+    /// Short title at the upper left, such as `(a)`.
+    pub title: String,
+    /// Label of the x axis with its unit; empty for none.
+    pub x_label: String,
+    /// Label of the y axis with its unit; empty for none.
+    pub y_label: String,
+    /// Ends of the x axis; `None` spans the data.
+    pub x_range: Option<(f64, f64)>,
+    /// Ends of the y axis; `None` spans the data within the x range, and the reference lines.
+    pub y_range: Option<(f64, f64)>,
+    /// Takes the same x axis as the panel below, which alone carries its tick labels.
+    pub share_x_with_next: bool,
+    /// Height of the frame in px, without labels.
+    pub height: f64,
+    /// Drawn in this order.
+    pub series: Vec<Series<'a>>,
+    /// Horizontal reference lines.
+    pub lines: Vec<ReferenceLine>,
+}
+
+impl<'a> Panel<'a> {
+    /// A panel of 130 px with automatic ranges and no series.
+    pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            x_range: None,
+            y_range: None,
+            share_x_with_next: false,
+            height: 130.0,
+            series: Vec::new(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// Sets the ends of the x axis.
+    #[must_use]
+    pub fn x_range(mut self, low: f64, high: f64) -> Self {
+        self.x_range = Some((low, high));
+        self
+    }
+
+    /// Sets the ends of the y axis.
+    #[must_use]
+    pub fn y_range(mut self, low: f64, high: f64) -> Self {
+        self.y_range = Some((low, high));
+        self
+    }
+
+    /// Sets the height of the frame in px.
+    #[must_use]
+    pub fn height(mut self, height: f64) -> Self {
+        self.height = height;
+        self
+    }
+
+    /// Shares the x axis of the panel below.
+    #[must_use]
+    pub fn share_x_with_next(mut self) -> Self {
+        self.share_x_with_next = true;
+        self
+    }
+
+    /// Adds a series; its colour is the next one of the palette.
+    #[must_use]
+    pub fn series(mut self, mut series: Series<'a>) -> Self {
+        series.color = series.color.or(Some(self.series.len()));
+        self.series.push(series);
+        self
+    }
+
+    /// Adds a dashed horizontal line; an empty label keeps it out of the legend.
+    #[must_use]
+    pub fn line(mut self, label: impl Into<String>, value: f64) -> Self {
+        self.lines.push(ReferenceLine { label: label.into(), value });
+        self
+    }
+}
+
+/// A horizontal reference line.
+#[derive(Debug, Clone)]
+pub struct ReferenceLine {
+    /// Text in the legend; empty for none.
+    pub label: String,
+    /// Where it crosses the y axis.
+    pub value: f64,
+}
+
+/// Points of one quantity. A point that is not finite leaves a gap.
+#[derive(Debug, Clone)]
+pub struct Series<'a> {
+    /// Text in the legend; empty for none.
+    pub label: String,
+    /// The points, in the order in which they are joined.
+    pub data: Data<'a>,
+    /// How they are drawn.
+    pub style: Style,
+    /// Index into the palette of Okabe and Ito; `None` is the first colour.
+    pub color: Option<usize>,
+}
+
+impl<'a> Series<'a> {
+    /// A line through `(x, y)` pairs.
+    pub fn points(label: impl Into<String>, points: &'a [(f64, f64)]) -> Self {
+        Self::new(label, Data::Points(points))
+    }
+
+    /// A line through two columns, which must be equally long.
+    pub fn columns(label: impl Into<String>, xs: &'a [f64], ys: &'a [f64]) -> Self {
+        Self::new(label, Data::Columns { xs, ys })
+    }
+
+    /// Sets how the points are drawn.
+    #[must_use]
+    pub fn style(mut self, style: Style) -> Self {
+        self.style = style;
+        self
+    }
+
+    /// Sets the index into the palette, so that one quantity keeps its colour across panels.
+    #[must_use]
+    pub fn color(mut self, index: usize) -> Self {
+        self.color = Some(index);
+        self
+    }
+
+    fn new(label: impl Into<String>, data: Data<'a>) -> Self {
+        Self { label: label.into(), data, style: Style::Line, color: None }
+    }
+}
+
+/// Points borrowed from the caller.
+#[derive(Debug, Clone, Copy)]
+pub enum Data<'a> {
+    /// `(x, y)` pairs.
+    Points(&'a [(f64, f64)]),
+    /// Two columns of equal length.
+    Columns {
+        /// The x values.
+        xs: &'a [f64],
+        /// The y values.
+        ys: &'a [f64],
+    },
+}
+
+impl Data<'_> {
+    /// Number of x values and number of y values.
+    pub fn lengths(&self) -> (usize, usize) {
+        match self {
+            Self::Points(points) => (points.len(), points.len()),
+            Self::Columns { xs, ys } => (xs.len(), ys.len()),
+        }
+    }
+
+    /// The points in order; of unequal columns, as far as the shorter one goes.
+    pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let (points, xs, ys): (&[(f64, f64)], &[f64], &[f64]) = match self {
+            Self::Points(points) => (points, &[], &[]),
+            Self::Columns { xs, ys } => (&[], xs, ys),
+        };
+        points.iter().copied().chain(xs.iter().copied().zip(ys.iter().copied()))
+    }
+}
+
+/// How the points of a series are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Style {
+    /// Straight lines from point to point.
+    #[default]
+    Line,
+    /// A value holds until the next point.
+    Steps,
+    /// A dot at each point.
+    Markers,
+}

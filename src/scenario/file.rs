@@ -1,0 +1,146 @@
+//! Case files (TOML).
+//!
+//! ```toml
+//! case = "fig14"                 # start from a case of the paper
+//! name = "softer"                # optional: how the run is called
+//! description = "softer membrane"
+//! until = 60.0
+//! step = 1e-3
+//! window = [30.0, 60.0]
+//!
+//! [set]                          # FMU variables, dotted as they are
+//! membrane.stiffness = 2e5
+//! contact.law = "impulsive"
+//! load.resistance = inf
+//! ```
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::{ScenarioError, Setting};
+
+/// What a case file says.
+#[derive(Debug, Clone, Default)]
+pub struct CaseFile {
+    /// Case of the paper to start from.
+    pub case: Option<String>,
+    /// Name of the run.
+    pub name: Option<String>,
+    /// One line on what it shows.
+    pub description: Option<String>,
+    /// End of the run, s.
+    pub until: Option<f64>,
+    /// Communication step, s.
+    pub step: Option<f64>,
+    /// Averaging window, s.
+    pub window: Option<[f64; 2]>,
+    /// Variables to set.
+    pub settings: Vec<Setting>,
+}
+
+/// The file as it is laid out; anything else in it is an error.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Layout {
+    case: Option<String>,
+    name: Option<String>,
+    description: Option<String>,
+    until: Option<f64>,
+    step: Option<f64>,
+    window: Option<[f64; 2]>,
+    #[serde(default)]
+    set: Table,
+}
+
+impl CaseFile {
+    /// Reads the file at `path`. The run is called after it unless it says otherwise.
+    ///
+    /// # Errors
+    /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let shown = path.display().to_string();
+        let text =
+            std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
+        let mut file = Self::parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
+        let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        file.name = file.name.or_else(stem);
+        Ok(file)
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let layout: Layout = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+        let mut settings = Vec::new();
+        flatten("", &layout.set, &mut settings)?;
+        let Layout { case, name, description, until, step, window, .. } = layout;
+        Ok(Self { case, name, description, until, step, window, settings })
+    }
+}
+
+/// Turns nested tables back into dotted names.
+fn flatten(prefix: &str, table: &Table, settings: &mut Vec<Setting>) -> Result<(), String> {
+    for (key, value) in table {
+        let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+        let value = match value {
+            Value::Table(inner) => {
+                flatten(&name, inner, settings)?;
+                continue;
+            }
+            Value::String(text) => text.clone(),
+            Value::Integer(number) => number.to_string(),
+            Value::Float(number) => format!("{number:?}"),
+            Value::Boolean(flag) => flag.to_string(),
+            other => {
+                return Err(format!(
+                    "{name} is of type {}: a variable takes a number, a boolean or a string",
+                    other.type_str()
+                ));
+            }
+        };
+        settings.push(Setting { name, value });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dotted_and_quoted_names_and_all_types_are_read() {
+        let file = CaseFile::parse(
+            "case = 'fig15'\nuntil = 60\nwindow = [30.0, 60.0]\n[set]\nmembrane.restitution = 0.25\n\
+             'excitation.seed' = 7\ncontact.law = 'impulsive'\ncontact.electrostaticFeedback = false\nload.resistance = inf\n",
+        )
+        .unwrap();
+        assert_eq!((file.case.as_deref(), file.until, file.window), (Some("fig15"), Some(60.0), Some([30.0, 60.0])));
+        let mut set: Vec<_> = file.settings.iter().map(|s| format!("{}={}", s.name, s.value)).collect();
+        set.sort();
+        assert_eq!(
+            set,
+            [
+                "contact.electrostaticFeedback=false",
+                "contact.law=impulsive",
+                "excitation.seed=7",
+                "load.resistance=inf",
+                "membrane.restitution=0.25",
+            ]
+        );
+    }
+
+    #[test]
+    fn what_a_case_file_cannot_say_is_an_error_that_names_it() {
+        for (text, named) in [
+            ("untill = 3", "untill"),
+            ("until = 'long'", "until"),
+            ("window = [1.0]", "window"),
+            ("[set]\nball.mass = [1, 2]", "ball.mass"),
+            ("[set]\nball.mass = 2026-01-01", "ball.mass"),
+            ("case = ", "line 1"),
+        ] {
+            let reason = CaseFile::parse(text).unwrap_err();
+            assert!(reason.contains(named), "{text}: {reason}");
+        }
+    }
+}

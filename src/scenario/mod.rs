@@ -1,0 +1,246 @@
+//! What to run: a case of the paper or a case file, settings on top of it, duration and averaging window.
+
+mod file;
+mod preset;
+
+pub use file::CaseFile;
+
+use thiserror::Error;
+
+/// Duration of a run unless something else is asked for, s: that of the paper (Section 4.2).
+const DEFAULT_UNTIL: f64 = 100.0;
+/// Communication step unless something else is asked for, s.
+const DEFAULT_STEP: f64 = 1e-3;
+/// Largest number of communication points of the grid: 1e9 rows are some 200 GB of CSV.
+const MAX_STEPS: f64 = 1e9;
+
+/// Why a scenario makes no sense. Each message names the thing, its value and the bound.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// No case has this name.
+    #[error("--case {name}: no such case; there are: {known}")]
+    UnknownCase {
+        /// Name given.
+        name: String,
+        /// Names that exist.
+        known: String,
+    },
+    /// A setting lacks its equals sign or one of its sides.
+    #[error("--set {text}: not of the form variable.name=VALUE")]
+    BadSetting {
+        /// What was given.
+        text: String,
+    },
+    /// A duration, step or window is out of range.
+    #[error("{name} = {value} s: {bound}")]
+    Time {
+        /// Name of the option.
+        name: &'static str,
+        /// Value given.
+        value: f64,
+        /// What is allowed.
+        bound: String,
+    },
+    /// The case file cannot be read.
+    #[error("cannot read the case file {path}: {cause}")]
+    Unreadable {
+        /// The file.
+        path: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// The case file says something that it cannot.
+    #[error("case file {path}: {reason}")]
+    BadFile {
+        /// The file.
+        path: String,
+        /// What is wrong, and where.
+        reason: String,
+    },
+}
+
+/// One setting: an FMU variable by name, and its value as text, as a user writes it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setting {
+    /// Name of the variable.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+}
+
+impl Setting {
+    /// Reads `name=value`.
+    ///
+    /// # Errors
+    /// If there is no equals sign, or nothing before or after it.
+    pub fn parse(text: &str) -> Result<Self, ScenarioError> {
+        match text.split_once('=').map(|(name, value)| (name.trim(), value.trim())) {
+            Some((name, value)) if !name.is_empty() && !value.is_empty() => {
+                Ok(Self { name: name.to_owned(), value: value.to_owned() })
+            }
+            _ => Err(ScenarioError::BadSetting { text: text.to_owned() }),
+        }
+    }
+}
+
+/// What the paper prints for a case.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PaperValues {
+    /// Average voltage gain, V/s (Table 2).
+    pub voltage_gain: Option<f64>,
+    /// Power, W (Table 3).
+    pub power: Option<f64>,
+}
+
+/// What a user asks for; what is left out comes from the case file, the case or the defaults.
+#[derive(Debug, Clone, Default)]
+pub struct Request {
+    /// Case of the paper.
+    pub case: Option<String>,
+    /// Case file.
+    pub file: Option<CaseFile>,
+    /// Settings on top, the last of a name wins.
+    pub settings: Vec<Setting>,
+    /// End of the run, s.
+    pub until: Option<f64>,
+    /// Communication step, s.
+    pub step: Option<f64>,
+    /// Averaging window, s.
+    pub window: Option<[f64; 2]>,
+}
+
+/// A complete, checked answer to what is to be run.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// Name: that of the case, or of the case file.
+    pub name: String,
+    /// One line on what it shows.
+    pub description: String,
+    /// Variables to set, in order.
+    pub settings: Vec<Setting>,
+    /// End of the run, s.
+    pub until: f64,
+    /// Communication step, s.
+    pub step: f64,
+    /// Averaging window, s.
+    pub window: [f64; 2],
+    /// What the paper prints, if the case stands as it is in the paper.
+    pub paper: PaperValues,
+}
+
+impl Request {
+    /// Resolves the request.
+    ///
+    /// # Errors
+    /// An unknown case; a duration, step or window that makes no sense.
+    pub fn resolve(self) -> Result<Scenario, ScenarioError> {
+        let file = self.file.unwrap_or_default();
+        let case = preset::find(self.case.as_deref().or(file.case.as_deref()).unwrap_or("fig14"))?;
+        let mut settings = preset::settings(case);
+        let as_printed = file.settings.is_empty() && self.settings.is_empty();
+        settings.extend(file.settings);
+        settings.extend(self.settings);
+        let until = self.until.or(file.until).unwrap_or(DEFAULT_UNTIL);
+        let step = self.step.or(file.step).unwrap_or_else(|| DEFAULT_STEP.min(until));
+        let window = self.window.or(file.window).unwrap_or_else(|| default_window(until));
+        check_times(until, step, window)?;
+        let paper = PaperValues { voltage_gain: case.paper_voltage_gain, power: case.paper_power };
+        Ok(Scenario {
+            name: file.name.unwrap_or_else(|| case.name.to_owned()),
+            description: file.description.unwrap_or_else(|| case.description.to_owned()),
+            settings,
+            until,
+            step,
+            window,
+            paper: if as_printed { paper } else { PaperValues::default() },
+        })
+    }
+}
+
+/// 50 to 100 s, as the paper averages; of a shorter run its second half.
+fn default_window(until: f64) -> [f64; 2] {
+    if until >= 100.0 { [50.0, 100.0] } else { [until / 2.0, until] }
+}
+
+fn check_times(until: f64, step: f64, window: [f64; 2]) -> Result<(), ScenarioError> {
+    let fail = |name, value, bound: String| Err(ScenarioError::Time { name, value, bound });
+    if !(until.is_finite() && until > 0.0) {
+        return fail("--until", until, "must be a positive, finite time".to_owned());
+    }
+    if !(step > 0.0 && step <= until) {
+        return fail("--step", step, format!("must lie above 0 and not above --until = {until} s"));
+    }
+    if until / step > MAX_STEPS {
+        return fail("--step", step, format!("must be at least --until / {MAX_STEPS:e} = {:e} s", until / MAX_STEPS));
+    }
+    let [from, to] = window;
+    if !(from >= 0.0 && from < until) {
+        return fail("--window start", from, format!("must lie from 0 to below --until = {until} s"));
+    }
+    if !(to > from && to <= until) {
+        return fail(
+            "--window end",
+            to,
+            format!("must lie above its start {from} s and not above --until = {until} s"),
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(request: Request) -> String {
+        request.resolve().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn nothing_asked_for_is_fig14_as_in_the_paper() {
+        let scenario = Request::default().resolve().unwrap();
+        assert_eq!((scenario.name.as_str(), scenario.until, scenario.window), ("fig14", 100.0, [50.0, 100.0]));
+        assert_eq!(scenario.paper.voltage_gain, Some(8079.0));
+    }
+
+    #[test]
+    fn a_changed_case_is_not_compared_with_the_paper() {
+        let settings = vec![Setting::parse("membrane.restitution = 0.7").unwrap()];
+        assert_eq!(settings[0].value, "0.7");
+        let scenario = Request { settings, ..Request::default() }.resolve().unwrap();
+        assert_eq!(scenario.paper, PaperValues::default());
+        assert_eq!(scenario.settings.last().unwrap().name, "membrane.restitution");
+    }
+
+    #[test]
+    fn a_short_run_is_averaged_over_its_second_half() {
+        let scenario = Request { until: Some(10.0), ..Request::default() }.resolve().unwrap();
+        assert_eq!(scenario.window, [5.0, 10.0]);
+        assert_eq!(Request { until: Some(1e-4), ..Request::default() }.resolve().unwrap().step, 1e-4);
+    }
+
+    #[test]
+    fn times_that_make_no_sense_are_named_with_value_and_bound() {
+        let request = |until, step, window| Request { until, step, window, ..Request::default() };
+        for (until, step, window, expected) in [
+            (Some(-1.0), None, None, "--until = -1 s"),
+            (Some(f64::NAN), None, None, "--until = NaN s"),
+            (Some(f64::INFINITY), None, None, "--until = inf s"),
+            (None, Some(0.0), None, "--step = 0 s"),
+            (None, Some(f64::NAN), None, "--step = NaN s"),
+            (None, Some(200.0), None, "--step = 200 s: must lie above 0 and not above --until = 100 s"),
+            (None, Some(1e-12), None, "--step = 0.000000000001 s: must be at least"),
+            (None, None, Some([60.0, 50.0]), "--window end = 50 s: must lie above its start 60 s"),
+            (None, None, Some([-1.0, 50.0]), "--window start = -1 s"),
+            (None, None, Some([50.0, 101.0]), "--window end = 101 s"),
+            (None, None, Some([f64::NAN, 50.0]), "--window start = NaN s"),
+        ] {
+            let found = message(request(until, step, window));
+            assert!(found.starts_with(expected), "{found}");
+        }
+        let found = message(Request { case: Some("fig8".to_owned()), ..Request::default() });
+        assert!(found.contains("fig8") && found.contains("fig9, fig10"), "{found}");
+        for text in ["restitution", "=1", "a=", ""] {
+            assert!(Setting::parse(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The cases of the paper as settings of FMU variables.
+
+use videg_model::{Case, Parameters};
+
+use super::{ScenarioError, Setting};
+
+/// The case called `name`.
+pub(super) fn find(name: &str) -> Result<&'static Case, ScenarioError> {
+    Case::find(name).ok_or_else(|| ScenarioError::UnknownCase {
+        name: name.to_owned(),
+        known: Case::ALL.iter().map(|case| case.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// What the case sets: every parameter whose value is not the start value. Numbers are written so that reading them
+/// gives the same bits.
+pub(super) fn settings(case: &Case) -> Vec<Setting> {
+    let parameters = (case.parameters)();
+    let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
+    changed
+        .map(|quantity| Setting { name: quantity.name.to_owned(), value: format!("{:?}", (quantity.get)(&parameters)) })
+        .collect()
+}
