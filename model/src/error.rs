@@ -47,6 +47,14 @@ pub enum ModelError {
         /// Time asked for, s.
         to: f64,
     },
+    /// A snapshot holds what no harvester can have had.
+    #[error("the snapshot is no state of this harvester: {name} {value}")]
+    Snapshot {
+        /// What is impossible.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// More events than the budget within one excitation period: the motion is beyond what can be resolved.
     #[error(
         "{limit} events within one excitation period up to t = {time} s: the restitution coefficient is too close to 1 \

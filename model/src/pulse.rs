@@ -152,7 +152,17 @@ pub struct Pulses {
 
 impl Pulses {
     /// Pulses kept at a time; of more, the smallest are dropped, which are hidden below the others.
-    const CAPACITY: usize = 256;
+    pub(crate) const CAPACITY: usize = 256;
+
+    /// The pulses, the largest peak first.
+    pub(crate) fn into_inner(self) -> Vec<Pulse> {
+        self.under_way
+    }
+
+    /// Pulses in the order of [`Pulses::into_inner`].
+    pub(crate) fn from_inner(under_way: Vec<Pulse>) -> Self {
+        Self { under_way }
+    }
 
     /// Adds the pulse of a new impact, and forgets those that have ended.
     pub fn push(&mut self, shape: &PulseShape, pulse: Pulse) {

@@ -1,6 +1,6 @@
 //! The slave: what the importer sets, and the circuit that it drives.
 
-use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, Variable};
+use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
 use videg_circuit::{Circuit, Error, Settings};
 
 use crate::variables::VARIABLES;
@@ -17,13 +17,18 @@ pub struct Harvesting {
     /// Their rates over the next step, F/s; none: the capacitance set is taken to be reached at the step's end.
     pub(crate) rate: [Option<f64>; 2],
     /// The circuit; before initialisation it is made anew from the parameters whenever they are read.
-    circuit: Result<Circuit, Error>,
+    pub(crate) circuit: Result<Circuit, Error>,
 }
 
 impl Harvesting {
     /// Reads a value from the circuit; NaN while the parameters contradict each other (before initialisation only).
     pub(crate) fn read(&self, value: impl FnOnce(&Circuit) -> f64) -> f64 {
         self.circuit.as_ref().map_or(f64::NAN, value)
+    }
+
+    /// The circuit, unless the parameters contradict each other.
+    pub(crate) fn circuit(&self) -> Option<&Circuit> {
+        self.circuit.as_ref().ok()
     }
 
     fn running(&mut self) -> Result<&mut Circuit, SlaveError> {
@@ -39,7 +44,8 @@ impl Slave for Harvesting {
         .copyright("Copyright (c) The videg developers")
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
-        .default_experiment(0.0, 100.0, 1e-3);
+        .default_experiment(0.0, 100.0, 1e-3)
+        .can_serialize();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -70,5 +76,13 @@ impl Slave for Harvesting {
         stepped.map_err(|error| SlaveError::error(error.to_string()))?;
         self.capacitance = end;
         Ok(())
+    }
+
+    fn write_state(&self, out: &mut StateWriter) {
+        self.write(out);
+    }
+
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        Self::read_from(from)
     }
 }

@@ -1,6 +1,8 @@
 //! The slave: what the importer sets, and the model that it drives.
 
-use fmi2_export::{Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, Variable};
+use fmi2_export::{
+    Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable,
+};
 use videg_model::{Harvester as Model, ModelError, Parameters};
 
 use crate::variables::VARIABLES;
@@ -21,9 +23,9 @@ pub struct Harvester {
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
-    start_time: f64,
+    pub(crate) start_time: f64,
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
-    model: Result<Model, ModelError>,
+    pub(crate) model: Result<Model, ModelError>,
 }
 
 impl Harvester {
@@ -63,7 +65,8 @@ impl Slave for Harvester {
         .copyright("Copyright (c) The videg developers")
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
-        .default_experiment(0.0, 100.0, 1e-3);
+        .default_experiment(0.0, 100.0, 1e-3)
+        .can_serialize();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -107,6 +110,14 @@ impl Slave for Harvester {
             model.advance(t + h)
         });
         advanced.map_err(|error| SlaveError::error(error.to_string()))
+    }
+
+    fn write_state(&self, out: &mut StateWriter) {
+        self.write(out);
+    }
+
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        Self::read_from(from)
     }
 }
 
