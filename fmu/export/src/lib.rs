@@ -65,8 +65,8 @@
 //!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.
 //!
 //! # Not offered
-//! Model exchange, directional derivatives, asynchronous steps. Their functions exist, as importers demand, and
-//! return `fmi2Error`.
+//! Model exchange, asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
+//! `fmi2GetDirectionalDerivative` unless the model offers it.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
 mod call_state;

@@ -66,7 +66,8 @@ impl Slave for Harvester {
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
         .default_experiment(0.0, 100.0, 1e-3)
-        .can_serialize();
+        .can_serialize()
+        .directional_derivatives();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -110,6 +111,10 @@ impl Slave for Harvester {
             model.advance(t + h)
         });
         advanced.map_err(|error| SlaveError::error(error.to_string()))
+    }
+
+    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        self.partial(unknown, known)
     }
 
     fn write_state(&self, out: &mut StateWriter) {

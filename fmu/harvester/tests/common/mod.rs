@@ -12,11 +12,16 @@ pub fn row(name: &str) -> &'static Variable<Harvester> {
 
 /// A slave with start values, and these Reals set.
 pub fn fresh(reals: &[(&str, f64)]) -> Harvester {
+    fresh_at(0.0, reals)
+}
+
+/// The same for a run that starts at `start_time`, s.
+pub fn fresh_at(start_time: f64, reals: &[(&str, f64)]) -> Harvester {
     let mut slave = Harvester::new();
     for (name, value) in reals {
         set(&mut slave, name, *value);
     }
-    let experiment = Experiment { start_time: 0.0, stop_time: None, tolerance: None };
+    let experiment = Experiment { start_time, stop_time: None, tolerance: None };
     slave.setup_experiment(&experiment, &Logger::silent()).expect("an experiment");
     slave.update();
     slave
