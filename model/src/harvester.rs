@@ -1,6 +1,7 @@
 //! The vibro-impact harvester under the impulsive law: from event to event, exactly.
 
 mod events;
+mod exchange;
 mod snapshot;
 
 pub use self::snapshot::Snapshot;
@@ -68,6 +69,8 @@ pub struct Harvester {
     search: Search,
     pulses: [Pulses; 2],
     totals: Totals,
+    /// Its states are placed by an integrator.
+    placed: bool,
     /// Period in which events are being counted, and their number: the budget.
     period: f64,
     period_events: u64,
@@ -109,6 +112,7 @@ impl Harvester {
             search: Search::new(flight),
             pulses: [Pulses::default(), Pulses::default()],
             totals: Totals::default(),
+            placed: false,
             period: 0.0,
             period_events: 0,
         };

@@ -15,6 +15,10 @@ const CHATTER_TOLERANCE: f64 = 1e-5;
 /// Height of a bounce, in units of s/2, below which a ball may count as resting.
 const CHATTER_HEIGHT: f64 = 1e-9;
 
+/// The same two bounds for an integrator with tolerances, which cannot follow bounces so low.
+const PLACED_CHATTER_TOLERANCE: f64 = 1e-3;
+const PLACED_CHATTER_HEIGHT: f64 = 1e-6;
+
 /// Events allowed within one excitation period.
 const EVENT_BUDGET: u64 = 1_000_000;
 
@@ -56,6 +60,11 @@ pub(super) struct Search {
 impl Search {
     pub(super) fn new(flight: Flight) -> Self {
         Self { flight, window: 0, found: None, exhausted: false }
+    }
+
+    /// No search at all: no event is foreseen.
+    pub(super) fn none(flight: Flight) -> Self {
+        Self { exhausted: true, ..Self::new(flight) }
     }
 
     /// The search of a flight in which all events up to `time`, s, have happened: windows that lie before are passed over.
@@ -156,7 +165,7 @@ impl Harvester {
     }
 
     /// Counts an event against the budget of its excitation period.
-    fn spend(&mut self, time: f64) -> Result<(), ModelError> {
+    pub(super) fn spend(&mut self, time: f64) -> Result<(), ModelError> {
         let period = (time * self.parameters.frequency).floor();
         if period != self.period {
             (self.period, self.period_events) = (period, 0);
@@ -169,7 +178,7 @@ impl Harvester {
     }
 
     /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
-    fn impact(&mut self, time: f64, side: Side) {
+    pub(super) fn impact(&mut self, time: f64, side: Side) {
         let wall = self.cylinder.velocity(time);
         let speed = (side.sign() * (wall - self.ball.velocity)).max(0.0);
         let peak = self.membrane.deflection(speed);
@@ -223,12 +232,15 @@ impl Harvester {
         let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
         let change = duration * (jerk.abs() + 0.5 * duration * curvature);
         let noise_limit = self.noise_limit().unwrap_or(f64::INFINITY);
-        height <= CHATTER_HEIGHT * self.half_travel()
-            && change <= CHATTER_TOLERANCE * push
-            && time + duration <= noise_limit
+        let (highest, tolerance) = if self.placed {
+            (PLACED_CHATTER_HEIGHT, PLACED_CHATTER_TOLERANCE)
+        } else {
+            (CHATTER_HEIGHT, CHATTER_TOLERANCE)
+        };
+        height <= highest * self.half_travel() && change <= tolerance * push && time + duration <= noise_limit
     }
 
-    fn next_noise_sample(&mut self, time: f64) {
+    pub(super) fn next_noise_sample(&mut self, time: f64) {
         let p = &self.parameters;
         if p.noise_model == NoiseModel::Wiener {
             self.noise.walk += p.noise_hold.sqrt() * noise::normal(p.seed, self.noise.sample);
@@ -240,7 +252,7 @@ impl Harvester {
     }
 
     /// End of the present hold interval of the phase noise, s; none without noise.
-    fn noise_limit(&self) -> Option<f64> {
+    pub(super) fn noise_limit(&self) -> Option<f64> {
         let p = &self.parameters;
         (p.phase_noise > 0.0).then(|| (self.noise.sample + 1) as f64 * p.noise_hold)
     }

@@ -67,6 +67,18 @@ impl Harvester {
     /// # Errors
     /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        let mut harvester = Self::restore_placed(parameters, snapshot)?;
+        harvester.placed = false;
+        harvester.search = Search::resumed(harvester.search.flight, snapshot.time);
+        harvester.advance(snapshot.time)?;
+        Ok(harvester)
+    }
+
+    /// The same for a harvester whose states are placed by an integrator ([`Harvester::place`]).
+    ///
+    /// # Errors
+    /// As [`Harvester::restore`].
+    pub fn restore_placed(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
         parameters.validate()?;
         snapshot.validate(parameters)?;
         let p = *parameters;
@@ -86,7 +98,7 @@ impl Harvester {
         let [start, offset] = snapshot.flight;
         let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
         let flight = Flight::new(&cylinder, start, 0.0, ball_velocity, p.travel() / 2.0).with_offset(offset);
-        let mut harvester = Self {
+        Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
             shape: PulseShape::new(p.stiffness_exponent, p.restitution),
@@ -94,14 +106,13 @@ impl Harvester {
             cylinder,
             ball,
             noise,
-            search: Search::resumed(flight, snapshot.time),
+            search: Search::none(flight),
             pulses: snapshot.pulses.clone().map(Pulses::from_inner),
             totals: snapshot.totals,
+            placed: true,
             period: snapshot.period,
             period_events: snapshot.period_events,
-        };
-        harvester.advance(snapshot.time)?;
-        Ok(harvester)
+        })
     }
 }
 

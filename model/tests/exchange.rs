@@ -1,0 +1,112 @@
+//! The differential equations with events, run by a plain integrator, against the exact motion.
+#![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
+
+use videg_model::{Case, Harvester, ModelError, Parameters};
+
+fn case(name: &str) -> Parameters {
+    (Case::find(name).expect("a case").parameters)()
+}
+
+/// A step of RK4 from the present states.
+fn rk4(harvester: &mut Harvester, h: f64) {
+    let (t, x) = (harvester.time(), harvester.states());
+    let mut at = |t: f64, dx: [f64; 4], h: f64| {
+        let mut states = x;
+        states.iter_mut().zip(dx).for_each(|(state, slope)| *state += h * slope);
+        harvester.place(t, states, 0.0).expect("finite states");
+        harvester.derivatives()
+    };
+    let a = at(t, [0.0; 4], 0.0);
+    let b = at(t + 0.5 * h, a, 0.5 * h);
+    let c = at(t + 0.5 * h, b, 0.5 * h);
+    let d = at(t + h, c, h);
+    at(t + h, [0, 1, 2, 3].map(|i| (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) / 6.0), h);
+}
+
+/// Integrates to `end`, s, in steps of `h`; the instants of events are found by bisection.
+fn integrate(parameters: &Parameters, end: f64, h: f64) -> Harvester {
+    let mut harvester = Harvester::new(parameters, 0.0).expect("parameters");
+    let start = harvester.states();
+    harvester.place(0.0, start, 0.0).expect("finite states");
+    harvester.handle_events().expect("events");
+    while harvester.time() < end {
+        let due = harvester.next_time_event().unwrap_or(f64::INFINITY);
+        let mut size = h.min(end - harvester.time()).min(due - harvester.time());
+        let before = harvester.clone();
+        let signs = before.event_indicators().map(|z| z > 0.0);
+        let crossed = |harvester: &Harvester| harvester.event_indicators().map(|z| z > 0.0) != signs;
+        rk4(&mut harvester, size);
+        if crossed(&harvester) {
+            let mut low = 0.0;
+            for _ in 0..60 {
+                let middle = 0.5 * (low + size);
+                harvester = before.clone();
+                rk4(&mut harvester, middle);
+                if crossed(&harvester) { size = middle } else { low = middle }
+            }
+            harvester = before;
+            rk4(&mut harvester, size);
+        }
+        harvester.handle_events().expect("events");
+    }
+    harvester
+}
+
+/// Compares the sums over all impacts; returns how many impacts there were, integrated and exact.
+fn assert_close(name: &str, end: f64, tolerance: f64) -> [u64; 2] {
+    let parameters = case(name);
+    let mut exact = Harvester::new(&parameters, 0.0).expect("parameters");
+    exact.advance(end).expect("a step");
+    let integrated = integrate(&parameters, end, 2e-4);
+    let (found, expected) = (integrated.totals(), exact.totals());
+    assert_eq!((found.chatters, found.releases), (expected.chatters, expected.releases), "{name}");
+    for (found, expected) in [(found.voltage_gain, expected.voltage_gain), (found.energy, expected.energy)] {
+        assert!((found / expected - 1.0).abs() < tolerance, "{name}: {found}, {expected}");
+    }
+    [integrated.totals().impacts, exact.totals().impacts]
+}
+
+#[test]
+fn an_integrator_finds_the_impacts_of_the_exact_motion() {
+    let [found, expected] = assert_close("fig14", 20.0, 1e-6);
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn an_integrator_finds_chattering_rest_and_release() {
+    // The tail of a chattering sequence is summed up earlier, so fewer of its impacts are counted.
+    let [found, expected] = assert_close("table3-2hz", 3.0, 3e-4);
+    assert!(found < expected && found > expected / 2, "{found}, {expected}");
+}
+
+#[test]
+fn events_are_handled_once_and_leave_the_indicator_positive() {
+    let mut harvester = Harvester::new(&case("fig14"), 0.0).expect("parameters");
+    harvester.place(0.1, [0.022, 0.3, 0.0, -0.1], 0.0).expect("finite states");
+    assert!(harvester.handle_events().expect("an impact"));
+    let after = harvester.clone();
+    assert!(harvester.event_indicators()[0] > 0.0);
+    assert!(harvester.event_indicators()[0] < 1e-14);
+    assert_eq!(harvester.totals().impacts, 1);
+    assert!(!harvester.handle_events().expect("nothing"));
+    assert_eq!(harvester, after);
+    assert!((harvester.ball_velocity() - (0.3 + 0.6 * 0.4)).abs() < 1e-15, "Eq. (11)");
+}
+
+#[test]
+fn noise_samples_are_time_events() {
+    let parameters = Parameters { phase_noise: 0.5, noise_hold: 1e-2, ..case("fig14") };
+    let mut exact = Harvester::new(&parameters, 0.0).expect("parameters");
+    exact.advance(2.0).expect("a step");
+    let integrated = integrate(&parameters, 2.0, 1e-3);
+    for (found, expected) in integrated.states().into_iter().zip(exact.states()) {
+        assert!((found - expected).abs() < 1e-7, "{found}, {expected}");
+    }
+}
+
+#[test]
+fn states_that_are_not_finite_are_refused() {
+    let mut harvester = Harvester::new(&case("fig14"), 0.0).expect("parameters");
+    let refused = harvester.place(0.0, [0.0, f64::NAN, 0.0, 0.0], 0.0);
+    assert!(matches!(refused, Err(ModelError::NotFinite { .. })));
+}
