@@ -1,5 +1,5 @@
-//! Which function is legal in which state: one table, after the state machine of co-simulation in FMI 2.0.4
-//! (section 4.2.4). Model exchange adds its states and rows here.
+//! Which function is legal in which state: one table, after the state machines of FMI 2.0.4 for model exchange (section
+//! 3.2.3) and co-simulation (section 4.2.4). An instance is of one kind and never gets into a state of the other.
 
 use crate::variable::{Causality, Variability};
 use core::fmt;
@@ -26,11 +26,15 @@ pub enum CallState {
     Error,
     /// After a call that returned `fmi2Fatal`.
     Fatal,
+    /// Model exchange: initialised, at an event.
+    EventMode,
+    /// Model exchange: between events.
+    ContinuousTimeMode,
 }
 
 impl CallState {
     /// All states, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Instantiated,
         Self::InitializationMode,
         Self::StepComplete,
@@ -40,6 +44,8 @@ impl CallState {
         Self::Terminated,
         Self::Error,
         Self::Fatal,
+        Self::EventMode,
+        Self::ContinuousTimeMode,
     ];
 
     const fn bit(self) -> u16 {
@@ -70,6 +76,8 @@ impl fmt::Display for CallState {
             Self::Terminated => "terminated",
             Self::Error => "error",
             Self::Fatal => "fatal",
+            Self::EventMode => "eventMode",
+            Self::ContinuousTimeMode => "continuousTimeMode",
         })
     }
 }
@@ -94,10 +102,13 @@ const CANC: u16 = CallState::StepCanceled.bit();
 const TERM: u16 = CallState::Terminated.bit();
 const ERR: u16 = CallState::Error.bit();
 const FATAL: u16 = CallState::Fatal.bit();
+const EVENT: u16 = CallState::EventMode.bit();
+const CONT: u16 = CallState::ContinuousTimeMode.bit();
 const NONE: u16 = 0;
 // Sets of states that several rows share.
-const AT_REST: u16 = INST | INIT | DONE | FAIL | CANC | TERM | ERR;
-const READABLE: u16 = INIT | DONE | FAIL | CANC | TERM | ERR;
+const AT_REST: u16 = INST | INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
+const READABLE: u16 = INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
+const EXCHANGED: u16 = INIT | TERM | ERR | EVENT | CONT;
 
 macro_rules! call_table {
     ($($function:ident $name:literal $legal:expr, $tolerated:expr;)*) => {
@@ -131,16 +142,16 @@ call_table! {
     SetupExperiment         "fmi2SetupExperiment"         INST,                      NONE;
     EnterInitializationMode "fmi2EnterInitializationMode" INST,                      NONE;
     ExitInitializationMode  "fmi2ExitInitializationMode"  INIT,                      NONE;
-    Terminate               "fmi2Terminate"               DONE | FAIL,               NONE;
+    Terminate               "fmi2Terminate"               DONE | FAIL | EVENT | CONT, NONE;
     Reset                   "fmi2Reset"                   AT_REST,                   NONE;
     GetReal                 "fmi2GetReal"                 READABLE,                  INST;
     GetInteger              "fmi2GetInteger"              READABLE,                  INST;
     GetBoolean              "fmi2GetBoolean"              READABLE,                  INST;
     GetString               "fmi2GetString"               READABLE,                  INST;
-    SetReal                 "fmi2SetReal"                 INST | INIT | DONE,        NONE;
-    SetInteger              "fmi2SetInteger"              INST | INIT | DONE,        NONE;
-    SetBoolean              "fmi2SetBoolean"              INST | INIT | DONE,        NONE;
-    SetString               "fmi2SetString"               INST | INIT | DONE,        NONE;
+    SetReal                 "fmi2SetReal"                 INST | INIT | DONE | EVENT | CONT, NONE;
+    SetInteger              "fmi2SetInteger"              INST | INIT | DONE | EVENT, NONE;
+    SetBoolean              "fmi2SetBoolean"              INST | INIT | DONE | EVENT, NONE;
+    SetString               "fmi2SetString"               INST | INIT | DONE | EVENT, NONE;
     GetFmuState             "fmi2GetFMUstate"             AT_REST,                   NONE;
     SetFmuState             "fmi2SetFMUstate"             AT_REST,                   NONE;
     FreeFmuState            "fmi2FreeFMUstate"            AT_REST,                   FATAL;
@@ -157,6 +168,16 @@ call_table! {
     GetIntegerStatus        "fmi2GetIntegerStatus"        DONE | BUSY | FAIL | TERM, NONE;
     GetBooleanStatus        "fmi2GetBooleanStatus"        DONE | BUSY | FAIL | TERM, NONE;
     GetStringStatus         "fmi2GetStringStatus"         DONE | BUSY | FAIL | TERM, NONE;
+    EnterEventMode          "fmi2EnterEventMode"          CONT,                      EVENT;
+    NewDiscreteStates       "fmi2NewDiscreteStates"       EVENT,                     NONE;
+    EnterContinuousTimeMode "fmi2EnterContinuousTimeMode" EVENT,                     NONE;
+    CompletedIntegratorStep "fmi2CompletedIntegratorStep" CONT,                      NONE;
+    SetTime                 "fmi2SetTime"                 EVENT | CONT,              NONE;
+    SetContinuousStates     "fmi2SetContinuousStates"     CONT,                      NONE;
+    GetDerivatives          "fmi2GetDerivatives"          EXCHANGED,                 NONE;
+    GetEventIndicators      "fmi2GetEventIndicators"      EXCHANGED,                 NONE;
+    GetContinuousStates     "fmi2GetContinuousStates"     EXCHANGED,                 NONE;
+    GetNominals             "fmi2GetNominalsOfContinuousStates" INST | EXCHANGED,    NONE;
 }
 
 impl Function {
@@ -179,15 +200,16 @@ impl Function {
     }
 }
 
-/// Whether a variable may be set in a state (FMI 2.0.4, the footnotes of the table): before initialisation what
-/// has a start value, in initialization mode the same, after it inputs and tunable parameters.
+/// Whether a variable may be set in a state (FMI 2.0.4, the footnotes of the tables): before initialisation what
+/// has a start value, in initialization mode the same, after it inputs and tunable parameters; in continuous-time mode
+/// continuous inputs.
 pub const fn is_settable(causality: Causality, variability: Variability, state: CallState) -> bool {
+    use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete};
     match (causality, state) {
-        (Causality::Input, CallState::Instantiated | CallState::InitializationMode | CallState::StepComplete)
-        | (Causality::Parameter, CallState::Instantiated | CallState::InitializationMode) => true,
-        (Causality::Parameter, CallState::StepComplete) => {
-            matches!(variability, Variability::Tunable)
-        }
+        (Causality::Input | Causality::Parameter, Instantiated | InitializationMode)
+        | (Causality::Input, StepComplete | EventMode) => true,
+        (Causality::Input, ContinuousTimeMode) => matches!(variability, Variability::Continuous),
+        (Causality::Parameter, StepComplete | EventMode) => matches!(variability, Variability::Tunable),
         _ => false,
     }
 }

@@ -21,6 +21,7 @@ impl Guid {
         hash.text(info.version);
         hash.bool(info.can_serialize);
         hash.bool(info.directional_derivatives);
+        hash.option(info.model_exchange, Hasher::count);
         hash.bool(info.variable_step_size);
         for variable in S::variables() {
             hash.variable(variable);
@@ -79,6 +80,7 @@ impl Hasher {
         self.text(variable.name());
         self.text(variable.causality().as_str());
         self.text(variable.variability().as_str());
+        self.option(variable.derivative_of(), Self::text);
         self.option(variable.dependencies(), |hash, names| {
             hash.count(names.len());
             for name in names {

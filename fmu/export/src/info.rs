@@ -30,6 +30,9 @@ pub struct ModelInfo {
     /// Whether [`Slave::partial_derivative`](crate::Slave::partial_derivative) is implemented
     /// (`providesDirectionalDerivative`).
     pub directional_derivatives: bool,
+    /// Number of event indicators, if the FMU offers model exchange, too: the functions of [`Slave`](crate::Slave) for it
+    /// are implemented and the table names the derivatives of the continuous states.
+    pub model_exchange: Option<usize>,
     /// Whether the step size may differ from step to step (`canHandleVariableCommunicationStepSize`).
     pub variable_step_size: bool,
 }
@@ -73,6 +76,7 @@ impl ModelInfo {
             default_experiment: None,
             can_serialize: false,
             directional_derivatives: false,
+            model_exchange: None,
             variable_step_size: true,
         }
     }
@@ -122,6 +126,14 @@ impl ModelInfo {
     #[must_use]
     pub const fn directional_derivatives(mut self) -> Self {
         self.directional_derivatives = true;
+        self
+    }
+
+    /// Says that the FMU offers model exchange, with so many event indicators. The symbols of its functions come from
+    /// `export_fmu!(MySlave, model_exchange)`.
+    #[must_use]
+    pub const fn model_exchange(mut self, event_indicators: usize) -> Self {
+        self.model_exchange = Some(event_indicators);
         self
     }
 

@@ -1,4 +1,4 @@
-//! Exports a Rust model through the C functions of FMI 2.0 for co-simulation.
+//! Exports a Rust model through the C functions of FMI 2.0 for co-simulation and, if it offers that, model exchange.
 //!
 //! A model implements [`Slave`], describes its variables in one table of [`Variable`]s, and names itself in
 //! [`export_fmu!`]. The table is the only place where a variable is described: Get and Set, the checks of
@@ -65,7 +65,7 @@
 //!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.
 //!
 //! # Not offered
-//! Model exchange, asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
+//! Asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
 //! `fmi2GetDirectionalDerivative` unless the model offers it.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
@@ -96,7 +96,7 @@ pub use logger::{LogCategory, Logger};
 pub use model_description::{DescriptionError, model_description};
 pub use resource::{ResourceError, resource_path};
 pub use serialize::{StateError, StateReader, StateWriter};
-pub use slave::{Experiment, Slave};
+pub use slave::{EventOutcome, Experiment, Slave};
 pub use units::{BaseUnit, base_unit};
 pub use variable::{
     BooleanSpec, Causality, Declaration, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, Initial,

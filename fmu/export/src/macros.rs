@@ -1,11 +1,38 @@
 //! The macro that gives a slave its exported C symbols.
 
-/// Exports a [`Slave`](crate::Slave) as an FMU: defines every C function of FMI 2.0 for co-simulation. Use it once
-/// in a `cdylib`. The functions exist as C symbols only; the macro leaves no Rust names behind.
+/// Exports a [`Slave`](crate::Slave) as an FMU: defines every C function of FMI 2.0 for co-simulation and, with
+/// `export_fmu!(MySlave, model_exchange)`, those for model exchange. Use it once in a `cdylib`. The functions exist as C symbols only; the macro leaves no Rust names behind.
 ///
 /// Each function is checked at compile time against its signature in [`abi`](crate::abi).
 #[macro_export]
 macro_rules! export_fmu {
+    ($slave:ty, model_exchange) => {
+        $crate::export_fmu!($slave);
+        const _: () = {
+            use $crate::abi::*;
+
+            $crate::__export_fmu_functions! { $slave;
+                fmi2EnterEventMode: fmi2EnterEventModeTYPE = model_exchange::enter_event_mode ();
+                fmi2NewDiscreteStates: fmi2NewDiscreteStatesTYPE = model_exchange::new_discrete_states
+                    (info: *mut fmi2EventInfo);
+                fmi2EnterContinuousTimeMode: fmi2EnterContinuousTimeModeTYPE = model_exchange::enter_continuous_time_mode ();
+                fmi2CompletedIntegratorStep: fmi2CompletedIntegratorStepTYPE = model_exchange::completed_integrator_step
+                    (no_set_fmu_state_prior_to_current_point: fmi2Boolean, enter_event_mode: *mut fmi2Boolean,
+                     terminate_simulation: *mut fmi2Boolean);
+                fmi2SetTime: fmi2SetTimeTYPE = model_exchange::set_time (time: fmi2Real);
+                fmi2SetContinuousStates: fmi2SetContinuousStatesTYPE = model_exchange::set_continuous_states
+                    (x: *const fmi2Real, nx: usize);
+                fmi2GetDerivatives: fmi2GetDerivativesTYPE = model_exchange::get_derivatives
+                    (derivatives: *mut fmi2Real, nx: usize);
+                fmi2GetEventIndicators: fmi2GetEventIndicatorsTYPE = model_exchange::get_event_indicators
+                    (indicators: *mut fmi2Real, ni: usize);
+                fmi2GetContinuousStates: fmi2GetContinuousStatesTYPE = model_exchange::get_continuous_states
+                    (x: *mut fmi2Real, nx: usize);
+                fmi2GetNominalsOfContinuousStates: fmi2GetNominalsOfContinuousStatesTYPE = model_exchange::get_nominals
+                    (nominals: *mut fmi2Real, nx: usize);
+            }
+        };
+    };
     ($slave:ty) => {
         const _: () = {
             use ::core::ffi::c_char;

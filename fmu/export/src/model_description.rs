@@ -43,8 +43,9 @@ pub fn model_description<S: Slave>() -> Result<String, DescriptionError> {
     let structured = S::variables().iter().all(|v| is_structured(v.name()));
     let convention = if structured { "structured" } else { "flat" };
     root.push(("variableNamingConvention", convention.to_owned()));
-    root.push(("numberOfEventIndicators", "0".to_owned()));
+    root.push(("numberOfEventIndicators", S::INFO.model_exchange.unwrap_or(0).to_string()));
     element(&mut xml, "fmiModelDescription", &root, |xml| {
+        model_exchange::<S>(xml)?;
         co_simulation::<S>(xml)?;
         unit_definitions(xml, S::variables())?;
         type_definitions(xml, S::variables())?;
@@ -89,8 +90,9 @@ fn text(name: &'static str, value: &str) -> Option<Attribute> {
 }
 
 /// Whether a name is made of identifiers with array indices, separated by dots, as in `membrane[2].radius`. That is
-/// the naming convention "structured" without its quoted names and derivatives.
+/// the naming convention "structured" without its quoted names and higher derivatives.
 fn is_structured(name: &str) -> bool {
+    let name = name.strip_prefix("der(").and_then(|inner| inner.strip_suffix(')')).unwrap_or(name);
     name.split('.').all(|part| {
         let (identifier, indices) = match part.strip_suffix(']').map(|p| p.split_once('[')) {
             None => (part, None),
@@ -113,6 +115,25 @@ fn root_attributes(info: &ModelInfo, guid: Guid) -> Vec<Attribute> {
     attributes.extend(text("license", info.license));
     attributes.extend(text("generationTool", info.generation_tool));
     attributes
+}
+
+/// The same for model exchange, if it is offered.
+fn model_exchange<S: Slave>(xml: &mut Xml) -> Written {
+    let info = S::INFO;
+    if info.model_exchange.is_none() {
+        return Ok(());
+    }
+    let flags = [
+        ("modelIdentifier", info.model_identifier.to_owned()),
+        ("needsExecutionTool", false.to_string()),
+        ("completedIntegratorStepNotNeeded", true.to_string()),
+        ("canBeInstantiatedOnlyOncePerProcess", false.to_string()),
+        ("canNotUseMemoryManagementFunctions", true.to_string()),
+        ("canGetAndSetFMUstate", true.to_string()),
+        ("canSerializeFMUstate", info.can_serialize.to_string()),
+        ("providesDirectionalDerivative", info.directional_derivatives.to_string()),
+    ];
+    empty(xml, "ModelExchange", &flags)
 }
 
 /// The capabilities, each as it is: what this exporter never does is said to be false.
@@ -231,18 +252,20 @@ fn default_experiment(xml: &mut Xml, info: &ModelInfo) -> Written {
 
 fn model_variables<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
     element(xml, "ModelVariables", &[], |xml| {
-        table.iter().enumerate().try_for_each(|(i, v)| scalar_variable(xml, i, v))
+        table.iter().enumerate().try_for_each(|(i, v)| scalar_variable(xml, table, i, v))
     })
 }
 
-fn scalar_variable<M>(xml: &mut Xml, index: usize, variable: &Variable<M>) -> Written {
+fn scalar_variable<M>(xml: &mut Xml, table: &[Variable<M>], index: usize, variable: &Variable<M>) -> Written {
     let mut attributes = vec![("name", variable.name().to_owned()), ("valueReference", index.to_string())];
     attributes.extend(text("description", variable.description()));
     attributes.push(("causality", variable.causality().as_str().to_owned()));
     attributes.push(("variability", variable.variability().as_str().to_owned()));
     attributes.extend(variable.initial().map(|i| ("initial", i.as_str().to_owned())));
     element(xml, "ScalarVariable", &attributes, |xml| {
-        empty(xml, variable.kind().type_name(), &type_attributes(variable.kind()))
+        let mut attributes = type_attributes(variable.kind());
+        attributes.extend(variable.derivative_of().map(|state| ("derivative", positions(table, &[state]))));
+        empty(xml, variable.kind().type_name(), &attributes)
     })
 }
 
@@ -274,13 +297,15 @@ fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
 /// Every output; and as unknowns of the initialisation the calculated outputs and calculated parameters.
 fn model_structure<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
     let output = |v: &Variable<M>| v.causality() == Causality::Output;
+    let derivative = |v: &Variable<M>| v.derivative_of().is_some();
     let calculated = |v: &Variable<M>| match v.causality() {
         Causality::Output => v.initial() == Some(Initial::Calculated),
         Causality::CalculatedParameter => true,
-        _ => false,
+        _ => derivative(v),
     };
     element(xml, "ModelStructure", &[], |xml| {
         unknowns(xml, "Outputs", table, output, true)?;
+        unknowns(xml, "Derivatives", table, derivative, true)?;
         unknowns(xml, "InitialUnknowns", table, calculated, false)
     })
 }
@@ -324,10 +349,12 @@ mod tests {
 
     #[test]
     fn structured_names_are_told_from_flat_ones() {
-        for name in ["a", "ball.mass", "_x1.y_2", "left[1].u", "m[1,22].x[3]"] {
+        for name in ["a", "ball.mass", "_x1.y_2", "left[1].u", "m[1,22].x[3]", "der(a.b)"] {
             assert!(is_structured(name), "{name}");
         }
-        for name in ["", "a.", ".a", "a b", "1a", "a[", "a]", "a[]", "a[x]", "a[1,]", "der(x)", "a[1]b", "\u{e4}"] {
+        for name in
+            ["", "a.", ".a", "a b", "1a", "a[", "a]", "a[]", "a[x]", "a[1,]", "der(x", "der()", "a[1]b", "\u{e4}"]
+        {
             assert!(!is_structured(name), "{name}");
         }
     }

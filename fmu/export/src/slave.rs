@@ -17,6 +17,15 @@ pub struct Experiment {
     pub tolerance: Option<f64>,
 }
 
+/// What an event did, in model exchange.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EventOutcome {
+    /// Continuous states have changed.
+    pub states_changed: bool,
+    /// Time of the next event that is due whatever the states do, s.
+    pub next_event_time: Option<f64>,
+}
+
 /// A model that can be exported as an FMU for co-simulation.
 ///
 /// Life of a slave: [`new`](Self::new); the start values of the table are written; Sets, with
@@ -68,6 +77,31 @@ pub trait Slave: Clone + Send + 'static {
     /// [`SlaveError::discard`] if the step was done in part or not at all and a smaller one may work,
     /// [`SlaveError::terminate`] to end the simulation, [`SlaveError::error`] if the instance cannot go on.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError>;
+
+    /// Model exchange: takes over `time`, s, the inputs as they are set and, if given, the continuous states. Getters, event
+    /// indicators and events that follow are those of this point. The first call, right after
+    /// [`initialize`](Self::initialize), gives no states: the model keeps its initial ones.
+    ///
+    /// # Errors
+    /// If the model cannot be there.
+    fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
+        let _ = (time, states);
+        Err(SlaveError::error("this FMU does not offer model exchange"))
+    }
+
+    /// Model exchange: as many event indicators as [`ModelInfo::model_exchange`] says. A change of sign is an event.
+    fn event_indicators(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Model exchange: does what is due at the present point. A second call at the same point changes nothing more.
+    ///
+    /// # Errors
+    /// If the model cannot go on.
+    fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
+        let _ = log;
+        Ok(EventOutcome::default())
+    }
 
     /// Ends the simulation; final values can still be read.
     ///

@@ -8,42 +8,52 @@ use core::ptr::{null, null_mut};
 use fmi2_export::abi::*;
 use fmi2_export::{CallState, Causality, Function, Legality, Variability, is_settable};
 
-/// The table of FMI 2.0.4, section 4.2.4, written down independently of the one under test. A column is a state:
+/// The tables of FMI 2.0.4, sections 3.2.3 and 4.2.4, written down independently of the one under test. A column is a state:
 /// i instantiated, I initializationMode, c stepComplete, p stepInProgress, f stepFailed, x stepCanceled,
-/// t terminated, e error, F fatal. `+` legal, `~` tolerated, `.` illegal.
+/// t terminated, e error, F fatal, v eventMode, m continuousTimeMode. `+` legal, `~` tolerated, `.` illegal.
 const EXPECTED: &[(&str, &str)] = &[
-    //                               iIcpfxteF
-    ("fmi2SetDebugLogging", "++++++++."),
-    ("fmi2FreeInstance", "+++.++++~"),
-    ("fmi2SetupExperiment", "+........"),
-    ("fmi2EnterInitializationMode", "+........"),
-    ("fmi2ExitInitializationMode", ".+......."),
-    ("fmi2Terminate", "..+.+...."),
-    ("fmi2Reset", "+++.++++."),
-    ("fmi2GetReal", "~++.++++."),
-    ("fmi2GetInteger", "~++.++++."),
-    ("fmi2GetBoolean", "~++.++++."),
-    ("fmi2GetString", "~++.++++."),
-    ("fmi2SetReal", "+++......"),
-    ("fmi2SetInteger", "+++......"),
-    ("fmi2SetBoolean", "+++......"),
-    ("fmi2SetString", "+++......"),
-    ("fmi2GetFMUstate", "+++.++++."),
-    ("fmi2SetFMUstate", "+++.++++."),
-    ("fmi2FreeFMUstate", "+++.++++~"),
-    ("fmi2SerializedFMUstateSize", "+++.++++."),
-    ("fmi2SerializeFMUstate", "+++.++++."),
-    ("fmi2DeSerializeFMUstate", "+++.++++."),
-    ("fmi2GetDirectionalDerivative", ".++.++++."),
-    ("fmi2SetRealInputDerivatives", "+++......"),
-    ("fmi2GetRealOutputDerivatives", "..+.++++."),
-    ("fmi2DoStep", "..+......"),
-    ("fmi2CancelStep", "...+....."),
-    ("fmi2GetStatus", "..+++.+.."),
-    ("fmi2GetRealStatus", "..+++.+.."),
-    ("fmi2GetIntegerStatus", "..+++.+.."),
-    ("fmi2GetBooleanStatus", "..+++.+.."),
-    ("fmi2GetStringStatus", "..+++.+.."),
+    //                               iIcpfxteFvm
+    ("fmi2SetDebugLogging", "++++++++.++"),
+    ("fmi2FreeInstance", "+++.++++~++"),
+    ("fmi2SetupExperiment", "+.........."),
+    ("fmi2EnterInitializationMode", "+.........."),
+    ("fmi2ExitInitializationMode", ".+........."),
+    ("fmi2Terminate", "..+.+....++"),
+    ("fmi2Reset", "+++.++++.++"),
+    ("fmi2GetReal", "~++.++++.++"),
+    ("fmi2GetInteger", "~++.++++.++"),
+    ("fmi2GetBoolean", "~++.++++.++"),
+    ("fmi2GetString", "~++.++++.++"),
+    ("fmi2SetReal", "+++......++"),
+    ("fmi2SetInteger", "+++......+."),
+    ("fmi2SetBoolean", "+++......+."),
+    ("fmi2SetString", "+++......+."),
+    ("fmi2GetFMUstate", "+++.++++.++"),
+    ("fmi2SetFMUstate", "+++.++++.++"),
+    ("fmi2FreeFMUstate", "+++.++++~++"),
+    ("fmi2SerializedFMUstateSize", "+++.++++.++"),
+    ("fmi2SerializeFMUstate", "+++.++++.++"),
+    ("fmi2DeSerializeFMUstate", "+++.++++.++"),
+    ("fmi2GetDirectionalDerivative", ".++.++++.++"),
+    ("fmi2SetRealInputDerivatives", "+++........"),
+    ("fmi2GetRealOutputDerivatives", "..+.++++..."),
+    ("fmi2DoStep", "..+........"),
+    ("fmi2CancelStep", "...+......."),
+    ("fmi2GetStatus", "..+++.+...."),
+    ("fmi2GetRealStatus", "..+++.+...."),
+    ("fmi2GetIntegerStatus", "..+++.+...."),
+    ("fmi2GetBooleanStatus", "..+++.+...."),
+    ("fmi2GetStringStatus", "..+++.+...."),
+    ("fmi2EnterEventMode", ".........~+"),
+    ("fmi2NewDiscreteStates", ".........+."),
+    ("fmi2EnterContinuousTimeMode", ".........+."),
+    ("fmi2CompletedIntegratorStep", "..........+"),
+    ("fmi2SetTime", ".........++"),
+    ("fmi2SetContinuousStates", "..........+"),
+    ("fmi2GetDerivatives", ".+....++.++"),
+    ("fmi2GetEventIndicators", ".+....++.++"),
+    ("fmi2GetContinuousStates", ".+....++.++"),
+    ("fmi2GetNominalsOfContinuousStates", "++....++.++"),
 ];
 
 fn legality(cell: char) -> Legality {
@@ -68,15 +78,17 @@ fn every_cell_of_the_table_is_as_in_the_standard() {
 
 #[test]
 fn what_may_be_set_is_as_in_the_footnotes_of_the_table() {
-    use CallState::{InitializationMode, Instantiated, StepComplete};
+    use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete};
     let variabilities = [Variability::Fixed, Variability::Tunable, Variability::Discrete, Variability::Continuous];
     for state in CallState::ALL {
         let initial = matches!(state, Instantiated | InitializationMode);
         for variability in variabilities {
-            let tunable = variability == Variability::Tunable && state == StepComplete;
+            let between = matches!(state, StepComplete | EventMode);
+            let tunable = variability == Variability::Tunable && between;
+            let continuous = variability == Variability::Continuous && state == ContinuousTimeMode;
             let cell = |causality| is_settable(causality, variability, state);
             assert_eq!(cell(Causality::Parameter), initial || tunable, "{state}");
-            assert_eq!(cell(Causality::Input), initial || state == StepComplete, "{state}");
+            assert_eq!(cell(Causality::Input), initial || between || continuous, "{state}");
             for never in [Causality::CalculatedParameter, Causality::Output, Causality::Local, Causality::Independent] {
                 assert!(!cell(never), "{state}");
             }
@@ -90,6 +102,8 @@ fn host_in(state: CallState) -> Option<Host> {
         CallState::Instantiated => Host::new(),
         CallState::InitializationMode => Host::initializing(),
         CallState::StepInProgress | CallState::StepCanceled => return None,
+        CallState::EventMode => Host::at_event(),
+        CallState::ContinuousTimeMode => Host::exchanging(),
         _ => Host::initialized(),
     };
     match state {
@@ -115,7 +129,7 @@ fn call(host: &Host, function: Function, mut state: fmi2FMUstate) -> fmi2Status 
     let c = host.component;
     let (mut real, mut integer, mut text, mut size) = (0.0, 0, null(), 0);
     let mut fresh = null_mut();
-    let (mut vr, order, value) = (common::toy::INPUT, 1, 1.0);
+    let (mut vr, mut order, value) = (common::toy::INPUT, 1, 1.0);
     let mut bytes = [0; 1024];
     unsafe {
         match function {
@@ -140,10 +154,8 @@ fn call(host: &Host, function: Function, mut state: fmi2FMUstate) -> fmi2Status 
             F::SerializedFmuStateSize => fmi2SerializedFMUstateSize(c, state, &raw mut size),
             F::SerializeFmuState => fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr(), bytes.len()),
             F::DeSerializeFmuState => {
-                let source = Host::new();
-                let saved = source.save();
-                fmi2SerializedFMUstateSize(source.component, saved, &raw mut size);
-                fmi2SerializeFMUstate(source.component, saved, bytes.as_mut_ptr(), size);
+                fmi2SerializedFMUstateSize(c, state, &raw mut size);
+                fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr(), size);
                 fmi2DeSerializeFMUstate(c, bytes.as_ptr(), size, &raw mut fresh)
             }
             F::GetDirectionalDerivative => fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut()),
@@ -161,6 +173,18 @@ fn call(host: &Host, function: Function, mut state: fmi2FMUstate) -> fmi2Status 
             F::GetIntegerStatus => fmi2GetIntegerStatus(c, fmi2DoStepStatus, &raw mut integer),
             F::GetBooleanStatus => fmi2GetBooleanStatus(c, fmi2Terminated, &raw mut integer),
             F::GetStringStatus => fmi2GetStringStatus(c, fmi2PendingStatus, &raw mut text),
+            F::EnterEventMode => fmi2EnterEventMode(c),
+            F::NewDiscreteStates => fmi2NewDiscreteStates(c, core::mem::MaybeUninit::uninit().as_mut_ptr()),
+            F::EnterContinuousTimeMode => fmi2EnterContinuousTimeMode(c),
+            F::CompletedIntegratorStep => {
+                fmi2CompletedIntegratorStep(c, fmi2True, &raw mut integer, (&raw mut order).cast())
+            }
+            F::SetTime => fmi2SetTime(c, 0.5),
+            F::SetContinuousStates => fmi2SetContinuousStates(c, &raw const value, 1),
+            F::GetDerivatives => fmi2GetDerivatives(c, &raw mut real, 1),
+            F::GetEventIndicators => fmi2GetEventIndicators(c, &raw mut real, 1),
+            F::GetContinuousStates => fmi2GetContinuousStates(c, &raw mut real, 1),
+            F::GetNominals => fmi2GetNominalsOfContinuousStates(c, &raw mut real, 1),
         }
     }
 }

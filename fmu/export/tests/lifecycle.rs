@@ -24,8 +24,7 @@ fn a_bad_argument_of_instantiate_gives_null_and_the_reason_even_with_logging_off
     let cases = [
         (Some(""), me, Some(good.as_str()), "instanceName is empty"),
         (None, me, Some(&good), "instanceName is empty"),
-        (Some("toy"), fmi2ModelExchange, Some(&good), "fmuType = 0; this FMU offers co-simulation"),
-        (Some("toy"), 17, Some(&good), "fmuType = 17"),
+        (Some("toy"), 17, Some(&good), "fmuType = 17; this FMU offers model exchange (0) and co-simulation (1) only"),
         (Some("toy"), me, Some("{other}"), "fmuGUID = \"{other}\"; this FMU has {"),
         (Some("toy"), me, None, "fmuGUID: it is NULL"),
     ];
@@ -243,12 +242,12 @@ impl<const MIN: i32> Slave for Bare<MIN> {
     }
 }
 
-fn bare<const MIN: i32>(log: &mut Log) -> fmi2Component {
+fn bare<const MIN: i32>(kind: fmi2Type, log: &mut Log) -> fmi2Component {
     static FMU: Fmu = Fmu::new();
     let (name, guid) = (c"bare", c(&Guid::of::<Bare<MIN>>().to_string()));
     let functions = callbacks(log);
     let fmu = if MIN == 0 { &FMU } else { &Fmu::new() };
-    let (kind, functions) = (fmi2CoSimulation, &raw const functions);
+    let functions = &raw const functions;
     unsafe {
         instantiate::instantiate::<Bare<MIN>>(fmu, name.as_ptr(), kind, guid.as_ptr(), null(), functions, 0, fmi2True)
     }
@@ -257,14 +256,14 @@ fn bare<const MIN: i32>(log: &mut Log) -> fmi2Component {
 #[test]
 fn an_fmu_with_a_mistake_in_its_table_cannot_be_instantiated() {
     let mut log = Log::default();
-    assert!(bare::<2>(&mut log).is_null());
+    assert!(bare::<2>(fmi2CoSimulation, &mut log).is_null());
     assert_eq!(log.lines[0].message, "fmi2Instantiate: the FMU is faulty: a: start 1: below its min 2");
 }
 
 #[test]
 fn a_slave_that_cannot_be_serialised_says_so() {
     let mut log = Log::default();
-    let component = bare::<0>(&mut log);
+    let component = bare::<0>(fmi2CoSimulation, &mut log);
     let (mut fmu_state, mut size) = (null_mut(), 0);
     unsafe {
         assert_eq!(state::get_fmu_state::<Bare<0>>(component, &raw mut fmu_state), fmi2OK);
@@ -274,4 +273,12 @@ fn a_slave_that_cannot_be_serialised_says_so() {
     }
     let message = &log.lines[0].message;
     assert_eq!(message, "fmi2SerializedFMUstateSize: not supported by this FMU: serialised FMU states");
+}
+
+#[test]
+fn a_slave_without_model_exchange_is_not_instantiated_for_it() {
+    let mut log = Log::default();
+    assert!(bare::<0>(fmi2ModelExchange, &mut log).is_null());
+    let message = &log.lines[0].message;
+    assert_eq!(message, "fmi2Instantiate: fmuType = 0; this FMU offers co-simulation (1) only");
 }

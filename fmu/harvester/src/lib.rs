@@ -1,4 +1,5 @@
-//! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the FMI 2.0 interface for co-simulation.
+//! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the FMI 2.0 interfaces for
+//! co-simulation and model exchange.
 //!
 //! Only glue lives here: [`Harvester`] keeps what the importer sets and hands it to [`videg_model`]; the variables are
 //! in [`variables`], the parameters among them in the model's own table.
@@ -11,4 +12,4 @@ mod variables;
 
 pub use slave::Harvester;
 
-fmi2_export::export_fmu!(Harvester);
+fmi2_export::export_fmu!(Harvester, model_exchange);

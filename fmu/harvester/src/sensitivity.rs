@@ -1,7 +1,8 @@
 //! Partial derivatives of calculated parameters and initial outputs with respect to the parameters, in closed form.
 //!
 //! They hold at the start, where no membrane is pressed in yet. After initialisation no output depends on an input of
-//! the same communication point (an impact and a step act through the state), which the variable table says. So they are
+//! the same communication point (an impact and a step act through the state), which the variable table says; in model
+//! exchange derivatives and outputs depend on states and input as Eq. (7) says, between events. So they are
 //! finite whatever the motion does, grazing included; at an impact they are those of the state after it.
 
 use fmi2_export::Variable;
@@ -37,6 +38,24 @@ impl Harvester {
                 cylinder - self.read(|model| ball_position(model, p, known))
             }
             // Deflections are 0 and area ratios 1 at the start, whatever the parameters.
+            _ => 0.0,
+        }
+    }
+
+    /// d `unknown` / d `known` in model exchange: of derivatives and outputs with respect to states and inputs, between
+    /// events. A ball at rest moves with the cylinder.
+    pub(crate) fn placed_partial(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        let (known, resting) = (known.name(), self.model().is_some_and(|model| model.resting().is_some()));
+        let is = |name: &str| f64::from(known == name);
+        let by_force = is("externalForce") / self.parameters.cylinder_mass; // Eq. (7)
+        match unknown.name() {
+            "cylinder.position" => is("cylinder.position"),
+            "cylinder.velocity" | "der(cylinder.position)" => is("cylinder.velocity"),
+            "ball.position" => is(if resting { "cylinder.position" } else { "ball.position" }),
+            "ball.velocity" | "der(ball.position)" => is(if resting { "cylinder.velocity" } else { "ball.velocity" }),
+            "relativeDisplacement" if !resting => is("cylinder.position") - is("ball.position"),
+            "der(cylinder.velocity)" => by_force,
+            "der(ball.velocity)" if resting => by_force,
             _ => 0.0,
         }
     }

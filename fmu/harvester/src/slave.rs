@@ -1,7 +1,8 @@
 //! The slave: what the importer sets, and the model that it drives.
 
 use fmi2_export::{
-    Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable,
+    EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
+    Variable,
 };
 use videg_model::{Harvester as Model, ModelError, Parameters};
 
@@ -24,6 +25,8 @@ pub struct Harvester {
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
     pub(crate) start_time: f64,
+    /// The model runs under an integrator of the importer's: model exchange.
+    pub(crate) placed: bool,
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, ModelError>,
 }
@@ -67,7 +70,8 @@ impl Slave for Harvester {
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
         .default_experiment(0.0, 100.0, 1e-3)
         .can_serialize()
-        .directional_derivatives();
+        .directional_derivatives()
+        .model_exchange(2);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -83,6 +87,7 @@ impl Slave for Harvester {
             external_force_rate: 0.0,
             voltages: [parameters.bias_voltage; 2],
             start_time: 0.0,
+            placed: false,
             model: Model::new(&parameters, 0.0),
         }
     }
@@ -113,8 +118,32 @@ impl Slave for Harvester {
         advanced.map_err(|error| SlaveError::error(error.to_string()))
     }
 
+    fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
+        let force = self.external_force;
+        self.placed = true;
+        let model = self.running()?;
+        let present = model.states();
+        let states = states.map_or(Ok(present), <[f64; 4]>::try_from);
+        let states = states.map_err(|error| SlaveError::error(error.to_string()))?;
+        model.place(time, states, force).map_err(|error| SlaveError::error(error.to_string()))
+    }
+
+    fn event_indicators(&self) -> Vec<f64> {
+        self.model().map_or([f64::NAN; 2], Model::event_indicators).to_vec()
+    }
+
+    fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
+        let model = self.running()?;
+        let impacts = model.totals().impacts;
+        let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
+        if model.totals().impacts > impacts {
+            log_impact(model, log);
+        }
+        Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
+    }
+
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        self.partial(unknown, known)
+        if self.placed { self.placed_partial(unknown, known) } else { self.partial(unknown, known) }
     }
 
     fn write_state(&self, out: &mut StateWriter) {
@@ -130,13 +159,18 @@ impl Slave for Harvester {
 fn log_impacts(model: &mut Model, end: f64, log: &Logger) -> Result<(), ModelError> {
     while let Some(time) = model.next_impact().filter(|&time| time <= end) {
         model.advance(time)?;
-        let totals = model.totals();
-        let side = if model.relative_displacement() > 0.0 { "left" } else { "right" };
-        let rest = if model.resting().is_some() { "; the ball rests on it" } else { "" };
-        log.event(format_args!(
-            "impact {} at t = {time} s on the {side} membrane, relative speed {} m/s{rest}",
-            totals.impacts, totals.last_speed
-        ));
+        log_impact(model, log);
     }
     Ok(())
+}
+
+/// Reports the impact that has just happened.
+fn log_impact(model: &Model, log: &Logger) {
+    let (time, totals) = (model.time(), model.totals());
+    let side = if model.relative_displacement() > 0.0 { "left" } else { "right" };
+    let rest = if model.resting().is_some() { "; the ball rests on it" } else { "" };
+    log.event(format_args!(
+        "impact {} at t = {time} s on the {side} membrane, relative speed {} m/s{rest}",
+        totals.impacts, totals.last_speed
+    ));
 }

@@ -13,6 +13,7 @@ impl Harvester {
         out.bool(self.electrostatic_feedback);
         write_all([self.external_force, self.external_force_rate, self.voltages[0], self.voltages[1]], out);
         out.f64(self.start_time);
+        out.bool(self.placed);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
         let model = self.model().filter(|model| *model.parameters() == self.parameters);
         out.bool(model.is_some());
@@ -27,8 +28,11 @@ impl Harvester {
         let law = if from.bool()? { ContactLaw::Compliant } else { ContactLaw::Impulsive };
         let electrostatic_feedback = from.bool()?;
         let [external_force, external_force_rate, left, right, start_time] = finite(from)?;
+        let placed = from.bool()?;
         let model = if from.bool()? {
-            let restored = Model::restore(&parameters, &read_snapshot(from)?);
+            let snapshot = read_snapshot(from)?;
+            let restore = if placed { Model::restore_placed } else { Model::restore };
+            let restored = restore(&parameters, &snapshot);
             Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
         } else {
             Model::new(&parameters, start_time)
@@ -42,6 +46,7 @@ impl Harvester {
             external_force_rate,
             voltages,
             start_time,
+            placed,
             model,
         })
     }

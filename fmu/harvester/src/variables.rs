@@ -165,24 +165,29 @@ static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left.capacitance", "left.de
 static RIGHT: [V; 3] =
     membrane_outputs!(Side::Right, "right.capacitance", "right.deflection", "right.areaRatio", "right");
 
+/// In model exchange these depend on the continuous states, which are the first four.
 static MOTION: [V; 5] = [
     V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
+        .nominal(1e-2)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_velocity))
-        .depends_on(&[])
+        .depends_on(&["cylinder.position"])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_position)),
     V::output("cylinder.velocity", "m/s", "z_M': velocity of the cylinder, Eq. (7)")
+        .nominal(1e-1)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_acceleration))
-        .depends_on(&[])
+        .depends_on(&["cylinder.velocity"])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
+        .nominal(1e-2)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::ball_velocity))
-        .depends_on(&[])
+        .depends_on(&["cylinder.position", "ball.position"])
         .get(|slave| slave.read(videg_model::Harvester::ball_position)),
     V::output("ball.velocity", "m/s", "z_m': velocity of the ball, Eq. (11)")
-        .depends_on(&[])
+        .nominal(1e-1)
+        .depends_on(&["cylinder.velocity", "ball.velocity"])
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output("relativeDisplacement", "m", "z_M - z_m: relative displacement, Eq. (8)")
-        .depends_on(&[])
+        .depends_on(&["cylinder.position", "ball.position"])
         .get(|slave| slave.read(videg_model::Harvester::relative_displacement)),
 ];
 
@@ -227,8 +232,37 @@ static EVENTS: [V; 8] = [
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
 ];
 
+/// Time derivatives of the continuous states, for model exchange.
+static DERIVATIVES: [V; 4] = [
+    V::output("der(cylinder.position)", "m/s", "z_M': time derivative of cylinder.position")
+        .local()
+        .depends_on(&["cylinder.velocity"])
+        .derivative_of("cylinder.position")
+        .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
+    V::output("der(cylinder.velocity)", "m/s2", "z_M'': time derivative of cylinder.velocity, Eq. (7)")
+        .local()
+        .depends_on(&["externalForce"])
+        .derivative_of("cylinder.velocity")
+        .get(|slave| slave.read(videg_model::Harvester::cylinder_acceleration)),
+    V::output("der(ball.position)", "m/s", "z_m': time derivative of ball.position")
+        .local()
+        .depends_on(&["cylinder.velocity", "ball.velocity"])
+        .derivative_of("ball.position")
+        .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
+    V::output(
+        "der(ball.velocity)",
+        "m/s2",
+        "z_m'': time derivative of ball.velocity; that of the cylinder while the ball rests",
+    )
+    .local()
+    .depends_on(&["externalForce"])
+    .derivative_of("ball.velocity")
+    .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
+];
+
 /// The whole table; the value reference of a variable is its index.
 pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
-    let groups: [&[V]; 8] = [&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS];
+    let groups: [&[V]; 9] =
+        [&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &DERIVATIVES];
     groups.concat()
 });

@@ -68,3 +68,37 @@ fn derivatives_of_a_start_with_an_impact_agree_with_central_differences() {
         assert!(assert_agrees(START, &settings) >= 22);
     }
 }
+
+#[test]
+fn derivatives_in_model_exchange_agree_with_central_differences() {
+    const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
+    let ders = ["der(cylinder.position)", "der(cylinder.velocity)", "der(ball.position)", "der(ball.velocity)"];
+    let outputs = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", "relativeDisplacement"];
+    // Inside the gap, and at rest on the left membrane, pressed by the cylinder.
+    let resting = [0.03, 0.0, 0.0, 0.0];
+    for (start, at) in [([0.0; 4], [0.01, 0.2, 0.004, -0.1]), (resting, [0.03, 0.2, 0.008, 0.2])] {
+        let initial = [("initial.cylinderPosition", start[0]), ("initial.ballPosition", start[2])];
+        let placed = |states: [f64; 4], force: f64| {
+            let mut slave = fresh_at(0.0, &initial);
+            common::set(&mut slave, "externalForce", force);
+            slave.place(0.01, Some(&states)).unwrap();
+            slave
+        };
+        let slave = placed(at, 0.1);
+        assert_eq!(get(&slave, "contact.resting"), f64::from(u8::from(start == resting)));
+        for unknown in ders.into_iter().chain(outputs) {
+            let dependencies = row(unknown).dependencies().unwrap_or_default();
+            for (k, known) in STATES.into_iter().chain(["externalForce"]).enumerate() {
+                let moved = |h: f64| {
+                    let mut states = at;
+                    states.iter_mut().skip(k).take(1).for_each(|state| *state += h);
+                    get(&placed(states, if k == 4 { 0.1 + h } else { 0.1 }), unknown)
+                };
+                let difference = (moved(1e-4) - moved(-1e-4)) / 2e-4;
+                let derivative = slave.partial_derivative(row(unknown), row(known));
+                assert!((derivative - difference).abs() <= 1e-6 * (1.0 + derivative.abs()), "{unknown}, {known}");
+                assert!(derivative == 0.0 || dependencies.contains(&known), "{unknown} depends on {known}");
+            }
+        }
+    }
+}

@@ -8,7 +8,8 @@ use crate::slave::Slave;
 use core::ptr::null_mut;
 use core::sync::atomic::Ordering;
 use fmi2_abi::{
-    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2String, fmi2Type,
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2ModelExchange,
+    fmi2String, fmi2Type,
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -63,9 +64,15 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     if request.name.is_empty() {
         return Err("instanceName is empty, NULL or not UTF-8".to_owned());
     }
-    if request.kind != fmi2CoSimulation {
+    let exchange = request.kind == fmi2ModelExchange;
+    if !(exchange && S::INFO.model_exchange.is_some() || request.kind == fmi2CoSimulation) {
         let kind = request.kind;
-        return Err(format!("fmuType = {kind}; this FMU offers co-simulation (1) only"));
+        let offer = if S::INFO.model_exchange.is_some() {
+            "model exchange (0) and co-simulation (1)"
+        } else {
+            "co-simulation (1)"
+        };
+        return Err(format!("fmuType = {kind}; this FMU offers {offer} only"));
     }
     let given = request.guid.map_err(|reason| format!("fmuGUID: {reason}"))?;
     if given != identity.text {
@@ -82,7 +89,7 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     }
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();
-    catch_unwind(AssertUnwindSafe(|| Instance::new(logger, identity.guid)))
+    catch_unwind(AssertUnwindSafe(|| Instance::new(exchange, logger, identity.guid)))
         .map_err(|payload| format!("the model panicked: {}", panic_message(payload)))
 }
 

@@ -19,6 +19,7 @@
 pub mod co_simulation;
 pub mod common;
 pub mod instantiate;
+pub mod model_exchange;
 pub mod state;
 
 use crate::call_state::Function;

@@ -1,5 +1,6 @@
 //! Directional derivatives: which variables may be asked for in which state, and the sum over the knowns.
 
+use super::model_exchange::states_and_derivatives;
 use super::values::variable;
 use super::{Call, Instance};
 use crate::error::CallError;
@@ -18,7 +19,7 @@ impl<S: Slave> Instance<S> {
         if !S::INFO.directional_derivatives {
             return Err(CallError::Unsupported("directional derivatives"));
         }
-        self.update();
+        self.update()?;
         let knowns = knowns.iter().map(|&reference| self.known(reference)).collect::<Call<Vec<_>>>()?;
         let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;
         for (i, unknown) in unknowns.into_iter().enumerate() {
@@ -35,24 +36,31 @@ impl<S: Slave> Instance<S> {
         if ask { self.core.model.partial_derivative(unknown, known) } else { 0.0 }
     }
 
-    /// During initialisation a parameter or a continuous input, afterwards a continuous input.
+    /// Whether continuous states and their derivatives may be asked for.
+    fn is_exchanged(&self) -> bool {
+        self.core.exchange && !self.core.state.is_before_initialization()
+    }
+
+    /// During initialisation a parameter or a continuous input, afterwards a continuous input or state.
     fn known(&self, reference: u32) -> Call<&'static Variable<S>> {
         let variable = variable::<S>(reference)?;
         let may_be = match variable.causality() {
             Causality::Parameter => self.core.state.is_before_initialization(),
             Causality::Input => variable.variability() == Variability::Continuous,
-            _ => false,
+            _ => {
+                self.is_exchanged() && states_and_derivatives(S::variables()).any(|(s, _)| s.name() == variable.name())
+            }
         };
         self.check_real(variable, may_be, "known")
     }
 
-    /// A continuous output; during initialisation a calculated parameter, too.
+    /// A continuous output; during initialisation a calculated parameter, afterwards a derivative of a state, too.
     fn unknown(&self, reference: u32) -> Call<&'static Variable<S>> {
         let variable = variable::<S>(reference)?;
         let may_be = match variable.causality() {
             Causality::CalculatedParameter => self.core.state.is_before_initialization(),
             Causality::Output => variable.variability() == Variability::Continuous,
-            _ => false,
+            _ => self.is_exchanged() && variable.derivative_of().is_some(),
         };
         self.check_real(variable, may_be, "unknown")
     }

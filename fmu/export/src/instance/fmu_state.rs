@@ -63,6 +63,9 @@ impl<S: Slave> Instance<S> {
         let mut content = StateReader::new(unseal(self.guid, blob)?);
         let core = Core::read(&mut content)?;
         content.finish()?;
+        if core.exchange != self.core.exchange {
+            return Err(StateError::Invalid("it is of an instance of the other interface type".into()).into());
+        }
         if token == 0 {
             return Ok(self.keep(core));
         }
@@ -90,6 +93,7 @@ fn check_serializable<S: Slave>() -> Call {
 impl<S: Slave> Core<S> {
     fn write(&self, out: &mut StateWriter) {
         out.u8(self.state as u8);
+        out.bool(self.exchange);
         out.f64(self.time);
         out.bool(self.dirty);
         out.bool(self.experiment.is_some());
@@ -110,6 +114,7 @@ impl<S: Slave> Core<S> {
             CallState::from_number(number).ok_or_else(|| StateError::Invalid(format!("{number} is no call state")))?;
         Ok(Self {
             state,
+            exchange: from.bool()?,
             time: from.f64()?,
             dirty: from.bool()?,
             experiment: if from.bool()? {

@@ -58,9 +58,10 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2ExitInitializationMode`
     pub(crate) fn exit_initialization_mode(&mut self) -> Call {
-        self.update();
+        self.update()?;
         self.core.model.initialize(&self.logger)?;
-        self.core.state = CallState::StepComplete;
+        self.core.state = if self.core.exchange { CallState::EventMode } else { CallState::StepComplete };
+        self.core.dirty = self.core.exchange; // to be placed at the start
         Ok(())
     }
 
@@ -73,7 +74,7 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2Reset`: a fresh model. Saved FMU states and log settings stay.
     pub(crate) fn reset(&mut self) {
-        self.core = Core::new();
+        self.core = Core::new(self.core.exchange);
         self.strings.clear();
     }
 }

@@ -5,6 +5,7 @@ mod co_simulation;
 mod derivatives;
 mod fmu_state;
 mod lifecycle;
+mod model_exchange;
 mod values;
 
 use crate::call_state::{CallState, Function, Legality};
@@ -27,6 +28,8 @@ pub(crate) type Call<T = ()> = Result<T, CallError>;
 pub(crate) struct Core<S> {
     model: S,
     state: CallState,
+    /// Model exchange, not co-simulation.
+    exchange: bool,
     /// End of the last step, s.
     time: f64,
     experiment: Option<Experiment>,
@@ -48,7 +51,7 @@ pub(crate) struct Instance<S> {
 
 impl<S: Slave> Core<S> {
     /// A fresh model with its start values.
-    fn new() -> Self {
+    fn new(exchange: bool) -> Self {
         let mut model = S::new();
         for variable in S::variables() {
             variable.kind().apply_start(&mut model);
@@ -56,6 +59,7 @@ impl<S: Slave> Core<S> {
         Self {
             model,
             state: CallState::Instantiated,
+            exchange,
             time: 0.0,
             experiment: None,
             dirty: true,
@@ -66,8 +70,8 @@ impl<S: Slave> Core<S> {
 
 impl<S: Slave> Instance<S> {
     /// A fresh instance.
-    pub(crate) fn new(logger: Logger, guid: Guid) -> Self {
-        Self { core: Core::new(), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
+    pub(crate) fn new(exchange: bool, logger: Logger, guid: Guid) -> Self {
+        Self { core: Core::new(exchange), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
     }
 
     /// Runs one C function: state check, the call itself behind a panic guard, then status, log and new state.
@@ -110,12 +114,20 @@ impl<S: Slave> Instance<S> {
         status
     }
 
-    /// Brings calculated values up to date, if something was set and initialisation is still ahead.
-    fn update(&mut self) {
-        if self.core.dirty && self.core.state.is_before_initialization() {
+    /// Brings calculated values up to date, if something was set and initialisation is still ahead. In model exchange,
+    /// values follow time and inputs afterwards, too.
+    fn update(&mut self) -> Call {
+        if !self.core.dirty {
+            return Ok(());
+        }
+        if self.core.state.is_before_initialization() {
             self.core.model.update();
             self.core.dirty = false;
+        } else if matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
+            self.core.model.place(self.core.time, None)?;
+            self.core.dirty = false;
         }
+        Ok(())
     }
 }
 

@@ -27,7 +27,7 @@ fn wrong_type<S: Slave>(reference: u32, wanted: &'static str) -> CallError {
 impl<S: Slave> Instance<S> {
     /// `fmi2GetReal` and its kin. `put` takes each value with its position in the call.
     pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut put: impl FnMut(usize, T::Taken)) -> Call {
-        self.update();
+        self.update()?;
         for (i, &reference) in references.iter().enumerate() {
             let value = T::get(variable::<S>(reference)?, &self.core.model)
                 .ok_or_else(|| wrong_type::<S>(reference, T::NAME))?;

@@ -26,6 +26,7 @@ pub struct Declaration<T: Copy, A> {
     causality: Causality,
     variability: Variability,
     dependencies: Option<&'static [&'static str]>,
+    derivative_of: Option<&'static str>,
     spec: T,
     access: PhantomData<fn(A)>,
 }
@@ -42,7 +43,16 @@ const fn declare<T: Copy, A>(
     description: &'static str,
     spec: T,
 ) -> Declaration<T, A> {
-    Declaration { name, description, causality, variability, dependencies: None, spec, access: PhantomData }
+    Declaration {
+        name,
+        description,
+        causality,
+        variability,
+        dependencies: None,
+        derivative_of: None,
+        spec,
+        access: PhantomData,
+    }
 }
 
 // What a constructor stands for. The getters below are placeholders that `access` and `get` replace.
@@ -230,6 +240,7 @@ impl<T: Copy, A> Declaration<T, A> {
             variability: self.variability,
             kind,
             dependencies: self.dependencies,
+            derivative_of: self.derivative_of,
         }
     }
 }
@@ -298,6 +309,12 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
     /// Gives time derivatives of an output up to `max_order`; `get` gets the order, from 1.
     pub const fn output_derivatives(mut self, max_order: u32, get: fn(&M, u32) -> f64) -> Self {
         self.spec.output_derivatives = Some((max_order, get));
+        self
+    }
+
+    /// Says that this is the time derivative of the variable `name`, which is thereby a continuous state.
+    pub const fn derivative_of(mut self, name: &'static str) -> Self {
+        self.derivative_of = Some(name);
         self
     }
 

@@ -155,6 +155,9 @@ fn check_start<T: Copy + ToString>(name: &str, start: Option<T>, complaint: impl
 }
 
 fn check_dependencies<M>(variable: &Variable<M>, names: &HashSet<&str>) -> Check {
+    if let Some(state) = variable.derivative_of {
+        ensure(names.contains(state), variable.name, || format!("it derives {state}, which is not in the table"))?;
+    }
     let dependencies = variable.dependencies.unwrap_or_default();
     for other in dependencies {
         ensure(names.contains(other), variable.name, || format!("it depends on {other}, which is not in the table"))?;

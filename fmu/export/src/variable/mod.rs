@@ -106,6 +106,7 @@ pub struct Variable<M: 'static> {
     pub(crate) variability: Variability,
     pub(crate) kind: Kind<M>,
     pub(crate) dependencies: Option<&'static [&'static str]>,
+    pub(crate) derivative_of: Option<&'static str>,
 }
 
 // Derived impls would ask for `M: Clone`, which fn pointers do not need.
@@ -156,6 +157,11 @@ impl<M> Variable<M> {
     /// which importers read as "on every input".
     pub const fn dependencies(&self) -> Option<&'static [&'static str]> {
         self.dependencies
+    }
+
+    /// Name of the continuous state whose time derivative this is.
+    pub const fn derivative_of(&self) -> Option<&'static str> {
+        self.derivative_of
     }
 }
 

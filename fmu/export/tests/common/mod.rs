@@ -54,6 +54,16 @@ symbols! {
     fmi2GetIntegerStatus(fmi2Component, fmi2StatusKind, *mut fmi2Integer) -> fmi2Status;
     fmi2GetBooleanStatus(fmi2Component, fmi2StatusKind, *mut fmi2Boolean) -> fmi2Status;
     fmi2GetStringStatus(fmi2Component, fmi2StatusKind, *mut fmi2String) -> fmi2Status;
+    fmi2EnterEventMode(fmi2Component) -> fmi2Status;
+    fmi2NewDiscreteStates(fmi2Component, *mut fmi2EventInfo) -> fmi2Status;
+    fmi2EnterContinuousTimeMode(fmi2Component) -> fmi2Status;
+    fmi2CompletedIntegratorStep(fmi2Component, fmi2Boolean, *mut fmi2Boolean, *mut fmi2Boolean) -> fmi2Status;
+    fmi2SetTime(fmi2Component, fmi2Real) -> fmi2Status;
+    fmi2SetContinuousStates(fmi2Component, *const fmi2Real, usize) -> fmi2Status;
+    fmi2GetDerivatives(fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
+    fmi2GetEventIndicators(fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
+    fmi2GetContinuousStates(fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
+    fmi2GetNominalsOfContinuousStates(fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
 }
 
 /// One call of the logger.
@@ -152,9 +162,13 @@ impl Drop for Host {
 impl Host {
     /// In state `instantiated`.
     pub fn new() -> Self {
+        Self::of_kind(fmi2CoSimulation)
+    }
+
+    fn of_kind(kind: fmi2Type) -> Self {
         let log = Box::into_raw(Box::<Log>::default());
         let functions = callbacks(unsafe { &mut *log });
-        let component = instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, &raw const functions, true);
+        let component = instantiate(Some("toy"), kind, Some(&guid()), None, &raw const functions, true);
         assert!(!component.is_null());
         Self { component, log }
     }
@@ -172,6 +186,45 @@ impl Host {
         let host = Self::initializing();
         assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
         host
+    }
+
+    /// Model exchange, in state `eventMode`, at 0 s.
+    pub fn at_event() -> Self {
+        let host = Self::of_kind(fmi2ModelExchange);
+        assert_eq!(host.setup(0.0, None), fmi2OK);
+        assert_eq!(host.initialize(), fmi2OK);
+        host
+    }
+
+    /// Model exchange, in state `continuousTimeMode`, at 0 s.
+    pub fn exchanging() -> Self {
+        let host = Self::at_event();
+        assert_eq!(host.new_discrete_states().0, fmi2OK);
+        assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+        host
+    }
+
+    /// The same with a limit of the integral.
+    pub fn of_limit(limit: f64) -> Self {
+        let host = Self::of_kind(fmi2ModelExchange);
+        assert_eq!(host.set_real(toy::LIMIT, limit), fmi2OK);
+        assert_eq!(host.setup(0.0, None), fmi2OK);
+        assert_eq!(host.initialize(), fmi2OK);
+        assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+        host
+    }
+
+    pub fn new_discrete_states(&self) -> (fmi2Status, fmi2EventInfo) {
+        let mut info = fmi2EventInfo {
+            newDiscreteStatesNeeded: 7,
+            terminateSimulation: 7,
+            nominalsOfContinuousStatesChanged: 7,
+            valuesOfContinuousStatesChanged: 7,
+            nextEventTimeDefined: 7,
+            nextEventTime: -77.0,
+        };
+        let status = unsafe { fmi2NewDiscreteStates(self.component, &raw mut info) };
+        (status, info)
     }
 
     /// What the logger callback writes to, behind the back of the compiler.

@@ -1,8 +1,8 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
 use fmi2_export::{
-    EnumerationItem, EnumerationType, Experiment, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
-    StateWriter, Variable, export_fmu,
+    EnumerationItem, EnumerationType, EventOutcome, Experiment, Logger, ModelInfo, Slave, SlaveError, StateError,
+    StateReader, StateWriter, Variable, export_fmu,
 };
 use std::cell::Cell;
 
@@ -63,7 +63,8 @@ pub const CHOSEN: u32 = 12;
 pub const TROUBLE: u32 = 13;
 pub const UPDATES: u32 = 14;
 pub const TIME: u32 = 15;
-pub const COUNT_OF_VARIABLES: u32 = 16;
+pub const DERIVATIVE: u32 = 16;
+pub const COUNT_OF_VARIABLES: u32 = 17;
 
 type V = Variable<Toy>;
 
@@ -103,6 +104,11 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
         .access(|m| m.trouble.clone(), |m, v| v.clone_into(&mut m.trouble)),
     V::integer_output("updates", "How often update ran").local().get(|m| m.updates),
     V::independent("time", "Time").get(|m| m.time),
+    V::output("der(integral)", "V.N/m", "k u")
+        .local()
+        .depends_on(&["u"])
+        .derivative_of("integral")
+        .get(|m| m.gain * m.input),
 ];
 
 impl Toy {
@@ -150,7 +156,8 @@ impl Slave for Toy {
         .default_experiment(0.0, 10.0, 0.5)
         .default_tolerance(1e-4)
         .can_serialize()
-        .directional_derivatives();
+        .directional_derivatives()
+        .model_exchange(1);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -193,10 +200,33 @@ impl Slave for Toy {
         self.trouble_in("terminate", log)
     }
 
+    fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
+        self.fail_in("place");
+        self.time = time;
+        self.integral = states.map_or(self.integral, |states| states[0]);
+        Ok(())
+    }
+
+    fn event_indicators(&self) -> Vec<f64> {
+        vec![self.limit - self.integral]
+    }
+
+    /// The integral falls back to zero at its limit, and there is an event each second.
+    fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
+        self.trouble_in("event handler", log)?;
+        let states_changed = self.integral >= self.limit;
+        if states_changed {
+            self.integral = 0.0;
+            self.count += 1;
+        }
+        Ok(EventOutcome { states_changed, next_event_time: Some(self.time.floor() + 1.0) })
+    }
+
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
         self.fail_in("derivative");
         match (unknown.name(), known.name()) {
             ("doubled", "toy.gain") => 2.0,
+            ("der(integral)", "u") => self.gain,
             ("integral", "u") => f64::NAN, // the table says that there is no such dependency
             _ => 0.0,
         }
@@ -237,4 +267,4 @@ impl Slave for Toy {
     }
 }
 
-export_fmu!(Toy);
+export_fmu!(Toy, model_exchange);

@@ -1,0 +1,110 @@
+//! Model exchange: modes, continuous states and what follows from them.
+
+use super::{Call, Instance};
+use crate::call_state::CallState;
+use crate::error::CallError;
+use crate::slave::{EventOutcome, Slave};
+use crate::variable::{Kind, Variable};
+
+/// The continuous states of a table, in the order of the derivatives in it, each with its derivative.
+pub(super) fn states_and_derivatives<M>(table: &[Variable<M>]) -> impl Iterator<Item = (&Variable<M>, &Variable<M>)> {
+    let state_of = |row| table.iter().find(|state| Some(state.name()) == Variable::derivative_of(row));
+    table.iter().filter_map(move |row| state_of(row).map(|state| (state, row)))
+}
+
+/// What one of the arrays of model exchange must count.
+fn check_count(argument: &'static str, given: usize, wanted: usize) -> Call {
+    if given == wanted {
+        return Ok(());
+    }
+    let bound = format!("this FMU has {wanted}");
+    Err(CallError::BadArgument { argument, value: given.to_string(), bound })
+}
+
+fn real<M>(variable: &Variable<M>, model: &M) -> f64 {
+    if let Kind::Real(spec) = variable.kind() { (spec.get)(model) } else { f64::NAN }
+}
+
+impl<S: Slave> Instance<S> {
+    /// `fmi2EnterEventMode`
+    pub(crate) fn enter_event_mode(&mut self) -> Call {
+        self.update()?;
+        self.core.state = CallState::EventMode;
+        Ok(())
+    }
+
+    /// `fmi2EnterContinuousTimeMode`
+    pub(crate) fn enter_continuous_time_mode(&mut self) -> Call {
+        self.update()?;
+        self.core.state = CallState::ContinuousTimeMode;
+        Ok(())
+    }
+
+    /// `fmi2NewDiscreteStates`
+    pub(crate) fn new_discrete_states(&mut self) -> Call<EventOutcome> {
+        self.update()?;
+        Ok(self.core.model.handle_events(&self.logger)?)
+    }
+
+    /// `fmi2SetTime`
+    pub(crate) fn set_time(&mut self, time: f64) -> Call {
+        if !time.is_finite() {
+            return Err(CallError::BadArgument {
+                argument: "time",
+                value: time.to_string(),
+                bound: "it must be finite".into(),
+            });
+        }
+        self.core.time = time;
+        self.core.dirty = true;
+        Ok(())
+    }
+
+    /// `fmi2SetContinuousStates`
+    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Call {
+        check_count("nx", states.len(), states_and_derivatives(S::variables()).count())?;
+        for ((state, _), value) in states_and_derivatives(S::variables()).zip(states) {
+            if !value.is_finite() {
+                let bound = "it must be finite".to_owned();
+                return Err(CallError::BadValue { name: state.name(), value: value.to_string(), bound });
+            }
+        }
+        self.core.dirty = false;
+        Ok(self.core.model.place(self.core.time, Some(states))?)
+    }
+
+    /// `fmi2GetContinuousStates`
+    pub(crate) fn continuous_states(&mut self, count: usize) -> Call<Vec<f64>> {
+        self.values("nx", count, |(state, _), model| real(state, model))
+    }
+
+    /// `fmi2GetDerivatives`
+    pub(crate) fn derivatives(&mut self, count: usize) -> Call<Vec<f64>> {
+        self.values("nx", count, |(_, derivative), model| real(derivative, model))
+    }
+
+    /// `fmi2GetNominalsOfContinuousStates`
+    pub(crate) fn nominals(&mut self, count: usize) -> Call<Vec<f64>> {
+        let nominal = |variable: &Variable<S>| if let Kind::Real(s) = variable.kind() { s.nominal } else { None };
+        self.values("nx", count, |(state, _), _| nominal(state).unwrap_or(1.0))
+    }
+
+    /// `fmi2GetEventIndicators`
+    pub(crate) fn event_indicators(&mut self, count: usize) -> Call<Vec<f64>> {
+        check_count("ni", count, S::INFO.model_exchange.unwrap_or(0))?;
+        self.update()?;
+        Ok(self.core.model.event_indicators())
+    }
+
+    fn values(
+        &mut self,
+        argument: &'static str,
+        count: usize,
+        value: impl Fn((&Variable<S>, &Variable<S>), &S) -> f64,
+    ) -> Call<Vec<f64>> {
+        check_count(argument, count, states_and_derivatives(S::variables()).count())?;
+        self.update()?;
+        let pairs = states_and_derivatives(S::variables());
+        Ok(pairs.map(|pair| value(pair, &self.core.model)).collect())
+    }
+}

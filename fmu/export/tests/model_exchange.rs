@@ -1,0 +1,125 @@
+//! Model exchange through the C interface.
+#![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
+
+mod common;
+
+use common::toy::{DERIVATIVE, GAIN, INPUT, INTEGRAL, LIMIT, SEED};
+use common::*;
+use core::ptr::null_mut;
+use fmi2_export::abi::*;
+
+fn derivative(host: &Host) -> f64 {
+    let mut value = -77.0;
+    assert_eq!(unsafe { fmi2GetDerivatives(host.component, &raw mut value, 1) }, fmi2OK);
+    value
+}
+
+fn indicator(host: &Host) -> f64 {
+    let mut value = -77.0;
+    assert_eq!(unsafe { fmi2GetEventIndicators(host.component, &raw mut value, 1) }, fmi2OK);
+    value
+}
+
+fn state(host: &Host) -> f64 {
+    let mut value = -77.0;
+    assert_eq!(unsafe { fmi2GetContinuousStates(host.component, &raw mut value, 1) }, fmi2OK);
+    value
+}
+
+fn place(host: &Host, time: f64, state: f64) -> fmi2Status {
+    assert_eq!(unsafe { fmi2SetTime(host.component, time) }, fmi2OK);
+    unsafe { fmi2SetContinuousStates(host.component, &raw const state, 1) }
+}
+
+#[test]
+fn derivatives_and_indicators_follow_states_and_inputs() {
+    let host = Host::exchanging();
+    assert_eq!((state(&host), derivative(&host)), (0.0, 2.0));
+    assert_eq!(place(&host, 0.25, 0.5), fmi2OK);
+    assert_eq!((state(&host), host.real(INTEGRAL)), (0.5, 0.5));
+    assert_eq!(host.set_real(INPUT, 3.0), fmi2OK);
+    assert_eq!((derivative(&host), host.real(DERIVATIVE)), (6.0, 6.0));
+    assert_eq!(indicator(&host), f64::INFINITY, "no limit was set");
+    assert_eq!(host.real(common::toy::TIME), 0.25);
+}
+
+#[test]
+fn an_event_changes_states_and_announces_the_next_one() {
+    let host = Host::of_limit(1.0);
+    assert_eq!(place(&host, 0.5, 1.0), fmi2OK);
+    assert_eq!(indicator(&host), 0.0);
+    assert_eq!(unsafe { fmi2EnterEventMode(host.component) }, fmi2OK);
+    let (status, info) = host.new_discrete_states();
+    assert_eq!(status, fmi2OK);
+    let flags = [info.newDiscreteStatesNeeded, info.terminateSimulation, info.nominalsOfContinuousStatesChanged];
+    assert_eq!(flags, [fmi2False; 3]);
+    assert_eq!(info.valuesOfContinuousStatesChanged, fmi2True);
+    assert_eq!((info.nextEventTimeDefined, info.nextEventTime), (fmi2True, 1.0));
+    assert_eq!(state(&host), 0.0);
+    assert_eq!(host.new_discrete_states().1.valuesOfContinuousStatesChanged, fmi2False);
+    assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+}
+
+#[test]
+fn counts_and_values_that_make_no_sense_are_refused() {
+    let mut values = [0.0; 3];
+    let host = Host::exchanging();
+    assert_eq!(unsafe { fmi2GetDerivatives(host.component, values.as_mut_ptr(), 3) }, fmi2Error);
+    assert_eq!(host.error(), "fmi2GetDerivatives: nx = 3: this FMU has 1");
+    let host = Host::exchanging();
+    assert_eq!(unsafe { fmi2GetEventIndicators(host.component, values.as_mut_ptr(), 2) }, fmi2Error);
+    assert_eq!(host.error(), "fmi2GetEventIndicators: ni = 2: this FMU has 1");
+    let host = Host::exchanging();
+    assert_eq!(unsafe { fmi2GetDerivatives(host.component, null_mut(), 1) }, fmi2Error);
+    assert!(host.error().contains("derivatives is NULL"));
+    for bad in [f64::NAN, f64::INFINITY] {
+        let host = Host::exchanging();
+        assert_eq!(place(&host, 0.5, bad), fmi2Error);
+        assert!(host.error().contains("variable integral"));
+        let host = Host::exchanging();
+        assert_eq!(unsafe { fmi2SetTime(host.component, bad) }, fmi2Error);
+    }
+}
+
+#[test]
+fn between_events_only_continuous_inputs_may_be_set() {
+    for reference in [GAIN, LIMIT] {
+        let host = Host::exchanging();
+        assert_eq!(host.set_real(reference, 2.0), fmi2Error);
+    }
+    let host = Host::exchanging();
+    assert_eq!(host.set_integer(SEED, 2), fmi2Error);
+}
+
+#[test]
+fn panics_and_errors_in_the_model_become_statuses() {
+    let host = Host::at_event();
+    host.trouble("error event handler");
+    assert_eq!(host.new_discrete_states().0, fmi2Error);
+    assert!(host.error().contains("asked for an error"));
+    let host = Host::at_event();
+    host.trouble("panic place");
+    assert_eq!(host.new_discrete_states().0, fmi2Error);
+    assert!(host.error().contains("panic in place"));
+}
+
+#[test]
+fn a_saved_state_leads_back_and_does_not_fit_the_other_interface() {
+    let host = Host::exchanging();
+    assert_eq!(place(&host, 0.5, 0.75), fmi2OK);
+    let saved = host.save();
+    assert_eq!(place(&host, 0.6, 2.0), fmi2OK);
+    assert_eq!(host.restore(saved), fmi2OK);
+    assert_eq!((state(&host), host.real(common::toy::TIME)), (0.75, 0.5));
+    let (mut size, mut bytes) = (0, vec![0; 4096]);
+    unsafe {
+        assert_eq!(fmi2SerializedFMUstateSize(host.component, saved, &raw mut size), fmi2OK);
+        assert_eq!(fmi2SerializeFMUstate(host.component, saved, bytes.as_mut_ptr(), size), fmi2OK);
+        let mut state = null_mut();
+        let twin = Host::exchanging();
+        assert_eq!(fmi2DeSerializeFMUstate(twin.component, bytes.as_ptr(), size, &raw mut state), fmi2OK);
+        let (other, mut state) = (Host::initialized(), null_mut());
+        assert_eq!(fmi2DeSerializeFMUstate(other.component, bytes.as_ptr(), size, &raw mut state), fmi2Error);
+        assert!(other.error().contains("the other interface type"));
+    }
+}
