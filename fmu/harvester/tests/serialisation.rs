@@ -144,3 +144,22 @@ fn a_second_process_goes_on_to_the_last_bit() {
     let line = text.lines().find_map(|line| line.strip_prefix("result ")).expect("a result");
     assert_eq!(line, format!("{:?}", go_on(&mut original, 1.3)));
 }
+
+#[test]
+fn a_state_of_model_exchange_goes_on_to_the_last_bit() {
+    let log = fmi2_export::Logger::silent();
+    let mut original = initialized(NOISY);
+    original.place(0.0, None).expect("the start");
+    original.place(0.1, Some(&[0.023, 0.3, 0.001, -0.1])).expect("states");
+    assert!(original.handle_events(&log).expect("an impact").states_changed);
+    original.place(0.101, Some(&[0.0233, 0.3, 0.0013, 0.5])).expect("states");
+    let mut copy = restored(&bytes(&original)).expect("a state");
+    for slave in [&mut original, &mut copy] {
+        assert!(get(slave, "left.deflection") > 0.0);
+        slave.place(0.102, Some(&[0.0236, 0.3, 0.0018, 0.5])).expect("states");
+        slave.handle_events(&log).expect("a noise sample");
+    }
+    assert_eq!(outputs(&copy), outputs(&original));
+    assert_eq!(copy.event_indicators(), original.event_indicators());
+    assert_eq!(get(&copy, "der(cylinder.velocity)"), get(&original, "der(cylinder.velocity)"));
+}

@@ -9,6 +9,9 @@ use crate::membrane::Membrane;
 use crate::parameters::Parameters;
 use crate::pulse::{Pulse, PulseShape, Pulses};
 
+/// Phase-noise samples that an integrator may be behind: it may pause at an event before the event is handled.
+const MAX_LAG: f64 = 1e6;
+
 /// Everything that a [`Harvester`] carries from one step to the next, besides its parameters.
 ///
 /// Exported by [`Harvester::snapshot`], imported by [`Harvester::restore`]. What follows from these values, such as the
@@ -67,7 +70,7 @@ impl Harvester {
     /// # Errors
     /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        let mut harvester = Self::restore_placed(parameters, snapshot)?;
+        let mut harvester = Self::rebuild(parameters, snapshot, 0.0)?;
         harvester.placed = false;
         harvester.search = Search::resumed(harvester.search.flight, snapshot.time);
         harvester.advance(snapshot.time)?;
@@ -79,8 +82,13 @@ impl Harvester {
     /// # Errors
     /// As [`Harvester::restore`].
     pub fn restore_placed(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        Self::rebuild(parameters, snapshot, MAX_LAG)
+    }
+
+    /// `lag`: how many phase-noise samples may be due and not taken.
+    fn rebuild(parameters: &Parameters, snapshot: &Snapshot, lag: f64) -> Result<Self, ModelError> {
         parameters.validate()?;
-        snapshot.validate(parameters)?;
+        snapshot.validate(parameters, lag)?;
         let p = *parameters;
         let noise = Noise { sample: snapshot.noise_sample, walk: snapshot.noise_walk };
         let [external, external_rate] = snapshot.external;
@@ -117,7 +125,7 @@ impl Harvester {
 }
 
 impl Snapshot {
-    fn validate(&self, parameters: &Parameters) -> Result<(), ModelError> {
+    fn validate(&self, parameters: &Parameters, lag: f64) -> Result<(), ModelError> {
         let Self { time, totals, .. } = *self;
         check("time", time, time.is_finite())?;
         for value in self.cylinder.into_iter().chain(self.external).chain(self.ball).chain(self.flight) {
@@ -130,7 +138,7 @@ impl Snapshot {
         check("Wiener process", self.noise_walk, self.noise_walk.is_finite())?;
         if parameters.phase_noise > 0.0 {
             let (sample, hold) = (self.noise_sample as f64, parameters.noise_hold);
-            let in_force = (sample + 1.0) * hold > time && sample * hold <= time.max(0.0) + hold;
+            let in_force = (sample + 1.0 + lag) * hold > time && sample * hold <= time.max(0.0) + hold;
             check("noise sample", sample, in_force)?;
         }
         for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
