@@ -147,9 +147,10 @@ fn text(info: &Info) -> String {
     let mut table = format::table(&["variable", "start", "unit", "causality"]);
     for variable in &info.variables {
         let start = variable.start.clone().unwrap_or_default();
-        let unit = variable.unit.clone().unwrap_or_default();
-        let unit = if unit.is_empty() { variable.r#type.to_lowercase() } else { unit };
-        table.add_row(format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]));
+        let unit = variable.unit.clone().unwrap_or_else(|| variable.r#type.to_lowercase());
+        let mut cells = format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]);
+        cells.push(variable.description.clone().unwrap_or_default().into());
+        table.add_row(cells);
     }
     let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
     format!(
