@@ -37,13 +37,12 @@ fn paper_table() -> String {
     for (case, options, remark) in rows {
         let result = run(&[&["simulate", "--case", case], options].concat());
         let paper = &result["paper"];
-        let (quantity, unit, expected, found) = match paper["average_power"].as_f64() {
-            Some(power) => ("P", "W", power, result["average_power_eq13"].as_f64().unwrap()),
-            None => {
-                let gain = paper["average_voltage_gain"].as_f64().unwrap();
-                ("`<U>`", "V/s", gain, result["average_voltage_gain"].as_f64().unwrap())
-            }
+        let (quantity, unit, expected, found) = if let Some(power) = paper["average_power"].as_f64() {
+            ("P", "W", power, &result["average_power_eq13"])
+        } else {
+            ("`<U>`", "V/s", paper["average_voltage_gain"].as_f64().unwrap(), &result["average_voltage_gain"])
         };
+        let found = found.as_f64().unwrap();
         let shown = if unit == "W" { format!("{found:.5}") } else { format!("{found:.1}") };
         let deviation = (found / expected - 1.0) * 100.0;
         writeln!(table, "| `{case}` | {quantity}, {unit} | {expected} | {shown} | {deviation:+.3} % | {remark} |")
