@@ -1,4 +1,4 @@
-//! `videg fmu`: build and describe FMUs.
+//! `videg fmu`: build, check and describe FMUs.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::progress::spinner;
-use super::{Verdict, format, output};
+use super::{Verdict, fmu_check, format, output};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
 use crate::package::{self, Options};
 
@@ -28,6 +28,14 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
+    /// Load an FMU and run it for some steps: does it keep the promises of its model description?
+    Check {
+        /// The FMU; its code is run in this process
+        file: PathBuf,
+        /// Print one JSON object on stdout instead of the list
+        #[arg(long)]
+        json: bool,
+    },
     /// Describe an FMU: platforms, capabilities, variables. Nothing of it is unpacked or run
     Info {
         /// The FMU
@@ -42,6 +50,7 @@ enum Task {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
         Task::Build { output, json } => build(output.clone(), *json)?,
+        Task::Check { file, json } => return fmu_check::run(file, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
@@ -121,7 +130,7 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
         found.map_or_else(|| number.to_string(), |item| item.name.clone())
     };
     let (kind, start, min, max) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| value.to_string()), *min, *max),
+        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| format!("{value:?}")), *min, *max),
         Kind::Integer { start, min, max } => {
             ("Integer", start.map(|value| value.to_string()), min.map(f64::from), max.map(f64::from))
         }
@@ -144,7 +153,7 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
 }
 
 fn text(info: &Info) -> String {
-    let mut table = format::table(&["variable", "start", "unit", "causality"]);
+    let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
     for variable in &info.variables {
         let start = variable.start.clone().unwrap_or_default();
         let unit = variable.unit.clone().unwrap_or_else(|| variable.r#type.to_lowercase());

@@ -7,6 +7,7 @@ mod completions;
 mod cosim;
 mod cosim_report;
 mod fmu;
+mod fmu_check;
 mod format;
 mod options;
 mod output;
@@ -44,7 +45,6 @@ pub(crate) enum Verdict {
     /// Done, or checked and found right.
     Passed,
     /// A check failed; what was found is printed.
-    #[allow(dead_code)]
     Failed,
 }
 
