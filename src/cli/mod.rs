@@ -17,6 +17,7 @@ mod simulate;
 
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 /// Vibro-impact dielectric elastomer generator: co-simulate the harvester FMU with a harvesting circuit.
@@ -50,7 +51,11 @@ pub(crate) enum Verdict {
 
 /// Runs the tool with the arguments of the process.
 pub fn main() -> ExitCode {
-    let result = match Cli::parse().verb {
+    let verb = match Cli::try_parse() {
+        Ok(cli) => cli.verb,
+        Err(error) => return refuse(&error),
+    };
+    let result = match verb {
         Verb::Cosim(arguments) => cosim::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
@@ -66,6 +71,22 @@ pub fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// Says on one line what is wrong with the arguments; prints what is no error (`--help`, `--version`) as it is.
+fn refuse(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        // Nobody is left to tell if not even this can be printed.
+        let _ = error.print();
+        return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+    }
+    let text = error.render().to_string();
+    let message = ["\n\nUsage:", "\n\nFor more information"]
+        .iter()
+        .fold(text.as_str(), |text, end| text.split_once(end).map_or(text, |(message, _)| message));
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    eprintln!("videg: {}", line.trim_start_matches("error: "));
+    ExitCode::from(2)
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
