@@ -1,5 +1,7 @@
 //! The command line as a user or a script meets it: exit codes, `--json`, the files written, and the paper's numbers.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::path::Path;
 use std::process::Command;
 use std::sync::{LazyLock, Mutex, PoisonError};
