@@ -151,16 +151,19 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Pulses kept at a time; of more, the smallest are dropped, which are hidden below the others.
+    /// Pulses kept at a time; of more, the one that ends first is dropped.
     const CAPACITY: usize = 256;
 
     /// Adds the pulse of a new impact, and forgets those that have ended.
     pub fn push(&mut self, shape: &PulseShape, pulse: Pulse) {
         self.under_way.retain(|old| shape.end_time(old) > pulse.start);
         if self.under_way.len() >= Self::CAPACITY {
-            self.under_way.pop();
+            let ends = self.under_way.iter().map(|pulse| shape.end_time(pulse)).enumerate();
+            if let Some((first, _)) = ends.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                self.under_way.remove(first);
+            }
         }
-        // Largest peak first, so that `at` can stop early and a full list drops its smallest.
+        // Largest peak first, so that `at` can stop early.
         let position = self.under_way.partition_point(|old| old.peak >= pulse.peak);
         self.under_way.insert(position, pulse);
     }

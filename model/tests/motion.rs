@@ -221,6 +221,12 @@ fn times_and_forces_that_make_no_sense_are_errors() {
     assert!(harvester.set_external_force(f64::INFINITY, 0.0).is_err());
     assert!(harvester.set_external_force(0.0, f64::NAN).is_err());
     assert_eq!(harvester.time(), 1.0);
+    let noisy = Parameters { phase_noise: 1.0, noise_hold: 1e-9, ..Parameters::default() };
+    for (p, start) in [(Parameters::default(), 1e15), (Parameters::default(), f64::NAN), (noisy, 5e8)] {
+        let error = Harvester::new(&p, start).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("start time = {start} s is outside")), "{error}");
+    }
+    assert!(Harvester::new(&noisy, 1e6).is_ok() && Harvester::new(&noisy, -1.0).is_ok());
 }
 
 #[test]
