@@ -1,5 +1,7 @@
 //! Where the energy and the charge went.
 
+use crate::error::{Error, finite};
+
 /// Running sums since the start; energies in J, charges in C.
 ///
 /// What the mechanics gave is booked twice, on two paths that share no arithmetic: [`converted`](Self::converted)
@@ -26,6 +28,13 @@ pub struct Ledger {
 }
 
 impl Ledger {
+    /// Rejects sums that no run can have given.
+    pub(crate) fn validate(&self) -> Result<(), Error> {
+        let energies = [self.supply, self.load, self.zener, self.diode, self.stored, self.mechanical];
+        energies.into_iter().try_for_each(|energy| finite("ledger", energy, "J"))?;
+        [self.supply_charge, self.load_charge].into_iter().try_for_each(|charge| finite("ledger", charge, "C"))
+    }
+
     /// Energy that the mechanics gave, from the electrical side (J): load + zener + diode + stored - supply.
     pub fn converted(&self) -> f64 {
         self.load + self.zener + self.diode + self.stored - self.supply

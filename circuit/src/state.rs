@@ -114,7 +114,11 @@ impl State {
         finite("right.charge", self.charge[1], "C")?;
         finite("time", self.time, "s")?;
         finite("load.voltage", self.load_voltage, "V")?;
+        finite("load.current", self.load_current, "A")?;
+        finite("supply.current", self.supply_current, "A")?;
         not_negative("internal step", self.internal_step, "s")?;
+        finite("stored energy at the start", self.initial_energy, "J")?;
+        self.ledger.validate()?;
         for node in 0..2 {
             let flags = [self.charging[node], self.holding[node], self.releasing[node]];
             if flags.iter().filter(|flag| **flag).count() > 1 {

@@ -47,6 +47,14 @@ pub enum ModelError {
         /// Time asked for, s.
         to: f64,
     },
+    /// A snapshot holds what no harvester can have had.
+    #[error("the snapshot is no state of this harvester: {name} {value}")]
+    Snapshot {
+        /// What is impossible.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// More events than the budget within one second of simulated time.
     #[error(
         "more than {limit} events within one second up to t = {time} s, with ball.travel = {travel} m and \

@@ -107,6 +107,18 @@ impl Flight {
         Self { start, coefficients, swing, frequency: drive.frequency, angle, half_travel }
     }
 
+    /// c0, m: what remains of dz when polynomial and cosine start at their zeros.
+    pub fn offset(&self) -> f64 {
+        self.coefficients[0]
+    }
+
+    /// The same flight with another c0, m.
+    #[must_use]
+    pub fn with_offset(mut self, offset: f64) -> Self {
+        self.coefficients[0] = offset;
+        self
+    }
+
     fn omega(&self) -> f64 {
         TAU * self.frequency
     }

@@ -1,6 +1,9 @@
 //! The vibro-impact harvester under the impulsive law: from event to event, exactly.
 
 mod events;
+mod snapshot;
+
+pub use self::snapshot::Snapshot;
 
 use self::events::{Event, Search};
 use crate::cylinder::{CylinderMotion, Drive};

@@ -4,9 +4,6 @@
 //! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
 //! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
 
-/// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
-const MIN_RESTITUTION: f64 = 0.01;
-
 /// One pulse: an impact and what it does to the membrane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
@@ -37,12 +34,15 @@ pub struct PulseShape {
 }
 
 impl PulseShape {
+    /// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
+    pub const MIN_RESTITUTION: f64 = 0.01;
+
     /// Shape for force exponent n of Eq. (2) and restitution r of Eq. (11).
     pub fn new(exponent: f64, restitution: f64) -> Self {
         // The two series meet where y^(n+1) = 1/2; each converges there at least as fast as 2^-k.
         let half = 0.5_f64.powf(1.0 / (exponent + 1.0));
         let loading = half * lower_series(exponent, 0.5) + upper_series(exponent, 0.5) * 0.5_f64.sqrt();
-        Self { exponent, loading, stretch: 1.0 / restitution.max(MIN_RESTITUTION) }
+        Self { exponent, loading, stretch: 1.0 / restitution.max(Self::MIN_RESTITUTION) }
     }
 
     /// Time from the impact to the largest deflection, s.
@@ -152,7 +152,17 @@ pub struct Pulses {
 
 impl Pulses {
     /// Pulses kept at a time; of more, the one that ends first is dropped.
-    const CAPACITY: usize = 256;
+    pub(crate) const CAPACITY: usize = 256;
+
+    /// The pulses, the largest peak first.
+    pub(crate) fn into_inner(self) -> Vec<Pulse> {
+        self.under_way
+    }
+
+    /// Pulses in the order of [`Pulses::into_inner`].
+    pub(crate) fn from_inner(under_way: Vec<Pulse>) -> Self {
+        Self { under_way }
+    }
 
     /// Adds the pulse of a new impact, and forgets those that have ended.
     pub fn push(&mut self, shape: &PulseShape, pulse: Pulse) {

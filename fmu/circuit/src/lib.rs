@@ -5,6 +5,7 @@
 #![allow(non_snake_case)] // the library is named after the model identifier
 
 mod slave;
+mod state;
 mod variables;
 
 pub use slave::Harvesting;

@@ -1,7 +1,7 @@
 //! The slave: what the importer sets, and the circuit that it drives.
 
-use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, Variable};
-use videg_circuit::{Circuit, Error, Settings};
+use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
+use videg_circuit::{Circuit, Error, Settings, names};
 
 use crate::variables::VARIABLES;
 
@@ -17,13 +17,18 @@ pub struct Harvesting {
     /// Their rates over the next step, F/s; none: the capacitance set is taken to be reached at the step's end.
     pub(crate) rate: [Option<f64>; 2],
     /// The circuit; before initialisation it is made anew from the parameters whenever they are read.
-    circuit: Result<Circuit, Error>,
+    pub(crate) circuit: Result<Circuit, Error>,
 }
 
 impl Harvesting {
     /// Reads a value from the circuit; NaN while the parameters contradict each other (before initialisation only).
     pub(crate) fn read(&self, value: impl FnOnce(&Circuit) -> f64) -> f64 {
         self.circuit.as_ref().map_or(f64::NAN, value)
+    }
+
+    /// The circuit, unless the parameters contradict each other.
+    pub(crate) fn circuit(&self) -> Option<&Circuit> {
+        self.circuit.as_ref().ok()
     }
 
     fn running(&mut self) -> Result<&mut Circuit, SlaveError> {
@@ -39,7 +44,9 @@ impl Slave for Harvesting {
         .copyright("Copyright (c) The videg developers")
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
-        .default_experiment(0.0, 100.0, 1e-3);
+        .default_experiment(0.0, 100.0, 1e-3)
+        .can_serialize()
+        .directional_derivatives();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -70,5 +77,22 @@ impl Slave for Harvesting {
         stepped.map_err(|error| SlaveError::error(error.to_string()))?;
         self.capacitance = end;
         Ok(())
+    }
+
+    /// At the start both membranes are charged to the supply and nothing flows yet. Afterwards they hold charge: no output
+    /// depends on an input of the same communication point.
+    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        match unknown.name() {
+            names::LEFT_VOLTAGE | names::RIGHT_VOLTAGE => f64::from(known.name() == names::SUPPLY_VOLTAGE),
+            _ => 0.0,
+        }
+    }
+
+    fn write_state(&self, out: &mut StateWriter) {
+        self.write(out);
+    }
+
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        Self::read_from(from)
     }
 }

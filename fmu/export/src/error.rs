@@ -94,6 +94,17 @@ pub(crate) enum CallError {
     UnknownFmuState(usize),
     #[error("the serialised state is refused: {0}")]
     BadSerializedState(#[from] crate::serialize::StateError),
+    #[error(
+        "variable {name} ({type_name}, {variability} {causality}) is no {role} of directional derivatives in state {state}"
+    )]
+    NoDerivative {
+        name: &'static str,
+        type_name: &'static str,
+        causality: &'static str,
+        variability: &'static str,
+        role: &'static str,
+        state: CallState,
+    },
     #[error("not supported by this FMU: {0}")]
     Unsupported(&'static str),
     #[error("status {0} is not available here")]

@@ -20,6 +20,7 @@ impl Guid {
         hash.text(info.model_identifier);
         hash.text(info.version);
         hash.bool(info.can_serialize);
+        hash.bool(info.directional_derivatives);
         hash.bool(info.variable_step_size);
         for variable in S::variables() {
             hash.variable(variable);

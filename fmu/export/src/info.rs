@@ -27,6 +27,9 @@ pub struct ModelInfo {
     /// Whether [`Slave::write_state`](crate::Slave::write_state) and
     /// [`Slave::read_state`](crate::Slave::read_state) are implemented (`canSerializeFMUstate`).
     pub can_serialize: bool,
+    /// Whether [`Slave::partial_derivative`](crate::Slave::partial_derivative) is implemented
+    /// (`providesDirectionalDerivative`).
+    pub directional_derivatives: bool,
     /// Whether the step size may differ from step to step (`canHandleVariableCommunicationStepSize`).
     pub variable_step_size: bool,
 }
@@ -69,6 +72,7 @@ impl ModelInfo {
             generation_tool: concat!("fmi2-export ", env!("CARGO_PKG_VERSION")),
             default_experiment: None,
             can_serialize: false,
+            directional_derivatives: false,
             variable_step_size: true,
         }
     }
@@ -111,6 +115,13 @@ impl ModelInfo {
     #[must_use]
     pub const fn can_serialize(mut self) -> Self {
         self.can_serialize = true;
+        self
+    }
+
+    /// Says that there are directional derivatives.
+    #[must_use]
+    pub const fn directional_derivatives(mut self) -> Self {
+        self.directional_derivatives = true;
         self
     }
 

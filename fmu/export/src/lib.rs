@@ -61,12 +61,12 @@
 //!   it; serialise it to carry it to another.
 //! - Calls from inside a callback, or from two threads at once, are refused.
 //! - Panics become `fmi2Error` ([`ffi`] says what that means for stderr).
-//! - Messages go to the importer's logger only, and only while logging is on for their category. Why
-//!   `fmi2Instantiate` failed is reported always.
+//! - Messages go to the importer's logger only. Events, warnings and discarded steps are reported while logging is on
+//!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.
 //!
 //! # Not offered
-//! Model exchange, directional derivatives, asynchronous steps. Their functions exist, as importers demand, and
-//! return `fmi2Error`.
+//! Model exchange, asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
+//! `fmi2GetDirectionalDerivative` unless the model offers it.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
 mod call_state;

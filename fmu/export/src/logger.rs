@@ -77,6 +77,7 @@ pub struct Logger {
 }
 
 const ALL_BITS: u8 = 0b1_1111;
+const ALWAYS_ON: u8 = LogCategory::Error.bit() | LogCategory::Fatal.bit();
 
 impl Logger {
     /// A logger that says nothing, for use of a slave without an importer.
@@ -107,9 +108,10 @@ impl Logger {
         self.send(fmi2Warning, LogCategory::Warning, &message);
     }
 
-    /// Whether messages of this category reach anyone, for models that must work to make them.
+    /// Whether messages of this category reach anyone, for models that must work to make them. Errors always do: what
+    /// an importer switches on and off is debug logging, and a call that fails owes its reason.
     pub fn is_enabled(&self, category: LogCategory) -> bool {
-        self.callback.is_some() && self.enabled & category.bit() != 0
+        self.callback.is_some() && (self.enabled | ALWAYS_ON) & category.bit() != 0
     }
 
     /// Reports a call that did not succeed, under the category of its status.

@@ -136,7 +136,7 @@ fn co_simulation<S: Slave>(xml: &mut Xml) -> Written {
         ("canNotUseMemoryManagementFunctions", true.to_string()), // Rust's allocator serves the FMU.
         ("canGetAndSetFMUstate", true.to_string()),
         ("canSerializeFMUstate", info.can_serialize.to_string()),
-        ("providesDirectionalDerivative", false.to_string()),
+        ("providesDirectionalDerivative", info.directional_derivatives.to_string()),
     ];
     empty(xml, "CoSimulation", &flags)
 }

@@ -78,6 +78,16 @@ pub trait Slave: Clone + Send + 'static {
         Ok(())
     }
 
+    /// Partial derivative of `unknown` with respect to `known`, both Real, everything else that may be set being constant.
+    /// Called only if [`ModelInfo::directional_derivatives`] is set. Before the end of initialisation `unknown` is a
+    /// calculated parameter or a continuous output and `known` a parameter or a continuous input. Afterwards it is called
+    /// only for an output and one of the inputs that it depends on directly, as its row of the table says; of others the
+    /// derivative is zero.
+    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        let _ = (unknown, known);
+        0.0
+    }
+
     /// Writes everything that [`read_state`](Self::read_state) needs. Called only if
     /// [`ModelInfo::can_serialize`] is set.
     fn write_state(&self, out: &mut StateWriter) {

@@ -169,6 +169,21 @@ fn categories_decide_what_is_logged() {
 }
 
 #[test]
+fn errors_reach_the_logger_even_with_logging_off() {
+    let host = Host::initialized();
+    assert_eq!(log_only(&host, fmi2False, &[]), fmi2OK);
+    host.trouble("event step");
+    assert_eq!(host.step(0.0, 1.0), fmi2OK);
+    assert_eq!(host.lines(), [], "events are debug logging");
+    assert_eq!(host.step(7.0, 1.0), fmi2Error);
+    assert!(host.error().contains("currentCommunicationPoint = 7"));
+    assert_eq!(host.reset(), fmi2OK);
+    assert_eq!(log_only(&host, fmi2True, &[c"logEvents"]), fmi2OK);
+    assert_eq!(host.step(0.0, 1.0), fmi2Error);
+    assert!(host.error().contains("illegal in state instantiated"));
+}
+
+#[test]
 fn an_unknown_category_earns_a_warning_and_null_an_error() {
     let host = Host::new();
     assert_eq!(log_only(&host, fmi2True, &[c"logStatusWarning", c"logNonsense"]), fmi2Warning);

@@ -4,7 +4,9 @@
 //! in `variables.rs`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
+mod sensitivity;
 mod slave;
+mod state;
 mod variables;
 
 pub use slave::Harvester;

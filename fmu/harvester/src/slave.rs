@@ -1,7 +1,9 @@
 //! The slave: what the importer sets, and the model that it drives.
 
-use fmi2_export::{Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, Variable};
-use videg_model::{Harvester as Model, ModelError, Parameters};
+use fmi2_export::{
+    Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable,
+};
+use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape, Side};
 
 use crate::variables::VARIABLES;
 
@@ -21,9 +23,9 @@ pub struct Harvester {
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
-    start_time: f64,
+    pub(crate) start_time: f64,
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
-    model: Result<Model, ModelError>,
+    pub(crate) model: Result<Model, ModelError>,
 }
 
 impl Harvester {
@@ -63,7 +65,9 @@ impl Slave for Harvester {
         .copyright("Copyright (c) The videg developers")
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
-        .default_experiment(0.0, 100.0, 1e-3);
+        .default_experiment(0.0, 100.0, 1e-3)
+        .can_serialize()
+        .directional_derivatives();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -92,35 +96,55 @@ impl Slave for Harvester {
         self.model = Model::new(&self.parameters, self.start_time);
     }
 
-    fn initialize(&mut self, _log: &Logger) -> Result<(), SlaveError> {
+    fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
         self.check_law()?;
+        if self.parameters.restitution < PulseShape::MIN_RESTITUTION {
+            log.warning(format_args!(
+                "membrane.restitution = {}: pulses of C(t) fall as for {}, 100 times slower than they rise; without a \
+                 rebound they would never end",
+                self.parameters.restitution,
+                PulseShape::MIN_RESTITUTION
+            ));
+        }
         self.running().map(|_| ())
     }
 
+    /// The external force runs on at its rate over the step and stays where that took it, unless it is set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let model = self.running()?;
+        let events = log.is_enabled(LogCategory::Events);
+        let mut number = model.totals().impacts;
         let advanced = model.set_external_force(force, rate).and_then(|()| {
-            if log.is_enabled(LogCategory::Events) {
-                log_impacts(model, t + h, log)?;
-            }
-            model.advance(t + h)
+            model.advance_with(t + h, |impact| {
+                number += 1;
+                if events {
+                    log.event(describe(number, impact));
+                }
+            })
         });
-        advanced.map_err(|error| SlaveError::error(error.to_string()))
+        advanced.map_err(|error| SlaveError::error(error.to_string()))?;
+        self.external_force = force + rate * h;
+        Ok(())
+    }
+
+    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        self.partial(unknown, known)
+    }
+
+    fn write_state(&self, out: &mut StateWriter) {
+        self.write(out);
+    }
+
+    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        Self::read_from(from)
     }
 }
 
-/// Goes from impact to impact up to `end`, s, and reports each. How a step is split does not change the motion.
-fn log_impacts(model: &mut Model, end: f64, log: &Logger) -> Result<(), ModelError> {
-    while let Some(time) = model.next_impact().filter(|&time| time <= end) {
-        model.advance(time)?;
-        let totals = model.totals();
-        let side = if model.relative_displacement() > 0.0 { "left" } else { "right" };
-        let rest = if model.resting().is_some() { "; the ball rests on it" } else { "" };
-        log.event(format_args!(
-            "impact {} at t = {time} s on the {side} membrane, relative speed {} m/s{rest}",
-            totals.impacts, totals.last_speed
-        ));
-    }
-    Ok(())
+/// An impact as the log shows it.
+fn describe(number: u64, impact: &Impact) -> String {
+    let Impact { time, side, speed, rests } = impact;
+    let side = if *side == Side::Left { "left" } else { "right" };
+    let rest = if *rests { "; the ball rests on it" } else { "" };
+    format!("impact {number} at t = {time} s on the {side} membrane, relative speed {speed} m/s{rest}")
 }

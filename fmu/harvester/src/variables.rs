@@ -112,7 +112,7 @@ static CALCULATED: [V; 4] = [
 ];
 
 static INPUTS: [V; 3] = [
-    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7)")
+    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7); with its first derivative set it runs on over the step and stays at the value reached")
         .input_derivatives(1, |slave, _order, value| slave.external_force_rate = value)
         .access(|slave| slave.external_force, |slave, force| slave.external_force = force),
     V::input(
@@ -197,7 +197,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period",
+        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within the present hold interval)",
     )
     .discrete()
     .depends_on(&[])

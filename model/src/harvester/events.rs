@@ -66,6 +66,14 @@ impl Search {
     pub(super) fn new(flight: Flight) -> Self {
         Self { flight, window: 0, found: None, exhausted: false }
     }
+
+    /// The search of a flight in which all events up to `time`, s, have happened: windows that lie before are passed over.
+    pub(super) fn resumed(flight: Flight, time: f64) -> Self {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        // saturates; time does not lie before the start
+        let passed = ((time - flight.start) / flight.window_length()) as u64;
+        Self { window: passed.saturating_sub(1), ..Self::new(flight) }
+    }
 }
 
 impl Harvester {

@@ -114,17 +114,29 @@ pub unsafe fn deserialize_fmu_state<S: Slave>(
     unsafe { enter(c, Function::DeSerializeFmuState, call) }
 }
 
-/// `fmi2GetDirectionalDerivative`: not provided, as `modelDescription.xml` says.
+/// `fmi2GetDirectionalDerivative`
 pub unsafe fn get_directional_derivative<S: Slave>(
     c: fmi2Component,
-    _unknown: *const fmi2ValueReference,
-    _unknown_count: usize,
-    _known: *const fmi2ValueReference,
-    _known_count: usize,
-    _known_seed: *const fmi2Real,
-    _unknown_sensitivity: *mut fmi2Real,
+    unknown: *const fmi2ValueReference,
+    unknown_count: usize,
+    known: *const fmi2ValueReference,
+    known_count: usize,
+    known_seed: *const fmi2Real,
+    unknown_sensitivity: *mut fmi2Real,
 ) -> fmi2Status {
-    let call = |_: &mut Instance<S>| Err(CallError::Unsupported("directional derivatives"));
+    let call = |i: &mut Instance<S>| {
+        // SAFETY: contract of this module.
+        let unknown = unsafe { array(unknown, unknown_count, "vUnknown_ref") }?;
+        // SAFETY: contract of this module.
+        let known = unsafe { array(known, known_count, "vKnown_ref") }?;
+        // SAFETY: contract of this module.
+        let seeds = unsafe { array(known_seed, known_count, "dvKnown") }?;
+        // SAFETY: contract of this module.
+        let sensitivity = unsafe { array_out(unknown_sensitivity, unknown_count, "dvUnknown") }?;
+        i.directional_derivative(unknown, known, seeds, |k, value| {
+            sensitivity[k].write(value);
+        })
+    };
     // SAFETY: contract of this module.
     unsafe { enter(c, Function::GetDirectionalDerivative, call) }
 }

@@ -2,6 +2,7 @@
 //! call one function here; this module guards panics, keeps the call state and turns errors into statuses.
 
 mod co_simulation;
+mod derivatives;
 mod fmu_state;
 mod lifecycle;
 mod values;

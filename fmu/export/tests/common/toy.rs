@@ -149,7 +149,8 @@ impl Slave for Toy {
         .generation_tool("fmi2-export")
         .default_experiment(0.0, 10.0, 0.5)
         .default_tolerance(1e-4)
-        .can_serialize();
+        .can_serialize()
+        .directional_derivatives();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -190,6 +191,15 @@ impl Slave for Toy {
 
     fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
         self.trouble_in("terminate", log)
+    }
+
+    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
+        self.fail_in("derivative");
+        match (unknown.name(), known.name()) {
+            ("doubled", "toy.gain") => 2.0,
+            ("integral", "u") => f64::NAN, // the table says that there is no such dependency
+            _ => 0.0,
+        }
     }
 
     fn write_state(&self, out: &mut StateWriter) {

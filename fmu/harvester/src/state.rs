@@ -1,0 +1,149 @@
+//! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
+
+use fmi2_export::{StateError, StateReader, StateWriter};
+use videg_model::{Harvester as Model, NoiseModel, OutsideGap, Parameters, Pulse, Side, Snapshot, Totals};
+
+use crate::slave::{ContactLaw, Harvester};
+
+impl Harvester {
+    /// Parameters, inputs and, once it has a state of its own, the model.
+    pub(crate) fn write(&self, out: &mut StateWriter) {
+        write_parameters(&self.parameters, out);
+        out.bool(self.law == ContactLaw::Compliant);
+        out.bool(self.electrostatic_feedback);
+        write_all([self.external_force, self.external_force_rate, self.voltages[0], self.voltages[1]], out);
+        out.f64(self.start_time);
+        // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
+        let model = self.model().filter(|model| *model.parameters() == self.parameters);
+        out.bool(model.is_some());
+        if let Some(model) = model {
+            write_snapshot(&model.snapshot(), out);
+        }
+    }
+
+    /// What [`Harvester::write`] wrote.
+    pub(crate) fn read_from(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+        let parameters = read_parameters(from)?;
+        let law = if from.bool()? { ContactLaw::Compliant } else { ContactLaw::Impulsive };
+        let electrostatic_feedback = from.bool()?;
+        let [external_force, external_force_rate, left, right, start_time] = finite(from)?;
+        let model = if from.bool()? {
+            let restored = Model::restore(&parameters, &read_snapshot(from)?);
+            Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
+        } else {
+            Model::new(&parameters, start_time)
+        };
+        let voltages = [left, right];
+        Ok(Self {
+            parameters,
+            law,
+            electrostatic_feedback,
+            external_force,
+            external_force_rate,
+            voltages,
+            start_time,
+            model,
+        })
+    }
+}
+
+fn write_parameters(parameters: &Parameters, out: &mut StateWriter) {
+    for quantity in Parameters::TABLE {
+        out.f64((quantity.get)(parameters));
+    }
+    out.i32(parameters.seed);
+    out.bool(parameters.noise_model == NoiseModel::Wiener);
+    out.bool(parameters.outside_gap == OutsideGap::Free);
+}
+
+fn read_parameters(from: &mut StateReader<'_>) -> Result<Parameters, StateError> {
+    let mut parameters = Parameters::default();
+    for quantity in Parameters::TABLE {
+        (quantity.set)(&mut parameters, from.f64()?);
+    }
+    parameters.seed = from.i32()?;
+    parameters.noise_model = if from.bool()? { NoiseModel::Wiener } else { NoiseModel::Held };
+    parameters.outside_gap = if from.bool()? { OutsideGap::Free } else { OutsideGap::Project };
+    Ok(parameters)
+}
+
+fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
+    out.f64(snapshot.time);
+    write_all(snapshot.cylinder, out);
+    write_all(snapshot.external, out);
+    write_all(snapshot.ball, out);
+    write_all(snapshot.flight, out);
+    out.u8(snapshot.resting.map_or(0, |side| if side == Side::Left { 1 } else { 2 }));
+    out.u64(snapshot.noise_sample);
+    out.f64(snapshot.noise_walk);
+    for pulses in &snapshot.pulses {
+        out.len(pulses.len());
+        for pulse in pulses {
+            write_all([pulse.start, pulse.speed, pulse.peak], out);
+        }
+    }
+    let totals = &snapshot.totals;
+    for count in [totals.impacts, totals.chatters, totals.releases] {
+        out.u64(count);
+    }
+    write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
+    out.f64(snapshot.second);
+    out.u64(snapshot.second_events);
+}
+
+fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
+    Ok(Snapshot {
+        time: from.f64()?,
+        cylinder: array(from)?,
+        external: array(from)?,
+        ball: array(from)?,
+        flight: array(from)?,
+        resting: match from.u8()? {
+            0 => None,
+            1 => Some(Side::Left),
+            2 => Some(Side::Right),
+            other => return Err(StateError::Invalid(format!("{other} is no side"))),
+        },
+        noise_sample: from.u64()?,
+        noise_walk: from.f64()?,
+        pulses: [read_pulses(from)?, read_pulses(from)?],
+        totals: Totals {
+            impacts: from.u64()?,
+            chatters: from.u64()?,
+            releases: from.u64()?,
+            last_speed: from.f64()?,
+            voltage_gain: from.f64()?,
+            energy: from.f64()?,
+        },
+        second: from.f64()?,
+        second_events: from.u64()?,
+    })
+}
+
+fn read_pulses(from: &mut StateReader<'_>) -> Result<Vec<Pulse>, StateError> {
+    let count = from.len(3 * size_of::<f64>())?;
+    (0..count).map(|_| array(from).map(|[start, speed, peak]| Pulse { start, speed, peak })).collect()
+}
+
+fn write_all<const N: usize>(values: [f64; N], out: &mut StateWriter) {
+    for value in values {
+        out.f64(value);
+    }
+}
+
+fn array<const N: usize>(from: &mut StateReader<'_>) -> Result<[f64; N], StateError> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        *value = from.f64()?;
+    }
+    Ok(values)
+}
+
+/// Values that no Set lets become infinite or NaN.
+fn finite<const N: usize>(from: &mut StateReader<'_>) -> Result<[f64; N], StateError> {
+    let values = array(from)?;
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(StateError::Invalid(format!("an input or the start time is {value}"))),
+        None => Ok(values),
+    }
+}

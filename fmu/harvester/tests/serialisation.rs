@@ -1,0 +1,146 @@
+//! Serialised states: the run goes on to the last bit, in this process or in another; nonsense is refused.
+#![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
+
+mod common;
+
+use VibroImpactHarvester::Harvester;
+use common::{fresh, get, initialized, outputs, set, step};
+use fmi2_export::{Slave, StateError, StateReader, StateWriter};
+use std::process::Command;
+use videg_model::{Case, Parameters};
+
+/// Noise on, r = 0.6, at the paper's size.
+const NOISY: &[(&str, f64)] = &[("excitation.phaseNoise", 0.7), ("excitation.noiseHold", 1e-3)];
+
+const STATE: &str = "VIDEG_TEST_SERIALISED_STATE";
+
+fn bytes(slave: &Harvester) -> Vec<u8> {
+    let mut out = StateWriter::new();
+    slave.write_state(&mut out);
+    out.into_bytes()
+}
+
+fn restored(bytes: &[u8]) -> Result<Harvester, StateError> {
+    let mut reader = StateReader::new(bytes);
+    let slave = Harvester::read_state(&mut reader)?;
+    reader.finish()?;
+    Ok(slave)
+}
+
+/// Outputs after each of some steps of different size from `time`, s, with an external force on the way.
+fn go_on(slave: &mut Harvester, mut time: f64) -> Vec<Vec<u64>> {
+    let mut steps = Vec::new();
+    for k in 1..=30_u32 {
+        if k == 10 {
+            set(slave, "externalForce", 0.02);
+        }
+        let h = 0.003 * f64::from(k);
+        step(slave, time, h);
+        time += h;
+        steps.push(outputs(slave));
+    }
+    steps
+}
+
+fn run_to(reals: &[(&str, f64)], time: f64) -> Harvester {
+    let mut slave = initialized(reals);
+    if time > 0.0 {
+        step(&mut slave, 0.0, time);
+    }
+    slave
+}
+
+fn assert_goes_on_alike(reals: &[(&str, f64)], time: f64) {
+    let mut original = run_to(reals, time);
+    let mut copy = restored(&bytes(&original)).expect("a state");
+    assert_eq!(outputs(&copy), outputs(&original), "at {time} s");
+    assert_eq!(go_on(&mut copy, time), go_on(&mut original, time), "from {time} s on");
+}
+
+#[test]
+fn a_restored_slave_goes_on_to_the_last_bit_with_noise_and_in_the_middle_of_pulses() {
+    let mut pressed = 0;
+    for k in 0..40 {
+        let time = 0.031 * f64::from(k);
+        let slave = run_to(NOISY, time);
+        pressed += u32::from(get(&slave, "left.deflection") + get(&slave, "right.deflection") > 0.0);
+        assert_goes_on_alike(NOISY, time);
+        assert_goes_on_alike(&[], time);
+    }
+    assert!(pressed > 3, "{pressed} of 40 states lie in a pulse");
+}
+
+#[test]
+fn a_restored_slave_still_rests() {
+    // Chatters and rests for a part of each cycle.
+    let parameters = (Case::find("table3-2hz").expect("a case").parameters)();
+    let reals: Vec<_> = Parameters::TABLE.iter().map(|quantity| (quantity.name, (quantity.get)(&parameters))).collect();
+    let at_rest = |time: &f64| get(&run_to(&reals, *time), "contact.resting") == 1.0;
+    let times: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).filter(at_rest).take(10).collect();
+    assert!(!times.is_empty(), "the case is chosen because the ball rests");
+    for time in times {
+        assert_goes_on_alike(&reals, time);
+    }
+}
+
+#[test]
+fn a_state_before_initialisation_keeps_what_was_set_even_if_it_is_contradictory() {
+    let mut slave = fresh(&[]);
+    set(&mut slave, "ball.radius", 0.5);
+    let mut copy = restored(&bytes(&slave)).expect("a state");
+    assert_eq!(get(&copy, "ball.radius"), 0.5);
+    copy.update();
+    assert!(get(&copy, "left.capacitance").is_nan());
+    set(&mut copy, "ball.radius", 0.005);
+    copy.update();
+    assert_eq!(outputs(&copy), outputs(&fresh(&[])));
+}
+
+#[test]
+fn a_derivative_of_the_input_that_waits_for_the_next_step_is_part_of_the_state() {
+    let mut original = run_to(&[], 0.3);
+    let fmi2_export::Kind::Real(spec) = common::row("externalForce").kind() else { unreachable!() };
+    spec.input_derivatives.expect("derivatives").1(&mut original, 1, 0.4);
+    let mut copy = restored(&bytes(&original)).expect("a state");
+    assert_eq!(go_on(&mut copy, 0.3), go_on(&mut original, 0.3));
+}
+
+#[test]
+fn bytes_that_are_no_state_are_refused() {
+    let good = bytes(&run_to(NOISY, 1.7));
+    for length in 0..good.len() {
+        assert!(restored(&good[..length]).is_err(), "{length} bytes");
+    }
+    assert!(restored(&[good.as_slice(), &[0]].concat()).is_err());
+    let slave = run_to(NOISY, 1.7);
+    for name in ["gain.voltage", "gain.energyEq13", "impact.lastVelocity", "ball.velocity", "excitation.noiseHold"] {
+        let value = get(&slave, name).to_le_bytes();
+        let offset = good.windows(8).position(|window| window == value).expect(name);
+        for nonsense in [f64::NAN, f64::INFINITY] {
+            let mut bad = good.clone();
+            bad[offset..offset + 8].copy_from_slice(&nonsense.to_le_bytes());
+            assert!(matches!(restored(&bad), Err(StateError::Invalid(_))), "{name} = {nonsense}");
+        }
+    }
+}
+
+/// Runs in the second process only: reads a state, goes on, prints what comes out.
+#[test]
+fn the_second_process() {
+    let Ok(hex) = std::env::var(STATE) else { return };
+    let pairs = hex.as_bytes().chunks(2).map(|pair| core::str::from_utf8(pair).expect("ASCII"));
+    let bytes: Vec<u8> = pairs.map(|pair| u8::from_str_radix(pair, 16).expect("hexadecimal")).collect();
+    let mut slave = restored(&bytes).expect("a state");
+    println!("\nresult {:?}", go_on(&mut slave, 1.3));
+}
+
+#[test]
+fn a_second_process_goes_on_to_the_last_bit() {
+    let mut original = run_to(NOISY, 1.3);
+    let hex = bytes(&original).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+    let mut command = Command::new(std::env::current_exe().expect("a path"));
+    let output = command.args(["--exact", "the_second_process", "--nocapture"]).env(STATE, hex).output();
+    let text = String::from_utf8(output.expect("a process").stdout).expect("UTF-8");
+    let line = text.lines().find_map(|line| line.strip_prefix("result ")).expect("a result");
+    assert_eq!(line, format!("{:?}", go_on(&mut original, 1.3)));
+}

@@ -1,0 +1,146 @@
+//! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
+
+use super::events::Search;
+use super::{Ball, Harvester, Noise, Totals, phase};
+use crate::cylinder::{CylinderMotion, Drive};
+use crate::error::ModelError;
+use crate::flight::{Flight, Side};
+use crate::membrane::Membrane;
+use crate::parameters::Parameters;
+use crate::pulse::{Pulse, PulseShape, Pulses};
+
+/// Everything that a [`Harvester`] carries from one step to the next, besides its parameters.
+///
+/// Exported by [`Harvester::snapshot`], imported by [`Harvester::restore`]. What follows from these values, such as the
+/// time of the next impact, is worked out again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// Present time, s.
+    pub time: f64,
+    /// Start of the cylinder's present motion, s; `z_M`, m, and `z_M'`, m/s, there.
+    pub cylinder: [f64; 3],
+    /// External force over M at that start, m/s^2, and its rate, m/s^3.
+    pub external: [f64; 2],
+    /// Last event of the ball, s; `z_m`, m, and `z_m'`, m/s, there.
+    pub ball: [f64; 3],
+    /// The membrane on which the ball rests.
+    pub resting: Option<Side>,
+    /// Start of the present search for events, s, and the constant term of `z_M` - `z_m` counted from there, m.
+    pub flight: [f64; 2],
+    /// Number of the phase-noise sample in force.
+    pub noise_sample: u64,
+    /// The Wiener process of the phase noise, sqrt(s).
+    pub noise_walk: f64,
+    /// Pulses under way on the left and on the right membrane, the largest peak first.
+    pub pulses: [Vec<Pulse>; 2],
+    /// Sums over all impacts so far.
+    pub totals: Totals,
+    /// Number of the second in which events are being counted.
+    pub second: f64,
+    /// Events counted in it.
+    pub second_events: u64,
+}
+
+impl Harvester {
+    /// The dynamic state.
+    pub fn snapshot(&self) -> Snapshot {
+        let Self { cylinder, ball, noise, .. } = self;
+        Snapshot {
+            time: self.time,
+            cylinder: [cylinder.start, cylinder.position, cylinder.velocity],
+            external: [cylinder.drive.external, cylinder.drive.external_rate],
+            ball: [ball.since, ball.position, ball.velocity],
+            resting: ball.resting,
+            flight: [self.search.flight.start, self.search.flight.offset()],
+            noise_sample: noise.sample,
+            noise_walk: noise.walk,
+            pulses: self.pulses.clone().map(Pulses::into_inner),
+            totals: self.totals,
+            second: self.second,
+            second_events: self.second_events,
+        }
+    }
+
+    /// The harvester that had this state. With the parameters it had then, it goes on as if nothing had happened, to the
+    /// last bit.
+    ///
+    /// # Errors
+    /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
+    pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        parameters.validate()?;
+        snapshot.validate(parameters)?;
+        let p = *parameters;
+        let noise = Noise { sample: snapshot.noise_sample, walk: snapshot.noise_walk };
+        let [external, external_rate] = snapshot.external;
+        let drive = Drive {
+            amplitude: p.amplitude / p.cylinder_mass,
+            frequency: p.frequency,
+            phase: phase(&p, &noise),
+            external,
+            external_rate,
+        };
+        let [start, position, velocity] = snapshot.cylinder;
+        let cylinder = CylinderMotion::new(start, position, velocity, drive);
+        let [since, position, velocity] = snapshot.ball;
+        let ball = Ball { since, position, velocity, resting: snapshot.resting };
+        let [start, offset] = snapshot.flight;
+        let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
+        let flight = Flight::new(&cylinder, start, 0.0, ball_velocity, p.travel() / 2.0).with_offset(offset);
+        let mut harvester = Self {
+            parameters: p,
+            membrane: Membrane::new(&p),
+            shape: PulseShape::new(p.stiffness_exponent, p.restitution),
+            time: snapshot.time,
+            cylinder,
+            ball,
+            noise,
+            search: Search::resumed(flight, snapshot.time),
+            pulses: snapshot.pulses.clone().map(Pulses::from_inner),
+            totals: snapshot.totals,
+            second: snapshot.second,
+            second_events: snapshot.second_events,
+        };
+        harvester.advance(snapshot.time)?;
+        Ok(harvester)
+    }
+}
+
+impl Snapshot {
+    fn validate(&self, parameters: &Parameters) -> Result<(), ModelError> {
+        let Self { time, totals, .. } = *self;
+        check("time", time, time.is_finite())?;
+        for value in self.cylinder.into_iter().chain(self.external).chain(self.ball).chain(self.flight) {
+            check("motion", value, value.is_finite())?;
+        }
+        for start in [self.cylinder[0], self.ball[0], self.flight[0]] {
+            // Beyond 2^53 periods ago, time has no digits left in which to search.
+            check("start of a motion", start, start <= time && (time - start) * parameters.frequency < 9.0e15)?;
+        }
+        check("Wiener process", self.noise_walk, self.noise_walk.is_finite())?;
+        if parameters.phase_noise > 0.0 {
+            let (sample, hold) = (self.noise_sample as f64, parameters.noise_hold);
+            let in_force = (sample + 1.0) * hold > time && sample * hold <= time.max(0.0) + hold;
+            check("noise sample", sample, in_force)?;
+        }
+        for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
+            check("sum over the impacts", sum, sum.is_finite() && sum >= 0.0)?;
+        }
+        check("second", self.second, self.second.is_finite())?;
+        self.pulses.iter().try_for_each(|pulses| validate_pulses(pulses, time))
+    }
+}
+
+fn validate_pulses(pulses: &[Pulse], time: f64) -> Result<(), ModelError> {
+    check("number of pulses", pulses.len() as f64, pulses.len() <= Pulses::CAPACITY)?;
+    for pulse in pulses {
+        check("start of a pulse", pulse.start, pulse.start.is_finite() && pulse.start <= time)?;
+        check("speed of a pulse", pulse.speed, pulse.speed.is_finite() && pulse.speed >= 0.0)?;
+        check("peak of a pulse", pulse.peak, pulse.peak.is_finite() && pulse.peak >= 0.0)?;
+    }
+    let ascent = pulses.windows(2).find(|pair| pair[0].peak < pair[1].peak);
+    check("order of the pulses", ascent.map_or(0.0, |pair| pair[1].peak), ascent.is_none())
+}
+
+fn check(name: &'static str, value: f64, holds: bool) -> Result<(), ModelError> {
+    if holds { Ok(()) } else { Err(ModelError::Snapshot { name, value }) }
+}
