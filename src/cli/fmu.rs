@@ -21,6 +21,10 @@ pub struct Arguments {
 enum Task {
     /// Build the FMUs of this project into target/fmu
     Build {
+        /// Build for these instead of this machine alone, all into the same FMUs: linux64 (runs with glibc 2.17 and
+        /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
+        #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
+        targets: Vec<String>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -41,20 +45,24 @@ enum Task {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
-        Task::Build { output, json } => build(output.clone(), *json)?,
+        Task::Build { targets, output, json } => build(targets, output.clone(), *json)?,
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
 }
 
-fn build(folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+fn build(targets: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
     #[derive(Serialize)]
     struct Built {
         fmus: Vec<PathBuf>,
     }
     let waiting = spinner("building the FMUs");
-    let built =
-        package::build_all(&Options { output: folder, progress: |line| eprintln!("{line}"), ..Options::default() });
+    let built = package::build_all(&Options {
+        output: folder,
+        targets: targets.to_vec(),
+        progress: |line| eprintln!("{line}"),
+        ..Options::default()
+    });
     waiting.finish_and_clear();
     let fmus = built?;
     if json {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::platform::Platform;
 use crate::fmi::FmiError;
 
 /// Result of the packager.
@@ -90,11 +91,43 @@ pub enum PackageError {
     },
     /// FMI 2.0 has no name for a platform.
     #[error(
-        "no FMI 2.0 platform for the target {triple}; allowed are Linux, Windows and macOS targets of 32 or 64 bits"
+        "no FMI 2.0 platform for the target {triple}; allowed are linux64, win64, darwin64 and Rust triples of Linux, \
+         Windows and macOS"
     )]
     Platform {
         /// The target triple.
         triple: String,
+    },
+    /// Only a Mac can link for macOS.
+    #[error(
+        "cannot build for {target} on this machine, since Apple's linker runs on a Mac only; build there and merge the \
+         libraries with --add-binary {}=FILE", platform.folder
+    )]
+    NeedsMac {
+        /// As asked for.
+        target: String,
+        /// The platform.
+        platform: Platform,
+    },
+    /// A tool for building is not installed.
+    #[error("cannot build for {target}: {tool} is missing; install it with `{install}`")]
+    MissingTool {
+        /// The tool.
+        tool: String,
+        /// What was to be built.
+        target: String,
+        /// The command that installs it.
+        install: String,
+    },
+    /// Two targets would share a folder of the archive.
+    #[error("two targets for the platform {}: {first} and {second}; an FMU holds one", platform.folder)]
+    SamePlatform {
+        /// The platform.
+        platform: Platform,
+        /// One target.
+        first: String,
+        /// The other.
+        second: String,
     },
 }
 

@@ -21,12 +21,15 @@ mod error;
 mod fresh;
 mod locate;
 mod platform;
+mod target;
+mod tools;
 
 use std::path::{Path, PathBuf};
 
 pub use contents::Contents;
 pub use error::{PackageError, Result};
 pub use platform::Platform;
+use target::Target;
 
 /// An FMU of this project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +61,8 @@ pub struct Options {
     pub workspace: Option<PathBuf>,
     /// Whether Cargo may be run.
     pub build: bool,
-    /// Target triples to package for, all into one archive; none means this machine.
+    /// What to package for, all into one archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
+    /// or Rust triples; none means this machine, for itself.
     pub targets: Vec<String>,
     /// Gets a line of Cargo's progress whenever something is really compiled.
     pub progress: fn(&str),
@@ -85,16 +89,7 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
     let workspace = options.workspace.clone().or_else(locate::workspace);
     let workspace = workspace.as_deref();
     let output = options.output.clone().unwrap_or_else(|| default_output(workspace));
-    let targets: Vec<_> = if options.targets.is_empty() {
-        vec![None]
-    } else {
-        options.targets.iter().map(|triple| Some(triple.as_str())).collect()
-    };
-    let mut binaries = Vec::new();
-    for target in targets {
-        let platform = target.map_or(Ok(Platform::HOST), Platform::of_triple)?;
-        binaries.push((platform, locate::libraries(options, workspace, target, platform)?));
-    }
+    let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();
     for (index, fmu) in FMUS.iter().enumerate() {
         let mut contents = Contents::new(fmu.identifier, &locate::description(fmu, workspace)?)?;
@@ -112,6 +107,22 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
         archives.push(archive);
     }
     Ok(archives)
+}
+
+/// The libraries of each platform, in the order of [`FMUS`].
+fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
+    if options.targets.is_empty() {
+        return Ok(vec![(Platform::HOST, locate::libraries(options, workspace, None)?)]);
+    }
+    // All are read before the first is built, which may take minutes.
+    let targets = options.targets.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
+    for (index, target) in targets.iter().enumerate() {
+        if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
+            let (first, second) = (first.argument(), target.argument());
+            return Err(PackageError::SamePlatform { platform: target.platform, first, second });
+        }
+    }
+    targets.iter().map(|target| Ok((target.platform, locate::libraries(options, workspace, Some(target))?))).collect()
 }
 
 #[cfg(test)]
