@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::progress::spinner;
 use super::{Verdict, format, output};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
-use crate::package::{self, Options};
+use crate::package::{self, AddedBinary, Options};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -25,6 +25,10 @@ enum Task {
         /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
         #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
         targets: Vec<String>,
+        /// Add a library that was built elsewhere, such as darwin64=libVibroImpactHarvester.dylib; its name tells the
+        /// FMU. May be repeated
+        #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
+        added: Vec<String>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -45,21 +49,23 @@ enum Task {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
-        Task::Build { targets, output, json } => build(targets, output.clone(), *json)?,
+        Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
 }
 
-fn build(targets: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
     #[derive(Serialize)]
     struct Built {
         fmus: Vec<PathBuf>,
     }
+    let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
     let waiting = spinner("building the FMUs");
     let built = package::build_all(&Options {
         output: folder,
         targets: targets.to_vec(),
+        added,
         progress: |line| eprintln!("{line}"),
         ..Options::default()
     });

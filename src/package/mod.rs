@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+mod binary;
 mod cargo;
 mod contents;
 mod error;
@@ -26,6 +27,7 @@ mod tools;
 
 use std::path::{Path, PathBuf};
 
+pub use binary::AddedBinary;
 pub use contents::Contents;
 pub use error::{PackageError, Result};
 pub use platform::Platform;
@@ -64,6 +66,9 @@ pub struct Options {
     /// What to package for, all into one archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
     /// or Rust triples; none means this machine, for itself.
     pub targets: Vec<String>,
+    /// Libraries that were built elsewhere. One for this machine takes the place of the one that would be built without
+    /// any target.
+    pub added: Vec<AddedBinary>,
     /// Gets a line of Cargo's progress whenever something is really compiled.
     pub progress: fn(&str),
 }
@@ -71,7 +76,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
-        Self { output: None, workspace: None, build, targets: Vec::new(), progress: |_| {} }
+        Self { output: None, workspace: None, build, targets: Vec::new(), added: Vec::new(), progress: |_| {} }
     }
 }
 
@@ -98,6 +103,9 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
                 contents.add_library(*platform, library);
             }
         }
+        for binary in options.added.iter().filter(|binary| binary.identifier == fmu.identifier) {
+            contents.add_library(binary.platform, &binary.path);
+        }
         if let Some(workspace) = workspace {
             contents.add_folder("documentation", &workspace.join(fmu.folder).join("documentation"))?;
             contents.add_licenses(workspace)?;
@@ -111,18 +119,45 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
 
 /// The libraries of each platform, in the order of [`FMUS`].
 fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
-    if options.targets.is_empty() {
+    // All is checked before the first library is built, which may take minutes.
+    let targets = targets(&options.targets)?;
+    check_added(&options.added, &targets)?;
+    if targets.is_empty() {
+        let is_added = |fmu: &FmuPackage| {
+            options.added.iter().any(|it| it.identifier == fmu.identifier && it.platform == Platform::HOST)
+        };
+        if FMUS.iter().all(is_added) {
+            return Ok(Vec::new());
+        }
         return Ok(vec![(Platform::HOST, locate::libraries(options, workspace, None)?)]);
     }
-    // All are read before the first is built, which may take minutes.
-    let targets = options.targets.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
+    targets.iter().map(|target| Ok((target.platform, locate::libraries(options, workspace, Some(target))?))).collect()
+}
+
+/// Reads the targets; each platform may be named once.
+fn targets(asked: &[String]) -> Result<Vec<Target>> {
+    let targets = asked.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
     for (index, target) in targets.iter().enumerate() {
         if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
             let (first, second) = (first.argument(), target.argument());
             return Err(PackageError::SamePlatform { platform: target.platform, first, second });
         }
     }
-    targets.iter().map(|target| Ok((target.platform, locate::libraries(options, workspace, Some(target))?))).collect()
+    Ok(targets)
+}
+
+/// No added library may share its place with another or with a target that was asked for.
+fn check_added(added: &[AddedBinary], targets: &[Target]) -> Result<()> {
+    for (index, binary) in added.iter().enumerate() {
+        let AddedBinary { platform, identifier, path } = binary.clone();
+        let twin = added.iter().take(index).find(|it| it.identifier == identifier && it.platform == platform);
+        let target = targets.iter().find(|target| target.platform == platform);
+        let other = twin.map(|twin| twin.path.display().to_string());
+        if let Some(other) = other.or_else(|| target.map(|target| format!("the target {}", target.argument()))) {
+            return Err(PackageError::AddedTwice { identifier, platform, path, other });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
