@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
-use crate::package::{self, Options};
+use crate::package::{self, AddedBinary, Options};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -21,6 +21,14 @@ pub struct Arguments {
 enum Task {
     /// Build the FMUs of this project into target/fmu
     Build {
+        /// Build for these instead of this machine alone, all into the same FMUs: linux64 (runs with glibc 2.17 and
+        /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
+        #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
+        targets: Vec<String>,
+        /// Add a library that was built elsewhere, such as darwin64=libVibroImpactHarvester.dylib; its name tells the
+        /// FMU. May be repeated
+        #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
+        added: Vec<String>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -49,21 +57,27 @@ enum Task {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
-        Task::Build { output, json } => build(output.clone(), *json)?,
+        Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
         Task::Check { file, json } => return fmu_check::run(file, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
 }
 
-fn build(folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
     #[derive(Serialize)]
     struct Built {
         fmus: Vec<PathBuf>,
     }
+    let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
     let waiting = spinner("building the FMUs");
-    let built =
-        package::build_all(&Options { output: folder, progress: |line| eprintln!("{line}"), ..Options::default() });
+    let built = package::build_all(&Options {
+        output: folder,
+        targets: targets.to_vec(),
+        added,
+        progress: |line| eprintln!("{line}"),
+        ..Options::default()
+    });
     waiting.finish_and_clear();
     let fmus = built?;
     if json {

@@ -93,7 +93,8 @@ fn a_description_of_another_model_is_refused() {
 fn without_libraries_the_error_says_where_it_looked_and_why_nothing_was_built() {
     let tree = tree();
     let workspace = Some(tree.path().to_path_buf());
-    let targets = vec!["x86_64-pc-windows-gnu".to_owned()];
+    // A target that nobody builds, lest its libraries lie about.
+    let targets = vec!["i586-pc-windows-msvc".to_owned()];
     let options = Options { workspace, build: false, targets, ..Options::default() };
     let error = build_all(&options).unwrap_err();
     assert!(matches!(error, PackageError::NoLibrary { .. }), "{error}");
@@ -118,4 +119,12 @@ fn an_archive_without_this_platform_is_not_loaded() {
     let path = tree.path().join("Toy.fmu");
     Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().write(&path).unwrap();
     assert!(Fmu::open(PathBuf::from(&path)).unwrap_err().to_string().contains("no binary for this platform"));
+}
+
+#[test]
+fn two_targets_for_one_platform_are_refused_before_anything_is_built() {
+    let targets = vec!["linux64".to_owned(), "aarch64-unknown-linux-gnu".to_owned()];
+    let error = build_all(&Options { targets, ..Options::default() }).unwrap_err().to_string();
+    let both = "x86_64-unknown-linux-gnu.2.17 and aarch64-unknown-linux-gnu";
+    assert_eq!(error, format!("two targets for the platform linux64: {both}; an FMU holds one"));
 }
