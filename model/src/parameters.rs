@@ -42,7 +42,7 @@ macro_rules! parameters {
         /// Parameters of one harvester. Real ones are listed in [`Parameters::TABLE`].
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters {
-            $(#[doc = concat!("`", $name, "` [", $unit, "]: ", $description)] pub $field: f64,)*
+            $(#[doc = concat!("`", $name, "` (", $unit, "): ", $description)] pub $field: f64,)*
             /// `excitation.seed`: seed of the phase noise.
             pub seed: i32,
             /// `excitation.noiseModel`: how the phase noise is read.

@@ -1,7 +1,7 @@
 //! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the FMI 2.0 interface for co-simulation.
 //!
 //! Only glue lives here: [`Harvester`] keeps what the importer sets and hands it to [`videg_model`]; the variables are
-//! in [`variables`], the parameters among them in the model's own table.
+//! in `variables`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
 mod slave;
