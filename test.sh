@@ -35,7 +35,8 @@ has_command() {
 }
 
 has_library() {
-    PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --quiet --fixed-strings "$1"
+    # Not grep --quiet: it leaves early, and the broken pipe would count as a failure.
+    PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --fixed-strings "$1" >/dev/null
 }
 
 has_venv() {
