@@ -3,9 +3,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit fmpy)
+readonly STAGES=(setup lint unit fmpy conformance)
 readonly VENV=.venv
-readonly REQUIREMENTS=tests/requirements.txt
+# The second takes the first in.
+readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
 
 usage() {
     cat <<'EOF'
@@ -16,6 +17,7 @@ Runs the stages named, or all of them in this order:
   lint         cargo fmt, clippy and rustdoc, with warnings as errors
   unit         the tests of all Rust packages
   fmpy         FMPy simulates the FMUs and agrees with the command line
+  conformance  other tools check and run the FMUs; writes docs/conformance.md
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF
@@ -33,7 +35,8 @@ has_command() {
 }
 
 has_library() {
-    PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --quiet --fixed-strings "$1"
+    # Not grep --quiet: it leaves early, and the broken pipe would count as a failure.
+    PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --fixed-strings "$1" >/dev/null
 }
 
 has_venv() {
@@ -68,14 +71,14 @@ install_packages() {
 # Installs the pinned Python packages, unless those of this very list are there already.
 install_python_packages() {
     local stamp="$VENV/requirements.sha256" wanted
-    wanted=$(cat "$REQUIREMENTS" <(python3 --version) | sha256sum)
+    wanted=$(cat "${REQUIREMENTS[@]}" <(python3 --version) | sha256sum)
     if [[ -f $stamp && $(<"$stamp") == "$wanted" ]]; then
         echo "Python packages: up to date"
         return
     fi
     echo "installing Python packages into $VENV"
     python3 -m venv --clear "$VENV"
-    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "$REQUIREMENTS"
+    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "${REQUIREMENTS[1]}"
     "$VENV/bin/pip" check
     echo "$wanted" >"$stamp"
 }
@@ -134,6 +137,12 @@ stage_fmpy() {
     need_python
     build_fmus
     run "$VENV/bin/python" -m pytest tests/fmpy
+}
+
+stage_conformance() {
+    need_python
+    build_fmus
+    run "$VENV/bin/python" tests/conformance
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -1,6 +1,5 @@
 //! The command line as a user or a script meets it: exit codes, `--json`, the files written, and the paper's numbers.
-
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::path::Path;
 use std::process::Command;
