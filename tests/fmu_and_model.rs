@@ -1,13 +1,16 @@
-//! The packaged FMUs give what the Rust packages behind them give, to the last bit.
+//! The packaged FMUs give what the Rust packages behind them give: the harvester to the last bit, the circuit to
+//! rounding.
 
 #![allow(clippy::unwrap_used)]
 
+use std::sync::{Arc, Mutex};
 use videg::cosim::{CircuitSlave, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
-use videg::fmi::Fmu;
+use videg::fmi::{Fmu, Logging};
 use videg::package::{Options, build_all};
 use videg::scenario::{Request, Scenario};
+
 use videg_circuit::Settings;
-use videg_model::{Case, Harvester, Side};
+use videg_model::{Case, Harvester, Membrane, Parameters, Side};
 
 fn fmus() -> [Fmu; 2] {
     let folder = tempfile::tempdir().unwrap();
@@ -60,5 +63,37 @@ fn the_circuit_fmu_gives_what_the_embedded_solver_gives() {
     for (a, b) in a.iter().zip(b) {
         // The FMU gets a rate and multiplies it by the step: rounding, no more.
         assert!((a - b).abs() <= 1e-12 * a.abs(), "{a:e} against {b:e}");
+    }
+}
+
+#[test]
+fn the_circuit_starts_with_the_capacitance_of_the_harvesters_membranes() {
+    let [harvester, circuit] = fmus();
+    let started = circuit.instantiate("circuit", Logging::default()).unwrap().get_by_name("left.capacitance").unwrap();
+    let calculated = harvester.instantiate("harvester", Logging::default()).unwrap();
+    assert_eq!(started, calculated.get_by_name("membrane.restCapacitance").unwrap());
+    assert_eq!(started.to_string(), Membrane::new(&Parameters::default()).rest_capacitance().to_string());
+}
+
+#[test]
+fn every_impact_is_logged_with_rests_and_with_noise() {
+    let [fmu, _] = fmus();
+    for (case, noise) in [("table3-2hz", "0"), ("fig14", "0.5")] {
+        let lines = Arc::new(Mutex::new(Vec::new()));
+        let sink = Arc::clone(&lines);
+        let logging =
+            Logging { enabled: true, ..Logging::to(move |record| sink.lock().unwrap().push(record.message.clone())) };
+        let mut instance = fmu.instantiate("logged", logging).unwrap();
+        for setting in scenario(case, 5.0).settings {
+            instance.set_by_name(&setting.name, &setting.value).unwrap();
+        }
+        instance.set_by_name("excitation.phaseNoise", noise).unwrap();
+        instance.setup_experiment(0.0, None, None).unwrap();
+        instance.enter_initialization_mode().unwrap();
+        instance.exit_initialization_mode().unwrap();
+        (0..5).for_each(|k| instance.do_step(f64::from(k), 1.0).unwrap());
+        let impacts = instance.get_by_name("impact.count").unwrap().to_string();
+        let logged = lines.lock().unwrap().iter().filter(|line| line.starts_with("impact ")).count();
+        assert!(logged > 10 && logged.to_string() == impacts, "{case}: {logged} of {impacts}");
     }
 }

@@ -14,6 +14,7 @@ mod output;
 mod packaging;
 mod picture;
 mod progress;
+mod settings;
 mod simulate;
 
 use std::process::ExitCode;

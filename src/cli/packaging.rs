@@ -9,7 +9,9 @@ use crate::package::{self, FMUS, Options};
 /// Packages the FMUs, with progress, and opens the one with this identifier.
 pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
     let waiting = spinner("packaging the FMUs");
-    let paths = package::build_all(&Options { progress: |line| eprintln!("{line}"), ..Options::default() });
+    // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
+    let as_is = std::env::var_os("CARGO").is_none();
+    let paths = package::build_all(&Options { as_is, progress: |line| eprintln!("{line}"), ..Options::default() });
     waiting.finish_and_clear();
     let paths = paths.context("cannot package the FMUs")?;
     let index = FMUS.iter().position(|fmu| fmu.identifier == identifier);

@@ -29,8 +29,14 @@ fn is_workspace(folder: &Path) -> bool {
 /// The libraries for one target, in the order of [`FMUS`]: built, or else found.
 pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Option<&Target>) -> Result<Vec<PathBuf>> {
     let platform = target.map_or(Platform::HOST, |target| target.platform);
+    if options.as_is
+        && target.is_none()
+        && let Some(libraries) = beside_program(platform, |_| true)
+    {
+        return Ok(libraries);
+    }
     if let (None, true, Some(workspace)) = (target, options.build, workspace)
-        && let Some(libraries) = fresh_beside_program(workspace, platform)
+        && let Some(libraries) = beside_program(platform, |library| fresh::is_fresh(library, workspace))
     {
         return Ok(libraries);
     }
@@ -47,13 +53,13 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
     FMUS.iter().map(|fmu| find(fmu, platform, &folders, &why)).collect()
 }
 
-/// The release libraries beside the running program, if all are as new as their sources: what `cargo run --release` has
-/// just built.
-fn fresh_beside_program(workspace: &Path, platform: Platform) -> Option<Vec<PathBuf>> {
+/// The release libraries beside the running program, if all are there and pass `test`. What `cargo run --release` has
+/// just built passes the test of being as new as its sources.
+fn beside_program(platform: Platform, test: impl Fn(&Path) -> bool) -> Option<Vec<PathBuf>> {
     let program = std::env::current_exe().ok()?;
-    let beside = program.parent().filter(|folder| folder.ends_with("release"))?;
+    let beside = program.parent().filter(|folder| !folder.ends_with("debug") && !folder.ends_with("deps"))?;
     let libraries = FMUS.iter().map(|fmu| beside.join(platform.cargo_name(fmu.identifier)));
-    libraries.map(|library| fresh::is_fresh(&library, workspace).then_some(library)).collect()
+    libraries.map(|library| (library.is_file() && test(&library)).then_some(library)).collect()
 }
 
 fn is_not_found(error: &PackageError) -> bool {

@@ -63,6 +63,9 @@ pub struct Options {
     pub workspace: Option<PathBuf>,
     /// Whether Cargo may be run.
     pub build: bool,
+    /// Take the libraries that lie beside the running program as they are, if they do: a program that was not started by
+    /// Cargo goes with those that it came with, whatever has become of the source tree since.
+    pub as_is: bool,
     /// What to package for, all into one archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
     /// or Rust triples; none means this machine, for itself.
     pub targets: Vec<String>,
@@ -76,7 +79,15 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
-        Self { output: None, workspace: None, build, targets: Vec::new(), added: Vec::new(), progress: |_| {} }
+        Self {
+            output: None,
+            workspace: None,
+            build,
+            as_is: false,
+            targets: Vec::new(),
+            added: Vec::new(),
+            progress: |_| {},
+        }
     }
 }
 
