@@ -246,3 +246,19 @@ fn every_parameter_out_of_bounds_is_named_with_value_and_bound() {
     let error = Harvester::new(&Parameters { cylinder_length: 0.0, frame_width: 0.001, ..Parameters::default() }, 0.0);
     assert!(error.unwrap_err().to_string().contains("ball.travel"));
 }
+
+#[test]
+fn stable_cases_have_the_impacts_of_brute_force_one_by_one() {
+    for (case, until, slowest) in [("fig14", 10.0, 0.0), ("fig15", 10.0, 0.0), ("table3-2hz", 2.0, 1e-2)] {
+        let p = (Case::find(case).unwrap().parameters)();
+        let mut stepper = Stepper::new(p, 1e-6);
+        stepper.run(until);
+        let resolved = |list: &[Impact]| list.iter().copied().filter(|i| i.speed > slowest).collect::<Vec<_>>();
+        let ours = resolved(&impacts(&mut Harvester::new(&p, 0.0).unwrap(), until));
+        let theirs = resolved(&stepper.impacts);
+        assert!(ours.len() > 20 && ours.len() == theirs.len(), "{case}: {} against {}", ours.len(), theirs.len());
+        for (a, b) in ours.iter().zip(&theirs) {
+            assert!((a.time - b.time).abs() < 1e-6 && (a.speed - b.speed).abs() < 1e-6, "{case}: {a:?} {b:?}");
+        }
+    }
+}
