@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::progress::spinner;
-use super::{Verdict, fmu_check, format, output};
+use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
 use crate::package::{self, AddedBinary, Options};
 
@@ -75,7 +75,7 @@ fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bo
         output: folder,
         targets: targets.to_vec(),
         added,
-        progress: |line| eprintln!("{line}"),
+        progress: packaging::follow,
         ..Options::default()
     });
     waiting.finish_and_clear();

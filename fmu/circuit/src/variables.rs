@@ -1,9 +1,7 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the table of the
 //! circuit.
 
-use std::sync::LazyLock;
-
-use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
 use videg_circuit::{Circuit, Settings, names};
 
 use crate::slave::{Harvesting, REST_CAPACITANCE};
@@ -96,8 +94,8 @@ static OUTPUTS: [V; 14] = outputs! {
     "load.charge", "C", "Charge through the load since the start", |c| c.ledger().load_charge;
 };
 
+/// Number of variables.
+const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.len();
+
 /// The whole table; the value reference of a variable is its index.
-pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
-    let groups: [&[V]; 4] = [&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS];
-    groups.concat()
-});
+pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS]);

@@ -1,9 +1,7 @@
 //! The variable table: each name, unit and description stands here once, those of the real parameters in the table of
 //! the model.
 
-use std::sync::LazyLock;
-
-use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
 use videg_model::{NoiseModel, OutsideGap, Parameters, Side};
 
 use crate::slave::{ContactLaw, Harvester};
@@ -227,8 +225,16 @@ static EVENTS: [V; 8] = [
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
 ];
 
+/// Number of variables.
+const COUNT: usize = PARAMETERS.len()
+    + CHOICES.len()
+    + CALCULATED.len()
+    + INPUTS.len()
+    + LEFT.len()
+    + RIGHT.len()
+    + MOTION.len()
+    + EVENTS.len();
+
 /// The whole table; the value reference of a variable is its index.
-pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
-    let groups: [&[V]; 8] = [&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS];
-    groups.concat()
-});
+pub static VARIABLES: [V; COUNT] =
+    concat(&[&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS]);
