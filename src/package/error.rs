@@ -90,6 +90,25 @@ pub enum PackageError {
         /// The model that is packaged.
         allowed: String,
     },
+    /// The picture of a model cannot be drawn.
+    #[error(
+        "cannot draw the model: the start value of {variable} is {}, allowed is a positive number",
+        found.map_or_else(|| "missing".to_owned(), |found| found.to_string())
+    )]
+    Picture {
+        /// The variable.
+        variable: &'static str,
+        /// Its start value, if it has one.
+        found: Option<f64>,
+    },
+    /// The documentation cannot be written.
+    #[error("cannot write the documentation of {identifier}: {cause}")]
+    Documentation {
+        /// Model identifier.
+        identifier: String,
+        /// What the template engine said.
+        cause: askama::Error,
+    },
     /// FMI 2.0 has no name for a platform.
     #[error(
         "no FMI 2.0 platform for the target {triple}; allowed are linux64, win64, darwin64 and Rust triples of Linux, \

@@ -1,6 +1,7 @@
 //! Packager: from the compiled libraries to `.fmu` archives.
 //!
-//! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and documentation.
+//! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
+//! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses.
 //! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
 //! is packaged always belongs to the sources. Without it, the libraries beside the running program are taken.
 //!
@@ -18,9 +19,11 @@
 mod binary;
 mod cargo;
 mod contents;
+mod documentation;
 mod error;
 mod fresh;
 mod locate;
+mod picture;
 mod platform;
 mod target;
 mod tools;
@@ -117,10 +120,7 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
         for binary in options.added.iter().filter(|binary| binary.identifier == fmu.identifier) {
             contents.add_library(binary.platform, &binary.path);
         }
-        if let Some(workspace) = workspace {
-            contents.add_folder("documentation", &workspace.join(fmu.folder).join("documentation"))?;
-            contents.add_licenses(workspace)?;
-        }
+        documentation::add(&mut contents)?;
         let archive = output.join(format!("{}.fmu", fmu.identifier));
         contents.write(&archive)?;
         archives.push(archive);

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::{Contents, FMUS, Options, PackageError, Platform, build_all, locate};
+use super::{Contents, FMUS, Options, PackageError, Platform, build_all, documentation, locate};
 use crate::fmi::{Archive, Fmu};
 
 const DESCRIPTION: &str = include_str!("../fmi/testdata/good.xml");
@@ -20,7 +20,6 @@ fn tree() -> TempDir {
     write("target/release/libToy.so", "library");
     write("documentation/index.html", "<html/>");
     write("documentation/images/a.svg", "<svg/>");
-    write("LICENSE-MIT", "free");
     tree
 }
 
@@ -29,7 +28,7 @@ fn contents(tree: &Path) -> Contents {
     contents.add_library(Platform { folder: "linux64" }, &tree.join("target/release/libToy.so"));
     contents.add_folder("documentation", &tree.join("documentation")).unwrap();
     contents.add_folder("resources", &tree.join("absent")).unwrap();
-    contents.add_licenses(tree).unwrap();
+    documentation::add(&mut contents).unwrap();
     contents
 }
 
@@ -43,7 +42,10 @@ fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
         "binaries/linux64/Toy.so",
         "documentation/images/a.svg",
         "documentation/index.html",
+        "documentation/licenses/LICENSE-APACHE",
         "documentation/licenses/LICENSE-MIT",
+        "documentation/licenses/license.txt",
+        "documentation/licenses/spdx.txt",
         "modelDescription.xml",
     ];
     assert_eq!(archive.entries(), wanted);
