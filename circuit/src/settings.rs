@@ -22,7 +22,7 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Start value.
     pub start: f64,
-    /// Smallest value allowed; the circuit refuses 0 itself where it makes no sense.
+    /// Smallest value allowed.
     pub min: f64,
     /// Largest value allowed; infinite only where infinity itself is a value.
     pub max: f64,
@@ -61,16 +61,16 @@ macro_rules! quantities {
 impl Settings {
     /// Every real parameter.
     pub const QUANTITIES: &'static [Quantity] = quantities! {
-        names::SUPPLY_VOLTAGE, "V", 2000.0, 0.0, 1e6, circuit.supply_voltage, "U_in: voltage of the supply, Section 4.1";
-        names::ZENER_VOLTAGE, "V", 2000.0, 0.0, 1e6, circuit.zener_voltage, "U_z: voltage at which charge is released to the load, at least U_in, Section 4.1";
+        names::SUPPLY_VOLTAGE, "V", 2000.0, 1e-3, 1e6, circuit.supply_voltage, "U_in: voltage of the supply, Section 4.1";
+        names::ZENER_VOLTAGE, "V", 2000.0, 1e-3, 1e6, circuit.zener_voltage, "U_z: voltage at which charge is released to the load, at least U_in, Section 4.1";
         names::LOAD_RESISTANCE, "Ohm", 1e9, 0.0, f64::INFINITY, circuit.load_resistance, "R: load resistance, 0 to infinity; the paper gives none";
-        names::SATURATION_CURRENT, "A", 1e-13, 0.0, 1e3, diode.saturation_current, "IS of exponential diodes";
-        names::EMISSION_COEFFICIENT, "1", 0.01, 0.0, 1e3, diode.emission_coefficient, "N of exponential diodes; 0.01 is near-ideal";
-        names::TEMPERATURE, "K", 300.15, 0.0, 1e4, diode.temperature, "Temperature of exponential diodes";
-        names::BREAKDOWN_CURRENT, "A", 1e-13, 0.0, 1e3, diode.breakdown_current, "IBV of exponential Zener diodes";
-        names::BREAKDOWN_EMISSION, "1", 0.01, 0.0, 1e3, diode.breakdown_emission, "NBV of exponential Zener diodes";
-        names::SWITCH_BAND, "V", 0.02, 0.0, 1e3, diode.switch_band, "Voltage over which the switch turns on, with exponential diodes";
-        names::RELATIVE_TOLERANCE, "1", 1e-9, 0.0, 1e3, diode.solver.relative_tolerance, "Relative tolerance of the integrator of exponential diodes";
+        names::SATURATION_CURRENT, "A", 1e-13, 1e-30, 1e3, diode.saturation_current, "IS of exponential diodes";
+        names::EMISSION_COEFFICIENT, "1", 0.01, 1e-6, 1e3, diode.emission_coefficient, "N of exponential diodes; 0.01 is near-ideal";
+        names::TEMPERATURE, "K", 300.15, 1.0, 1e4, diode.temperature, "Temperature of exponential diodes";
+        names::BREAKDOWN_CURRENT, "A", 1e-13, 1e-30, 1e3, diode.breakdown_current, "IBV of exponential Zener diodes";
+        names::BREAKDOWN_EMISSION, "1", 0.01, 1e-6, 1e3, diode.breakdown_emission, "NBV of exponential Zener diodes";
+        names::SWITCH_BAND, "V", 0.02, 1e-9, 1e3, diode.switch_band, "Voltage over which the switch turns on, with exponential diodes";
+        names::RELATIVE_TOLERANCE, "1", 1e-9, 1e-14, 1e3, diode.solver.relative_tolerance, "Relative tolerance of the integrator of exponential diodes";
     };
 
     /// Every parameter that chooses.

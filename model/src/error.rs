@@ -55,15 +55,19 @@ pub enum ModelError {
         /// Its value.
         value: f64,
     },
-    /// More events than the budget within one excitation period: the motion is beyond what can be resolved.
+    /// More events than the budget within one second of simulated time.
     #[error(
-        "{limit} events within one excitation period up to t = {time} s: the restitution coefficient is too close to 1 \
-         for bounces this small"
+        "more than {limit} events within one second up to t = {time} s, with ball.travel = {travel} m and \
+         membrane.restitution = {restitution}: the gap is too narrow for the speed, or bounces die away too slowly"
     )]
     TooManyEvents {
         /// Time of the last event, s.
         time: f64,
-        /// Events allowed in one period.
+        /// Events allowed in one second.
         limit: u64,
+        /// s, m.
+        travel: f64,
+        /// r.
+        restitution: f64,
     },
 }

@@ -214,7 +214,7 @@ impl Flight {
         // The piece starts on the membrane, to rounding, and presses on. The contact is put where the penetration exceeds
         // rounding, so that time has gone on when the ball is next looked at. A start beyond the membrane is no contact
         // (OutsideGap::Free), and neither is a piece that stays within rounding, as after a release.
-        let on_membrane = gap_from > -OUTSIDE * self.half_travel;
+        let on_membrane = gap_from > -(OUTSIDE * self.half_travel).max(1e3 * rounding);
         (on_membrane && gap_to < -rounding).then(|| {
             let beyond = |tau| (gap(tau).0 + rounding, gap(tau).1);
             Contact { elapsed: bracketed_root(from, to, beyond), side }

@@ -15,6 +15,9 @@ use crate::noise;
 use crate::parameters::{NoiseModel, OutsideGap, Parameters};
 use crate::pulse::{Deflection, PulseShape, Pulses};
 
+/// Farthest start from t = 0, s: times have digits below a microsecond up to there.
+const MAX_START: f64 = 1e9;
+
 /// Sums over all impacts so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
@@ -38,6 +41,19 @@ impl Totals {
     pub fn events(&self) -> u64 {
         self.impacts + self.releases
     }
+}
+
+/// One impact, as [`Harvester::advance_with`] shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Time, s.
+    pub time: f64,
+    /// The membrane.
+    pub side: Side,
+    /// Relative speed before the impact, m/s.
+    pub speed: f64,
+    /// The ball comes to rest on the membrane.
+    pub rests: bool,
 }
 
 /// The ball since its last event: straight on while free, carried by the membrane while resting.
@@ -71,21 +87,21 @@ pub struct Harvester {
     totals: Totals,
     /// Its states are placed by an integrator.
     placed: bool,
-    /// Period in which events are being counted, and their number: the budget.
-    period: f64,
-    period_events: u64,
+    /// Second in which events are being counted, and their number: the budget.
+    second: f64,
+    second_events: u64,
 }
 
 impl Harvester {
     /// The harvester at `start`, s, in its initial state.
     ///
     /// # Errors
-    /// A parameter out of bounds ([`Parameters::validate`]); a start time that is not finite.
+    /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
+    /// phase noise, beyond 2^52 hold intervals.
     pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
         parameters.validate()?;
-        finite("start time", start)?;
         let p = *parameters;
-        let noise = Noise { sample: sample_number(&p, start), walk: 0.0 };
+        let noise = Noise { sample: first_sample(&p, start)?, walk: 0.0 };
         let drive = Drive {
             amplitude: p.amplitude / p.cylinder_mass,
             frequency: p.frequency,
@@ -113,8 +129,8 @@ impl Harvester {
             pulses: [Pulses::default(), Pulses::default()],
             totals: Totals::default(),
             placed: false,
-            period: 0.0,
-            period_events: 0,
+            second: 0.0,
+            second_events: 0,
         };
         harvester.rest_if_started_at_rest();
         harvester.advance(start)?;
@@ -126,12 +142,23 @@ impl Harvester {
     /// # Errors
     /// A time that is not finite or lies in the past; more events than can be resolved.
     pub fn advance(&mut self, time: f64) -> Result<(), ModelError> {
+        self.advance_with(time, |_| {})
+    }
+
+    /// Moves on as [`Harvester::advance`] does, and shows each impact to `on_impact`.
+    ///
+    /// # Errors
+    /// As [`Harvester::advance`].
+    pub fn advance_with(&mut self, time: f64, mut on_impact: impl FnMut(&Impact)) -> Result<(), ModelError> {
         finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
         while let Some(event) = self.next_event(time).filter(|event| event.time() <= time) {
             self.process(event)?;
+            if let Event::Impact { time, side } = event {
+                on_impact(&Impact { time, side, speed: self.totals.last_speed, rests: self.ball.resting.is_some() });
+            }
         }
         self.time = time;
         // Look one period ahead, so that the next impact is known; what is found does not depend on the steps.
@@ -139,8 +166,8 @@ impl Harvester {
         Ok(())
     }
 
-    /// Sets the external force on the cylinder from now on: `force`, N, growing by `rate`, N/s. Nothing changes, to the
-    /// last bit, if this is what it does already.
+    /// Sets the external force on the cylinder from now on: `force`, N, growing by `rate`, N/s. Setting the
+    /// constant force again that acts already changes nothing, to the last bit.
     ///
     /// # Errors
     /// A force or rate that is not finite.
@@ -271,15 +298,22 @@ impl Harvester {
     }
 }
 
-/// Number of the noise sample that holds at `time`, s.
-fn sample_number(parameters: &Parameters, time: f64) -> u64 {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates; a start before t = 0 gets sample 0
-    let mut sample = (time / parameters.noise_hold) as u64;
-    // The quotient is rounded, the grid is the product: make sure that the sample's interval ends after `time`.
-    while (sample + 1) as f64 * parameters.noise_hold <= time {
+/// Number of the noise sample that holds at the start, s; a start before t = 0 gets sample 0.
+fn first_sample(parameters: &Parameters, start: f64) -> Result<u64, ModelError> {
+    /// Beyond this the grid of sample times has no digits to tell neighbours apart.
+    const MAX_SAMPLES: f64 = 4_503_599_627_370_496.0; // 2^52
+    let noisy = parameters.phase_noise > 0.0;
+    let max = if noisy { MAX_START.min(MAX_SAMPLES * parameters.noise_hold) } else { MAX_START };
+    if !(start >= -MAX_START && start <= max) {
+        return Err(ModelError::Bounds { name: "start time", value: start, unit: "s", min: -MAX_START, max });
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 2^52; negative ones become 0
+    let mut sample = if noisy { (start / parameters.noise_hold) as u64 } else { 0 };
+    // The quotient is rounded, the grid is the product: make sure that the sample's interval ends after the start.
+    while noisy && (sample + 1) as f64 * parameters.noise_hold <= start {
         sample += 1;
     }
-    sample
+    Ok(sample)
 }
 
 /// Phase of the harmonic force under the present noise sample, rad.

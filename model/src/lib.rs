@@ -29,7 +29,7 @@ pub use cases::{Case, saw_tooth_limit};
 pub use cylinder::{CylinderMotion, Drive};
 pub use error::ModelError;
 pub use flight::Side;
-pub use harvester::{Harvester, Snapshot, Totals};
+pub use harvester::{Harvester, Impact, Snapshot, Totals};
 pub use membrane::Membrane;
 pub use parameters::{NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
 pub use pulse::{Deflection, Pulse, PulseShape};

@@ -134,22 +134,26 @@ impl Membrane {
         0.5 * bias * bias * self.rest_capacitance * self.capacitance_excess(deflection)
     }
 
-    /// Sum of `C_3` / `C_2` - 1 over the endless impacts at `speed`, r `speed`, r^2 `speed`, ... (m/s).
+    /// Sum of `C_3` / `C_2` - 1 over the endless impacts at `speed`, r `speed`, r^2 `speed`, ... (m/s), r < 1.
     ///
     /// Terms are added one by one until the deflection is so small that the excess is a power of the speed: with
     /// `A_3` / `A_2` - 1 -> (delta / `R_2`)^2 / 2 it goes as speed^(4 / (n + 1)), and the rest is a geometric series.
     pub fn excess_of_chatter(&self, speed: f64, restitution: f64) -> f64 {
         const POWER_LAW_BELOW: f64 = 1e-12;
-        let ratio = restitution.powf(4.0 / (self.exponent + 1.0));
+        const MAX_TERMS: u32 = 1000;
         let (mut sum, mut speed) = (0.0, speed);
-        loop {
-            let excess = self.capacitance_excess(self.deflection(speed));
-            if excess < POWER_LAW_BELOW || ratio >= 1.0 {
-                return sum + if ratio < 1.0 { excess / (1.0 - ratio) } else { excess };
+        let mut excess = self.capacitance_excess(self.deflection(speed));
+        for _ in 0..MAX_TERMS {
+            if excess < POWER_LAW_BELOW {
+                break;
             }
             sum += excess;
             speed *= restitution;
+            excess = self.capacitance_excess(self.deflection(speed));
         }
+        // 1 - r^(4 / (n + 1)), with its digits for r near 1.
+        let complement = -(4.0 / (self.exponent + 1.0) * restitution.ln()).exp_m1();
+        sum + excess / complement
     }
 
     /// Exponent n of the force law, Eq. (2).

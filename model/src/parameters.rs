@@ -42,7 +42,7 @@ macro_rules! parameters {
         /// Parameters of one harvester. Real ones are listed in [`Parameters::TABLE`].
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters {
-            $(#[doc = concat!("`", $name, "` [", $unit, "]: ", $description)] pub $field: f64,)*
+            $(#[doc = concat!("`", $name, "` in ", $unit, ": ", $description)] pub $field: f64,)*
             /// `excitation.seed`: seed of the phase noise.
             pub seed: i32,
             /// `excitation.noiseModel`: how the phase noise is read.
@@ -79,7 +79,7 @@ parameters! {
     relative_permittivity: "membrane.relativePermittivity", "1", 3.4, 1.0, 1e4, "epsilon_r: relative permittivity of the membrane, Eq. (1)";
     stiffness: "membrane.stiffness", "N/m^n", 4.0847e5, 1e-6, 1e15, "K: factor of the force law f = K x^n, Eq. (2)";
     stiffness_exponent: "membrane.stiffnessExponent", "1", 2.6, 1.0, 10.0, "n: exponent of the force law f = K x^n, Eq. (2)";
-    restitution: "membrane.restitution", "1", 0.6, 0.0, 1.0, "r: coefficient of restitution, Eq. (11)";
+    restitution: "membrane.restitution", "1", 0.6, 0.0, 1.0, "r: coefficient of restitution, Eq. (11); a pulse of C(t) falls 1/r times slower than it rises, at most 100 times";
     amplitude: "excitation.amplitude", "N", 0.5, 0.0, 1e6, "A: amplitude of the harmonic force on the cylinder, Eq. (7)";
     frequency: "excitation.frequency", "Hz", 2.0, 1e-3, 1e5, "f_0: frequency of the harmonic force, Eq. (7)";
     phase: "excitation.phase", "rad", 0.0, -1e3, 1e3, "Phase of the harmonic force at t = 0; 0 in the paper";
@@ -89,7 +89,7 @@ parameters! {
     cylinder_velocity: "initial.cylinderVelocity", "m/s", 0.0, -1e3, 1e3, "z_M'(0): velocity of the cylinder at the start, Section 4.2";
     ball_position: "initial.ballPosition", "m", 0.0, -1e3, 1e3, "z_m(0): position of the ball at the start, Section 4.2";
     ball_velocity: "initial.ballVelocity", "m/s", 0.0, -1e3, 1e3, "z_m'(0): velocity of the ball at the start, Section 4.2";
-    bias_voltage: "biasVoltage", "V", 2000.0, 0.0, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
+    bias_voltage: "biasVoltage", "V", 2000.0, 1e-3, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
 }
 
 /// How the phase noise of Section 5.2 is read.

@@ -4,9 +4,6 @@
 //! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
 //! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
 
-/// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
-const MIN_RESTITUTION: f64 = 0.01;
-
 /// One pulse: an impact and what it does to the membrane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
@@ -37,12 +34,15 @@ pub struct PulseShape {
 }
 
 impl PulseShape {
+    /// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
+    pub const MIN_RESTITUTION: f64 = 0.01;
+
     /// Shape for force exponent n of Eq. (2) and restitution r of Eq. (11).
     pub fn new(exponent: f64, restitution: f64) -> Self {
         // The two series meet where y^(n+1) = 1/2; each converges there at least as fast as 2^-k.
         let half = 0.5_f64.powf(1.0 / (exponent + 1.0));
         let loading = half * lower_series(exponent, 0.5) + upper_series(exponent, 0.5) * 0.5_f64.sqrt();
-        Self { exponent, loading, stretch: 1.0 / restitution.max(MIN_RESTITUTION) }
+        Self { exponent, loading, stretch: 1.0 / restitution.max(Self::MIN_RESTITUTION) }
     }
 
     /// Time from the impact to the largest deflection, s.
@@ -151,7 +151,7 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Pulses kept at a time; of more, the smallest are dropped, which are hidden below the others.
+    /// Pulses kept at a time; of more, the one that ends first is dropped.
     pub(crate) const CAPACITY: usize = 256;
 
     /// The pulses, the largest peak first.
@@ -168,9 +168,12 @@ impl Pulses {
     pub fn push(&mut self, shape: &PulseShape, pulse: Pulse) {
         self.under_way.retain(|old| shape.end_time(old) > pulse.start);
         if self.under_way.len() >= Self::CAPACITY {
-            self.under_way.pop();
+            let ends = self.under_way.iter().map(|pulse| shape.end_time(pulse)).enumerate();
+            if let Some((first, _)) = ends.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                self.under_way.remove(first);
+            }
         }
-        // Largest peak first, so that `at` can stop early and a full list drops its smallest.
+        // Largest peak first, so that `at` can stop early.
         let position = self.under_way.partition_point(|old| old.peak >= pulse.peak);
         self.under_way.insert(position, pulse);
     }

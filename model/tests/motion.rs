@@ -221,6 +221,12 @@ fn times_and_forces_that_make_no_sense_are_errors() {
     assert!(harvester.set_external_force(f64::INFINITY, 0.0).is_err());
     assert!(harvester.set_external_force(0.0, f64::NAN).is_err());
     assert_eq!(harvester.time(), 1.0);
+    let noisy = Parameters { phase_noise: 1.0, noise_hold: 1e-9, ..Parameters::default() };
+    for (p, start) in [(Parameters::default(), 1e15), (Parameters::default(), f64::NAN), (noisy, 5e8)] {
+        let error = Harvester::new(&p, start).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("start time = {start} s is outside")), "{error}");
+    }
+    assert!(Harvester::new(&noisy, 1e6).is_ok() && Harvester::new(&noisy, -1.0).is_ok());
 }
 
 #[test]
@@ -239,4 +245,20 @@ fn every_parameter_out_of_bounds_is_named_with_value_and_bound() {
     assert_eq!(error.to_string(), "membrane.radius = 0.0063 m must be greater than ball.radius = 0.007 m");
     let error = Harvester::new(&Parameters { cylinder_length: 0.0, frame_width: 0.001, ..Parameters::default() }, 0.0);
     assert!(error.unwrap_err().to_string().contains("ball.travel"));
+}
+
+#[test]
+fn stable_cases_have_the_impacts_of_brute_force_one_by_one() {
+    for (case, until, slowest) in [("fig14", 10.0, 0.0), ("fig15", 10.0, 0.0), ("table3-2hz", 2.0, 1e-2)] {
+        let p = (Case::find(case).unwrap().parameters)();
+        let mut stepper = Stepper::new(p, 1e-6);
+        stepper.run(until);
+        let resolved = |list: &[Impact]| list.iter().copied().filter(|i| i.speed > slowest).collect::<Vec<_>>();
+        let ours = resolved(&impacts(&mut Harvester::new(&p, 0.0).unwrap(), until));
+        let theirs = resolved(&stepper.impacts);
+        assert!(ours.len() > 20 && ours.len() == theirs.len(), "{case}: {} against {}", ours.len(), theirs.len());
+        for (a, b) in ours.iter().zip(&theirs) {
+            assert!((a.time - b.time).abs() < 1e-6 && (a.speed - b.speed).abs() < 1e-6, "{case}: {a:?} {b:?}");
+        }
+    }
 }

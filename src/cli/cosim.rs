@@ -10,7 +10,7 @@ use videg_circuit::{Release, Settings, Topology, formulas, names};
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{Paper, file_list, heading, text_table};
-use super::{Verdict, cosim_report, output, packaging, picture};
+use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
     Trace,
@@ -61,6 +61,7 @@ struct Output<'a> {
     summary: &'a CircuitSummary,
     comparison: &'a [Compared],
     paper: Paper,
+    settings: &'a [Setting],
     warnings: &'a [String],
     files: &'a [PathBuf],
 }
@@ -97,16 +98,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     } else {
         output::print(&text(&finished, &files))?;
     }
-    finished.warnings.iter().for_each(|warning| eprintln!("videg: warning: {warning}"));
+    output::warn(&finished.warnings);
     Ok(Verdict::Passed)
 }
 
 /// Runs the co-simulation and writes the time series to `csv`.
 fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
-    let (mechanical, electrical) = split_settings(fmu, &scenario)?;
+    let (mechanical, electrical) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let settings = circuit_settings(&electrical, harvester.bias_voltage())?;
-    let warnings = warnings(&settings, harvester.bias_voltage());
+    let mut warnings = harvester.warnings();
+    warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
     let circuits = circuits(backend, fmu, &scenario, &mechanical, &settings, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
@@ -123,24 +125,6 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
     Ok(Finished { scenario, mechanics, circuits, supply_voltage: settings.circuit.supply_voltage, warnings, svg })
 }
 
-/// Settings of the harvester, and those of the circuit. A name that both have is the harvester's.
-fn split_settings(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
-    let (mut mechanical, mut electrical) = (Vec::new(), Vec::new());
-    for setting in &scenario.settings {
-        let of_circuit = EmbeddedCircuit::apply(&mut Settings::default(), setting)?;
-        match fmu.description().variable(&setting.name) {
-            Ok(_) => mechanical.push(setting.clone()),
-            Err(_) if of_circuit => electrical.push(setting.clone()),
-            Err(error) => {
-                let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
-                let names: Vec<_> = quantities.chain(Settings::CHOICES.iter().map(|choice| choice.name)).collect();
-                anyhow::bail!("{error}; the circuit has {}", names.join(", "));
-            }
-        }
-    }
-    Ok((mechanical, electrical))
-}
-
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
 /// Section 4.1, unless the settings say otherwise.
 fn circuit_settings(electrical: &[Setting], bias: f64) -> anyhow::Result<Settings> {
@@ -155,16 +139,15 @@ fn circuit_settings(electrical: &[Setting], bias: f64) -> anyhow::Result<Setting
     Ok(settings)
 }
 
-fn warnings(settings: &Settings, bias: f64) -> Vec<String> {
+fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
     let supply = settings.circuit.supply_voltage;
-    if supply == bias {
-        return Vec::new();
-    }
-    vec![format!(
-        "{} = {supply} V differs from biasVoltage = {bias} V: Eqs. (12) to (15) are evaluated at the latter, the circuit \
-         runs at the former",
-        names::SUPPLY_VOLTAGE
-    )]
+    let name = names::SUPPLY_VOLTAGE;
+    (supply != bias).then(|| {
+        format!(
+            "{name} = {supply} V differs from biasVoltage = {bias} V: Eqs. (12) to (15) are evaluated at the latter, the \
+             circuit runs at the former"
+        )
+    })
 }
 
 /// The circuit asked for, and two to compare it with: the same with an ideal switch, and the better one, with isolated
@@ -245,6 +228,7 @@ fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Outp
         summary: &first.summary,
         comparison,
         paper: Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power },
+        settings: &scenario.settings,
         warnings: &finished.warnings,
         files,
     })

@@ -1,4 +1,4 @@
-//! `videg fmu`: build and describe FMUs.
+//! `videg fmu`: build, check and describe FMUs.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,9 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::progress::spinner;
-use super::{Verdict, format, output};
+use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
-use crate::package::{self, Options};
+use crate::package::{self, AddedBinary, Options};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -21,9 +21,25 @@ pub struct Arguments {
 enum Task {
     /// Build the FMUs of this project into target/fmu
     Build {
+        /// Build for these instead of this machine alone, all into the same FMUs: linux64 (runs with glibc 2.17 and
+        /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
+        #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
+        targets: Vec<String>,
+        /// Add a library that was built elsewhere, such as darwin64=libVibroImpactHarvester.dylib; its name tells the
+        /// FMU. May be repeated
+        #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
+        added: Vec<String>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
+        /// Print one JSON object on stdout instead of the list
+        #[arg(long)]
+        json: bool,
+    },
+    /// Load an FMU and run it for some steps: does it keep the promises of its model description?
+    Check {
+        /// The FMU; its code is run in this process
+        file: PathBuf,
         /// Print one JSON object on stdout instead of the list
         #[arg(long)]
         json: bool,
@@ -41,20 +57,27 @@ enum Task {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
-        Task::Build { output, json } => build(output.clone(), *json)?,
+        Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
+        Task::Check { file, json } => return fmu_check::run(file, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
 }
 
-fn build(folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
     #[derive(Serialize)]
     struct Built {
         fmus: Vec<PathBuf>,
     }
+    let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
     let waiting = spinner("building the FMUs");
-    let built =
-        package::build_all(&Options { output: folder, progress: |line| eprintln!("{line}"), ..Options::default() });
+    let built = package::build_all(&Options {
+        output: folder,
+        targets: targets.to_vec(),
+        added,
+        progress: packaging::follow,
+        ..Options::default()
+    });
     waiting.finish_and_clear();
     let fmus = built?;
     if json {
@@ -121,7 +144,7 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
         found.map_or_else(|| number.to_string(), |item| item.name.clone())
     };
     let (kind, start, min, max) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| value.to_string()), *min, *max),
+        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| format!("{value:?}")), *min, *max),
         Kind::Integer { start, min, max } => {
             ("Integer", start.map(|value| value.to_string()), min.map(f64::from), max.map(f64::from))
         }
@@ -144,12 +167,13 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
 }
 
 fn text(info: &Info) -> String {
-    let mut table = format::table(&["variable", "start", "unit", "causality"]);
+    let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
     for variable in &info.variables {
         let start = variable.start.clone().unwrap_or_default();
-        let unit = variable.unit.clone().unwrap_or_default();
-        let unit = if unit.is_empty() { variable.r#type.to_lowercase() } else { unit };
-        table.add_row(format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]));
+        let unit = variable.unit.clone().unwrap_or_else(|| variable.r#type.to_lowercase());
+        let mut cells = format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]);
+        cells.push(variable.description.clone().unwrap_or_default().into());
+        table.add_row(cells);
     }
     let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
     format!(

@@ -7,12 +7,14 @@ mod completions;
 mod cosim;
 mod cosim_report;
 mod fmu;
+mod fmu_check;
 mod format;
 mod options;
 mod output;
 mod packaging;
 mod picture;
 mod progress;
+mod settings;
 mod simulate;
 
 use std::process::ExitCode;
@@ -44,13 +46,16 @@ pub(crate) enum Verdict {
     /// Done, or checked and found right.
     Passed,
     /// A check failed; what was found is printed.
-    #[allow(dead_code)]
     Failed,
 }
 
 /// Runs the tool with the arguments of the process.
 pub fn main() -> ExitCode {
-    let result = match Cli::parse().verb {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    let result = match cli.verb {
         Verb::Cosim(arguments) => cosim::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
@@ -66,6 +71,20 @@ pub fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// Help and version go out as they are; a mistake becomes one line, as every other error here.
+fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        let printed = error.print();
+        return if printed.is_ok() && !error.use_stderr() { ExitCode::SUCCESS } else { ExitCode::from(2) };
+    }
+    let text = error.to_string();
+    let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
+    let message = message.join(" ");
+    eprintln!("videg: {} (see --help)", message.trim_start_matches("error: "));
+    ExitCode::from(2)
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

@@ -12,7 +12,8 @@ pub struct RunOptions {
     /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// Set a variable of an FMU, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated
+    /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. Initial values
+    /// of a case stay as they are in the paper
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
     /// Case file (TOML) with case, until, step, window and a [set] table

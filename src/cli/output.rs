@@ -44,3 +44,10 @@ pub fn command_line() -> String {
     });
     std::iter::once("videg".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
+
+/// Shows warnings on stderr, one line each.
+pub fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("videg: warning: {warning}");
+    }
+}

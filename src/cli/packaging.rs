@@ -1,15 +1,26 @@
 //! The FMUs of this project, put together when a verb needs them.
 
+use std::io::IsTerminal as _;
+
 use anyhow::Context as _;
 
 use super::progress::spinner;
 use crate::fmi::Fmu;
 use crate::package::{self, FMUS, Options};
 
+/// Shows what Cargo is at, where somebody may be looking.
+pub fn follow(line: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("{line}");
+    }
+}
+
 /// Packages the FMUs, with progress, and opens the one with this identifier.
 pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
     let waiting = spinner("packaging the FMUs");
-    let paths = package::build_all(&Options { progress: |line| eprintln!("{line}"), ..Options::default() });
+    // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
+    let as_is = std::env::var_os("CARGO").is_none();
+    let paths = package::build_all(&Options { as_is, progress: follow, ..Options::default() });
     waiting.finish_and_clear();
     let paths = paths.context("cannot package the FMUs")?;
     let index = FMUS.iter().position(|fmu| fmu.identifier == identifier);

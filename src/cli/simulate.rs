@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use super::options::RunOptions;
 use super::progress::TimeBar;
-use super::{Verdict, format, output, packaging, picture};
+use super::{Verdict, format, output, packaging, picture, settings};
 use crate::cosim::{CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Trace};
 use crate::report::{self, Column, Report, Section};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Setting};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -30,6 +30,8 @@ struct Output<'a> {
     #[serde(flatten)]
     mechanics: MechanicsSummary,
     paper: Paper,
+    settings: &'a [Setting],
+    warnings: &'a [String],
     files: Vec<PathBuf>,
 }
 
@@ -47,7 +49,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
     let scenario = options.scenario()?;
     let fmu = packaging::open("VibroImpactHarvester")?;
-    let harvester = HarvesterFmu::new(&fmu, &scenario, &scenario.settings)?;
+    let (mechanical, electrical) = settings::split(&fmu, &scenario)?;
+    let harvester = HarvesterFmu::new(&fmu, &scenario, &mechanical)?;
+    let mut warnings = harvester.warnings();
+    let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
+    if !circuit.is_empty() {
+        warnings.push(format!("{} left out: simulate runs no circuit, cosim does", circuit.join(", ")));
+    }
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
     let mut recorder = CsvRecorder::create(&output::partial(&csv), false)?;
@@ -68,6 +76,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
         window: scenario.window,
         mechanics,
         paper,
+        settings: &scenario.settings,
+        warnings: &warnings,
         files,
     };
     let json = serde_json::to_string_pretty(&result)?;
@@ -77,6 +87,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     } else {
         output::print(&text(&scenario, &mechanics, &result.files))?;
     }
+    output::warn(&warnings);
     Ok(Verdict::Passed)
 }
 

@@ -1,7 +1,7 @@
 //! The harvester FMU as the master sees it.
 
 use super::CosimError;
-use crate::fmi::{Fmu, Instance, Logging};
+use crate::fmi::{Fmu, Instance, Logging, Status};
 use crate::scenario::{Scenario, Setting};
 
 /// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
@@ -99,6 +99,12 @@ impl HarvesterFmu {
         let mut bias_voltage = [0.0];
         instance.get_real(&bias, &mut bias_voltage)?;
         Ok(Self { instance, reals, counts, bias_voltage: bias_voltage[0] })
+    }
+
+    /// What the FMU warned of so far.
+    pub fn warnings(&self) -> Vec<String> {
+        let messages = self.instance.messages().into_iter();
+        messages.filter(|record| record.status == Status::Warning).map(|record| record.message).collect()
     }
 
     /// Steps from `time` by `step`, s.

@@ -117,7 +117,7 @@ pub enum FmiError {
         messages: Vec<LogRecord>,
     },
     /// A call returned something else than OK or Warning.
-    #[error("{function} of '{instance}' returned {status}{}", tail(messages))]
+    #[error("{}", failed(function, instance, *status, messages))]
     Call {
         /// The function.
         function: &'static str,
@@ -221,6 +221,17 @@ fn tail(messages: &[LogRecord]) -> String {
     if messages.is_empty() {
         return String::new();
     }
-    let lines: Vec<_> = messages.iter().map(ToString::to_string).collect();
+    let lines: Vec<_> = messages.iter().map(|record| record.message.as_str()).collect();
     format!("; the FMU said: {}", lines.join(" | "))
+}
+
+/// What the FMU said, then which call it was; without a message the call alone.
+fn failed(function: &str, instance: &str, status: Status, messages: &[LogRecord]) -> String {
+    let call = format!("{function} of '{instance}' returned {status}");
+    if messages.is_empty() {
+        return call;
+    }
+    let prefix = format!("{function}: ");
+    let said = messages.iter().map(|record| record.message.strip_prefix(&prefix).unwrap_or(&record.message));
+    format!("{} ({call})", said.collect::<Vec<_>>().join(" | "))
 }

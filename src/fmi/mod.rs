@@ -52,4 +52,5 @@ pub use instance::Instance;
 pub use library::{HOST_PLATFORM, LIBRARY_EXTENSION, library_extension};
 pub use logging::{LogRecord, LogSink, Logging, Status};
 pub use state::FmuState;
+pub use suggest::nearest as nearest_name;
 pub use value::Value;

@@ -59,8 +59,9 @@ impl Value {
         let trimmed = text.trim();
         match &variable.kind {
             Kind::Real { min, max, unit, .. } => {
-                let value = trimmed.parse().ok().filter(|value: &f64| value.is_finite());
-                let value = value.ok_or_else(|| unreadable(variable, text, "a finite number"))?;
+                // Infinity is a value to some models, such as a load that is not there; bounds say so if it is not.
+                let value = trimmed.parse().ok().filter(|value: &f64| !value.is_nan());
+                let value = value.ok_or_else(|| unreadable(variable, text, "a number"))?;
                 in_range(variable, value, *min, *max, unit.as_deref())?;
                 Ok(Self::Real(value))
             }
@@ -153,9 +154,9 @@ mod tests {
     #[test]
     fn errors_name_variable_found_and_allowed() {
         for (name, text, message) in [
-            ("mass", "heavy", "mass = \"heavy\": allowed is a finite number"),
-            ("mass", "NaN", "mass = \"NaN\": allowed is a finite number"),
-            ("mass", "inf", "mass = \"inf\": allowed is a finite number"),
+            ("mass", "heavy", "mass = \"heavy\": allowed is a number"),
+            ("mass", "NaN", "mass = \"NaN\": allowed is a number"),
+            ("mass", "inf", "mass = inf kg is out of range: allowed is 0 .. 10 kg"),
             ("mass", "11", "mass = 11 kg is out of range: allowed is 0 .. 10 kg"),
             ("mass", "-1e-3", "mass = -0.001 kg is out of range: allowed is 0 .. 10 kg"),
             ("seed", "1.5", "seed = \"1.5\": allowed is an integer of 32 bits"),

@@ -11,6 +11,8 @@ use serde::Deserialize;
 use super::FMUS;
 use super::error::{PackageError, Result};
 use super::platform::Platform;
+use super::target::Target;
+use super::tools;
 use crate::fmi::library_extension;
 
 /// How many lines of Cargo's output an error shows.
@@ -19,25 +21,24 @@ const TAIL: usize = 40;
 /// One line of `cargo build --message-format=json`.
 #[derive(Deserialize)]
 struct Message {
-    target: Option<Target>,
+    target: Option<Artifact>,
     #[serde(default)]
     filenames: Vec<PathBuf>,
 }
 
 #[derive(Deserialize)]
-struct Target {
+struct Artifact {
     name: String,
 }
 
 /// Builds the libraries of all FMUs in release mode and returns them in the order of [`FMUS`].
 ///
 /// This may run inside `cargo run` and `cargo test`: both have given up the lock of the build folder by then.
-pub(super) fn build(
-    workspace: &Path,
-    target: Option<&str>,
-    platform: Platform,
-    progress: fn(&str),
-) -> Result<Vec<PathBuf>> {
+pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> Result<Vec<PathBuf>> {
+    if let Some(target) = target {
+        tools::check(workspace, target)?;
+    }
+    let platform = target.map_or(Platform::HOST, |target| target.platform);
     let mut command = command(workspace, target);
     let program = PathBuf::from(command.get_program());
     let shown = shown(target);
@@ -60,9 +61,13 @@ pub(super) fn build(
     FMUS.iter().map(|fmu| library(fmu.identifier)).collect()
 }
 
-fn command(workspace: &Path, target: Option<&str>) -> Command {
-    // Inside `cargo run`, CARGO names the very Cargo that runs.
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")));
+/// Cargo. Inside `cargo run`, CARGO names the very one that runs.
+pub(super) fn program() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"))
+}
+
+fn command(workspace: &Path, target: Option<&Target>) -> Command {
+    let mut command = Command::new(program());
     command.current_dir(workspace).args(arguments(target)).arg("--message-format=json-render-diagnostics");
     // A relative folder is meant relative to where the user is.
     if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR")
@@ -74,17 +79,21 @@ fn command(workspace: &Path, target: Option<&str>) -> Command {
     command
 }
 
-fn arguments(target: Option<&str>) -> Vec<&str> {
-    let mut arguments = vec!["build", "--release"];
+fn arguments(target: Option<&Target>) -> Vec<String> {
+    let mut arguments = vec![target.map_or("build", Target::subcommand).to_owned(), "--release".to_owned()];
     for fmu in &FMUS {
-        arguments.extend(["-p", fmu.package]);
+        arguments.extend(["-p".to_owned(), fmu.package.to_owned()]);
     }
-    arguments.extend(target.into_iter().flat_map(|triple| ["--target", triple]));
+    if let Some(target) = target {
+        // What is handed on needs no symbol table, which is half of a DLL.
+        arguments.extend(["--config", "profile.release.strip=\"symbols\"", "--target"].map(ToOwned::to_owned));
+        arguments.push(target.argument());
+    }
     arguments
 }
 
 /// The command line, for errors.
-fn shown(target: Option<&str>) -> String {
+fn shown(target: Option<&Target>) -> String {
     format!("cargo {}", arguments(target).join(" "))
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -13,11 +13,18 @@ use super::error::{PackageError, Result};
 use super::platform::Platform;
 use crate::fmi::ModelDescription;
 
-/// What goes into an archive: names with forward slashes, sorted, and the files behind them.
+/// What goes into an archive: names with forward slashes, sorted, and the files or bytes behind them.
 #[derive(Debug, Clone)]
 pub struct Contents {
-    identifier: String,
-    files: BTreeMap<String, PathBuf>,
+    description: ModelDescription,
+    files: BTreeMap<String, Source>,
+}
+
+/// Where the bytes of an entry come from.
+#[derive(Debug, Clone)]
+enum Source {
+    File(PathBuf),
+    Bytes(Vec<u8>),
 }
 
 impl Contents {
@@ -28,23 +35,35 @@ impl Contents {
     pub fn new(identifier: &str, description: &Path) -> Result<Self> {
         let text = fs::read(description).map_err(PackageError::io("read", description))?;
         let parsed = ModelDescription::parse(&text, &description.display().to_string())?;
-        let found = parsed.co_simulation.model_identifier;
+        let found = &parsed.co_simulation.model_identifier;
         if found != identifier {
+            let found = found.clone();
             let (path, allowed) = (description.to_path_buf(), identifier.to_owned());
             return Err(PackageError::Identifier { path, found, allowed });
         }
-        let files = BTreeMap::from([("modelDescription.xml".to_owned(), description.to_path_buf())]);
-        Ok(Self { identifier: identifier.to_owned(), files })
+        let files = BTreeMap::from([("modelDescription.xml".to_owned(), Source::Bytes(text))]);
+        Ok(Self { description: parsed, files })
+    }
+
+    /// The model description.
+    pub fn description(&self) -> &ModelDescription {
+        &self.description
     }
 
     /// Adds the library of a platform, under the name that FMI wants.
     pub fn add_library(&mut self, platform: Platform, library: &Path) {
-        self.files.insert(platform.entry(&self.identifier), library.to_path_buf());
+        let name = platform.entry(&self.description.co_simulation.model_identifier);
+        self.add_file(&name, library);
     }
 
     /// Adds a file under a name with forward slashes.
     pub fn add_file(&mut self, name: &str, file: &Path) {
-        self.files.insert(name.to_owned(), file.to_path_buf());
+        self.files.insert(name.to_owned(), Source::File(file.to_path_buf()));
+    }
+
+    /// Adds bytes under a name with forward slashes.
+    pub fn add_bytes(&mut self, name: &str, bytes: Vec<u8>) {
+        self.files.insert(name.to_owned(), Source::Bytes(bytes));
     }
 
     /// Adds the files of a folder and its folders under `prefix`. A folder that does not exist counts as empty.
@@ -62,19 +81,7 @@ impl Contents {
             if path.is_dir() {
                 self.add_folder(&name, &path)?;
             } else {
-                self.files.insert(name, path);
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds `LICENSE*` of the source tree, where FMI 2.0.4 wants licenses.
-    pub(super) fn add_licenses(&mut self, workspace: &Path) -> Result<()> {
-        for entry in fs::read_dir(workspace).map_err(PackageError::io("read", workspace))? {
-            let path = entry.map_err(PackageError::io("read", workspace))?.path();
-            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            if name.starts_with("LICENSE") && path.is_file() {
-                self.files.insert(format!("documentation/licenses/{name}"), path);
+                self.files.insert(name, Source::File(path));
             }
         }
         Ok(())
@@ -101,10 +108,17 @@ impl Contents {
     fn write_to(&self, file: &mut File, archive: &Path) -> Result<()> {
         let failed = |cause| PackageError::Zip { path: archive.to_path_buf(), cause };
         let mut writer = ZipWriter::new(file);
-        for (name, path) in &self.files {
+        for (name, source) in &self.files {
             writer.start_file(name.as_str(), options(name)).map_err(failed)?;
-            let mut input = File::open(path).map_err(PackageError::io("read", path))?;
-            io::copy(&mut input, &mut writer).map_err(PackageError::io("pack", path))?;
+            match source {
+                Source::File(path) => {
+                    let mut input = File::open(path).map_err(PackageError::io("read", path))?;
+                    io::copy(&mut input, &mut writer).map_err(PackageError::io("pack", path))?;
+                }
+                Source::Bytes(bytes) => {
+                    writer.write_all(bytes).map_err(PackageError::io("write", archive))?;
+                }
+            }
         }
         writer.finish().map_err(failed)?;
         Ok(())

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::FMUS;
+use super::platform::Platform;
 use crate::fmi::FmiError;
 
 /// Result of the packager.
@@ -88,13 +90,114 @@ pub enum PackageError {
         /// The model that is packaged.
         allowed: String,
     },
+    /// The picture of a model cannot be drawn.
+    #[error(
+        "cannot draw the model: the start value of {variable} is {}, allowed is a positive number",
+        found.map_or_else(|| "missing".to_owned(), |found| found.to_string())
+    )]
+    Picture {
+        /// The variable.
+        variable: &'static str,
+        /// Its start value, if it has one.
+        found: Option<f64>,
+    },
+    /// The documentation cannot be written.
+    #[error("cannot write the documentation of {identifier}: {cause}")]
+    Documentation {
+        /// Model identifier.
+        identifier: String,
+        /// What the template engine said.
+        cause: askama::Error,
+    },
     /// FMI 2.0 has no name for a platform.
     #[error(
-        "no FMI 2.0 platform for the target {triple}; allowed are Linux, Windows and macOS targets of 32 or 64 bits"
+        "no FMI 2.0 platform for the target {triple}; allowed are linux64, win64, darwin64 and Rust triples of Linux, \
+         Windows and macOS"
     )]
     Platform {
         /// The target triple.
         triple: String,
+    },
+    /// Only a Mac can link for macOS.
+    #[error(
+        "cannot build for {target} on this machine, since Apple's linker runs on a Mac only; build there and merge the \
+         libraries with --add-binary {}=FILE", platform.folder
+    )]
+    NeedsMac {
+        /// As asked for.
+        target: String,
+        /// The platform.
+        platform: Platform,
+    },
+    /// A tool for building is not installed.
+    #[error("cannot build for {target}: {tool} is missing; install it with `{install}`")]
+    MissingTool {
+        /// The tool.
+        tool: String,
+        /// What was to be built.
+        target: String,
+        /// The command that installs it.
+        install: String,
+    },
+    /// No platform has this name.
+    #[error("no platform of FMI 2.0 is called \"{found}\"; allowed are {allowed}")]
+    PlatformName {
+        /// The name.
+        found: String,
+        /// All names.
+        allowed: String,
+    },
+    /// A library to add is not given as it should be.
+    #[error("--add-binary wants PLATFORM=FILE, found \"{found}\"")]
+    AddedForm {
+        /// What was given.
+        found: String,
+    },
+    /// The name of a library to add does not tell its FMU.
+    #[error("{} is named after no FMU; allowed are {}", path.display(), FMUS.map(|fmu| fmu.identifier).join(" and "))]
+    AddedName {
+        /// The library.
+        path: PathBuf,
+    },
+    /// A library to add is for something else.
+    #[error("{} holds {found}, wanted is a {} library", path.display(), platform.folder)]
+    AddedLibrary {
+        /// The library.
+        path: PathBuf,
+        /// What it really is.
+        found: String,
+        /// What it was said to be for.
+        platform: Platform,
+    },
+    /// A library to add is no FMU's.
+    #[error("{} does not export {symbol}", path.display())]
+    AddedExport {
+        /// The library.
+        path: PathBuf,
+        /// What it lacks.
+        symbol: &'static str,
+    },
+    /// An archive would get two libraries for one platform.
+    #[error("two libraries of {identifier} for {}: {} and {other}", platform.folder, path.display())]
+    AddedTwice {
+        /// Model identifier.
+        identifier: &'static str,
+        /// The platform.
+        platform: Platform,
+        /// The library to add.
+        path: PathBuf,
+        /// What is there already.
+        other: String,
+    },
+    /// Two targets would share a folder of the archive.
+    #[error("two targets for the platform {}: {first} and {second}; an FMU holds one", platform.folder)]
+    SamePlatform {
+        /// The platform.
+        platform: Platform,
+        /// One target.
+        first: String,
+        /// The other.
+        second: String,
     },
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{PackageError, Result};
 use super::platform::Platform;
+use super::target::Target;
 use super::{FMUS, FmuPackage, NO_BUILD, Options, cargo, fresh};
 
 /// The source tree: the one that holds the running program, the one it was compiled in, or the one around the
@@ -26,21 +27,23 @@ fn is_workspace(folder: &Path) -> bool {
 }
 
 /// The libraries for one target, in the order of [`FMUS`]: built, or else found.
-pub(super) fn libraries(
-    options: &Options,
-    workspace: Option<&Path>,
-    target: Option<&str>,
-    platform: Platform,
-) -> Result<Vec<PathBuf>> {
+pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Option<&Target>) -> Result<Vec<PathBuf>> {
+    let platform = target.map_or(Platform::HOST, |target| target.platform);
+    if options.as_is
+        && target.is_none()
+        && let Some(libraries) = beside_program(platform, |_| true)
+    {
+        return Ok(libraries);
+    }
     if let (None, true, Some(workspace)) = (target, options.build, workspace)
-        && let Some(libraries) = fresh_beside_program(workspace, platform)
+        && let Some(libraries) = beside_program(platform, |library| fresh::is_fresh(library, workspace))
     {
         return Ok(libraries);
     }
     let why = match workspace {
         None => "there is no source tree to build it from".to_owned(),
         Some(_) if !options.build => format!("building is switched off, by option or {NO_BUILD}"),
-        Some(workspace) => match cargo::build(workspace, target, platform, options.progress) {
+        Some(workspace) => match cargo::build(workspace, target, options.progress) {
             // A program that was handed over without a toolchain.
             Err(error @ PackageError::Cargo { .. }) if is_not_found(&error) => error.to_string(),
             other => return other,
@@ -50,13 +53,13 @@ pub(super) fn libraries(
     FMUS.iter().map(|fmu| find(fmu, platform, &folders, &why)).collect()
 }
 
-/// The release libraries beside the running program, if all are as new as their sources: what `cargo run --release` has
-/// just built.
-fn fresh_beside_program(workspace: &Path, platform: Platform) -> Option<Vec<PathBuf>> {
+/// The release libraries beside the running program, if all are there and pass `test`. What `cargo run --release` has
+/// just built passes the test of being as new as its sources.
+fn beside_program(platform: Platform, test: impl Fn(&Path) -> bool) -> Option<Vec<PathBuf>> {
     let program = std::env::current_exe().ok()?;
-    let beside = program.parent().filter(|folder| folder.ends_with("release"))?;
+    let beside = program.parent().filter(|folder| !folder.ends_with("debug") && !folder.ends_with("deps"))?;
     let libraries = FMUS.iter().map(|fmu| beside.join(platform.cargo_name(fmu.identifier)));
-    libraries.map(|library| fresh::is_fresh(&library, workspace).then_some(library)).collect()
+    libraries.map(|library| (library.is_file() && test(&library)).then_some(library)).collect()
 }
 
 fn is_not_found(error: &PackageError) -> bool {
@@ -64,7 +67,7 @@ fn is_not_found(error: &PackageError) -> bool {
 }
 
 /// Folders in which libraries may lie: beside the program (tests run in `deps`), then where Cargo puts them.
-fn folders(workspace: Option<&Path>, target: Option<&str>) -> Vec<PathBuf> {
+fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
     let mut folders = Vec::new();
     if target.is_none() {
         let program = std::env::current_exe().ok();
@@ -77,7 +80,7 @@ fn folders(workspace: Option<&Path>, target: Option<&str>) -> Vec<PathBuf> {
     }
     if let Some(workspace) = workspace {
         let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
-        folders.push(target.map_or_else(|| base.clone(), |triple| base.join(triple)).join("release"));
+        folders.push(target.map_or_else(|| base.clone(), |target| base.join(&target.triple)).join("release"));
     }
     folders
 }

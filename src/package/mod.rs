@@ -1,6 +1,7 @@
 //! Packager: from the compiled libraries to `.fmu` archives.
 //!
-//! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and documentation.
+//! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
+//! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses.
 //! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
 //! is packaged always belongs to the sources. Without it, the libraries beside the running program are taken.
 //!
@@ -15,18 +16,25 @@
 //! # }
 //! ```
 
+mod binary;
 mod cargo;
 mod contents;
+mod documentation;
 mod error;
 mod fresh;
 mod locate;
+mod picture;
 mod platform;
+mod target;
+mod tools;
 
 use std::path::{Path, PathBuf};
 
+pub use binary::AddedBinary;
 pub use contents::Contents;
 pub use error::{PackageError, Result};
 pub use platform::Platform;
+use target::Target;
 
 /// An FMU of this project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,8 +66,15 @@ pub struct Options {
     pub workspace: Option<PathBuf>,
     /// Whether Cargo may be run.
     pub build: bool,
-    /// Target triples to package for, all into one archive; none means this machine.
+    /// Take the libraries that lie beside the running program as they are, if they do: a program that was not started by
+    /// Cargo goes with those that it came with, whatever has become of the source tree since.
+    pub as_is: bool,
+    /// What to package for, all into one archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
+    /// or Rust triples; none means this machine, for itself.
     pub targets: Vec<String>,
+    /// Libraries that were built elsewhere. One for this machine takes the place of the one that would be built without
+    /// any target.
+    pub added: Vec<AddedBinary>,
     /// Gets a line of Cargo's progress whenever something is really compiled.
     pub progress: fn(&str),
 }
@@ -67,7 +82,15 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
-        Self { output: None, workspace: None, build, targets: Vec::new(), progress: |_| {} }
+        Self {
+            output: None,
+            workspace: None,
+            build,
+            as_is: false,
+            targets: Vec::new(),
+            added: Vec::new(),
+            progress: |_| {},
+        }
     }
 }
 
@@ -85,16 +108,7 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
     let workspace = options.workspace.clone().or_else(locate::workspace);
     let workspace = workspace.as_deref();
     let output = options.output.clone().unwrap_or_else(|| default_output(workspace));
-    let targets: Vec<_> = if options.targets.is_empty() {
-        vec![None]
-    } else {
-        options.targets.iter().map(|triple| Some(triple.as_str())).collect()
-    };
-    let mut binaries = Vec::new();
-    for target in targets {
-        let platform = target.map_or(Ok(Platform::HOST), Platform::of_triple)?;
-        binaries.push((platform, locate::libraries(options, workspace, target, platform)?));
-    }
+    let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();
     for (index, fmu) in FMUS.iter().enumerate() {
         let mut contents = Contents::new(fmu.identifier, &locate::description(fmu, workspace)?)?;
@@ -103,15 +117,58 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
                 contents.add_library(*platform, library);
             }
         }
-        if let Some(workspace) = workspace {
-            contents.add_folder("documentation", &workspace.join(fmu.folder).join("documentation"))?;
-            contents.add_licenses(workspace)?;
+        for binary in options.added.iter().filter(|binary| binary.identifier == fmu.identifier) {
+            contents.add_library(binary.platform, &binary.path);
         }
+        documentation::add(&mut contents)?;
         let archive = output.join(format!("{}.fmu", fmu.identifier));
         contents.write(&archive)?;
         archives.push(archive);
     }
     Ok(archives)
+}
+
+/// The libraries of each platform, in the order of [`FMUS`].
+fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
+    // All is checked before the first library is built, which may take minutes.
+    let targets = targets(&options.targets)?;
+    check_added(&options.added, &targets)?;
+    if targets.is_empty() {
+        let is_added = |fmu: &FmuPackage| {
+            options.added.iter().any(|it| it.identifier == fmu.identifier && it.platform == Platform::HOST)
+        };
+        if FMUS.iter().all(is_added) {
+            return Ok(Vec::new());
+        }
+        return Ok(vec![(Platform::HOST, locate::libraries(options, workspace, None)?)]);
+    }
+    targets.iter().map(|target| Ok((target.platform, locate::libraries(options, workspace, Some(target))?))).collect()
+}
+
+/// Reads the targets; each platform may be named once.
+fn targets(asked: &[String]) -> Result<Vec<Target>> {
+    let targets = asked.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
+    for (index, target) in targets.iter().enumerate() {
+        if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
+            let (first, second) = (first.argument(), target.argument());
+            return Err(PackageError::SamePlatform { platform: target.platform, first, second });
+        }
+    }
+    Ok(targets)
+}
+
+/// No added library may share its place with another or with a target that was asked for.
+fn check_added(added: &[AddedBinary], targets: &[Target]) -> Result<()> {
+    for (index, binary) in added.iter().enumerate() {
+        let AddedBinary { platform, identifier, path } = binary.clone();
+        let twin = added.iter().take(index).find(|it| it.identifier == identifier && it.platform == platform);
+        let target = targets.iter().find(|target| target.platform == platform);
+        let other = twin.map(|twin| twin.path.display().to_string());
+        if let Some(other) = other.or_else(|| target.map(|target| format!("the target {}", target.argument()))) {
+            return Err(PackageError::AddedTwice { identifier, platform, path, other });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

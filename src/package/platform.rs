@@ -39,6 +39,17 @@ impl Platform {
         Ok(Self { folder })
     }
 
+    /// The platform with this folder.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn of_folder(folder: &str) -> Result<Self> {
+        const ALL: [&str; 6] = ["linux32", "linux64", "win32", "win64", "darwin32", "darwin64"];
+        let found = ALL.iter().find(|known| **known == folder);
+        let found = found.map(|folder| Self { folder });
+        found.ok_or_else(|| PackageError::PlatformName { found: folder.to_owned(), allowed: ALL.join(", ") })
+    }
+
     /// Name of the library inside the archive: no `lib` in front.
     pub fn entry(self, identifier: &str) -> String {
         format!("binaries/{}/{identifier}.{}", self.folder, library_extension(self.folder))

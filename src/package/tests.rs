@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::{Contents, FMUS, Options, PackageError, Platform, build_all, locate};
+use super::{Contents, FMUS, Options, PackageError, Platform, build_all, documentation, locate};
 use crate::fmi::{Archive, Fmu};
 
 const DESCRIPTION: &str = include_str!("../fmi/testdata/good.xml");
@@ -20,7 +20,6 @@ fn tree() -> TempDir {
     write("target/release/libToy.so", "library");
     write("documentation/index.html", "<html/>");
     write("documentation/images/a.svg", "<svg/>");
-    write("LICENSE-MIT", "free");
     tree
 }
 
@@ -29,7 +28,7 @@ fn contents(tree: &Path) -> Contents {
     contents.add_library(Platform { folder: "linux64" }, &tree.join("target/release/libToy.so"));
     contents.add_folder("documentation", &tree.join("documentation")).unwrap();
     contents.add_folder("resources", &tree.join("absent")).unwrap();
-    contents.add_licenses(tree).unwrap();
+    documentation::add(&mut contents).unwrap();
     contents
 }
 
@@ -43,7 +42,10 @@ fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
         "binaries/linux64/Toy.so",
         "documentation/images/a.svg",
         "documentation/index.html",
+        "documentation/licenses/LICENSE-APACHE",
         "documentation/licenses/LICENSE-MIT",
+        "documentation/licenses/license.txt",
+        "documentation/licenses/spdx.txt",
         "modelDescription.xml",
     ];
     assert_eq!(archive.entries(), wanted);
@@ -93,7 +95,8 @@ fn a_description_of_another_model_is_refused() {
 fn without_libraries_the_error_says_where_it_looked_and_why_nothing_was_built() {
     let tree = tree();
     let workspace = Some(tree.path().to_path_buf());
-    let targets = vec!["x86_64-pc-windows-gnu".to_owned()];
+    // A target that nobody builds, lest its libraries lie about.
+    let targets = vec!["i586-pc-windows-msvc".to_owned()];
     let options = Options { workspace, build: false, targets, ..Options::default() };
     let error = build_all(&options).unwrap_err();
     assert!(matches!(error, PackageError::NoLibrary { .. }), "{error}");
@@ -118,4 +121,12 @@ fn an_archive_without_this_platform_is_not_loaded() {
     let path = tree.path().join("Toy.fmu");
     Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().write(&path).unwrap();
     assert!(Fmu::open(PathBuf::from(&path)).unwrap_err().to_string().contains("no binary for this platform"));
+}
+
+#[test]
+fn two_targets_for_one_platform_are_refused_before_anything_is_built() {
+    let targets = vec!["linux64".to_owned(), "aarch64-unknown-linux-gnu".to_owned()];
+    let error = build_all(&Options { targets, ..Options::default() }).unwrap_err().to_string();
+    let both = "x86_64-unknown-linux-gnu.2.17 and aarch64-unknown-linux-gnu";
+    assert_eq!(error, format!("two targets for the platform linux64: {both}; an FMU holds one"));
 }

@@ -5,12 +5,16 @@ mod preset;
 
 pub use file::CaseFile;
 
+use serde::Serialize;
 use thiserror::Error;
 
 /// Duration of a run unless something else is asked for, s: that of the paper (Section 4.2).
 const DEFAULT_UNTIL: f64 = 100.0;
 /// Communication step unless something else is asked for, s.
 const DEFAULT_STEP: f64 = 1e-3;
+/// Bounds of the duration, s: below, times differ by nothing that can be drawn; above, they have no digits left.
+const SHORTEST: f64 = 1e-6;
+const LONGEST: f64 = 1e9;
 /// Largest number of communication points of the grid: 1e9 rows are some 200 GB of CSV.
 const MAX_STEPS: f64 = 1e9;
 
@@ -60,7 +64,7 @@ pub enum ScenarioError {
 }
 
 /// One setting: an FMU variable by name, and its value as text, as a user writes it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Setting {
     /// Name of the variable.
     pub name: String,
@@ -136,10 +140,16 @@ impl Request {
     pub fn resolve(self) -> Result<Scenario, ScenarioError> {
         let file = self.file.unwrap_or_default();
         let case = preset::find(self.case.as_deref().or(file.case.as_deref()).unwrap_or("fig14"))?;
+        let mut changes = file.settings;
+        changes.extend(self.settings);
+        let mut description = file.description.unwrap_or_else(|| case.description.to_owned());
+        if !changes.is_empty() {
+            let shown: Vec<_> = changes.iter().map(|change| format!("{} = {}", change.name, change.value)).collect();
+            description = format!("{description}; changed: {}", shown.join(", "));
+        }
+        let as_printed = changes.is_empty();
         let mut settings = preset::settings(case);
-        let as_printed = file.settings.is_empty() && self.settings.is_empty();
-        settings.extend(file.settings);
-        settings.extend(self.settings);
+        settings.extend(changes);
         let until = self.until.or(file.until).unwrap_or(DEFAULT_UNTIL);
         let step = self.step.or(file.step).unwrap_or_else(|| DEFAULT_STEP.min(until));
         let window = self.window.or(file.window).unwrap_or_else(|| default_window(until));
@@ -147,7 +157,7 @@ impl Request {
         let paper = PaperValues { voltage_gain: case.paper_voltage_gain, power: case.paper_power };
         Ok(Scenario {
             name: file.name.unwrap_or_else(|| case.name.to_owned()),
-            description: file.description.unwrap_or_else(|| case.description.to_owned()),
+            description,
             settings,
             until,
             step,
@@ -164,8 +174,8 @@ fn default_window(until: f64) -> [f64; 2] {
 
 fn check_times(until: f64, step: f64, window: [f64; 2]) -> Result<(), ScenarioError> {
     let fail = |name, value, bound: String| Err(ScenarioError::Time { name, value, bound });
-    if !(until.is_finite() && until > 0.0) {
-        return fail("--until", until, "must be a positive, finite time".to_owned());
+    if !(SHORTEST..=LONGEST).contains(&until) {
+        return fail("--until", until, format!("must lie from {SHORTEST} to {LONGEST:e} s"));
     }
     if !(step > 0.0 && step <= until) {
         return fail("--step", step, format!("must lie above 0 and not above --until = {until} s"));
@@ -209,6 +219,7 @@ mod tests {
         let scenario = Request { settings, ..Request::default() }.resolve().unwrap();
         assert_eq!(scenario.paper, PaperValues::default());
         assert_eq!(scenario.settings.last().unwrap().name, "membrane.restitution");
+        assert!(scenario.description.ends_with("periodic; changed: membrane.restitution = 0.7"));
     }
 
     #[test]

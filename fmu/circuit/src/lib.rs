@@ -1,7 +1,7 @@
 //! The FMU `HarvestingCircuit`: the circuit of Fig. 8(a) behind the FMI 2.0 interface for co-simulation.
 //!
 //! Only glue lives here: [`Harvesting`] keeps what the importer sets and hands it to [`videg_circuit`]; the variables
-//! are in [`variables`], the parameters among them in the circuit's own table.
+//! are in `variables.rs`, the parameters among them in the circuit's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
 mod slave;

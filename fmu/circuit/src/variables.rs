@@ -1,9 +1,7 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the table of the
 //! circuit.
 
-use std::sync::LazyLock;
-
-use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
 use videg_circuit::{Circuit, Settings, names};
 
 use crate::slave::{Harvesting, REST_CAPACITANCE};
@@ -62,7 +60,7 @@ static CHOICES: [V; Settings::CHOICES.len()] =
 macro_rules! capacitance {
     ($index:literal, $name:expr, $side:literal) => {
         V::input($name, "F", REST_CAPACITANCE, concat!("C: capacitance of the ", $side, " membrane, Eq. (1); with its first derivative set it runs from this value over the step, without from the value before to this one"))
-            .min(0.0)
+            .min(1e-18)
             .nominal(1e-11)
             .input_derivatives(1, |slave, _order, rate| slave.rate[$index] = Some(rate))
             .access(|slave| slave.capacitance[$index], |slave, value| slave.capacitance[$index] = value)
@@ -96,8 +94,8 @@ static OUTPUTS: [V; 14] = outputs! {
     "load.charge", "C", "Charge through the load since the start", |c| c.ledger().load_charge;
 };
 
+/// Number of variables.
+const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.len();
+
 /// The whole table; the value reference of a variable is its index.
-pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
-    let groups: [&[V]; 4] = [&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS];
-    groups.concat()
-});
+pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS]);

@@ -101,5 +101,5 @@ pub use units::{BaseUnit, base_unit};
 pub use variable::{
     BooleanSpec, Causality, Declaration, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, Initial,
     IntegerSpec, Kind, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, TableError, Variability, Variable,
-    value_reference,
+    concat, value_reference,
 };

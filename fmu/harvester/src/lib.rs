@@ -2,7 +2,7 @@
 //! co-simulation and model exchange.
 //!
 //! Only glue lives here: [`Harvester`] keeps what the importer sets and hands it to [`videg_model`]; the variables are
-//! in [`variables`], the parameters among them in the model's own table.
+//! in `variables.rs`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
 mod sensitivity;

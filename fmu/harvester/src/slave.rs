@@ -4,7 +4,7 @@ use fmi2_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{Harvester as Model, ModelError, Parameters};
+use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape, Side};
 
 use crate::variables::VARIABLES;
 
@@ -101,21 +101,36 @@ impl Slave for Harvester {
         self.model = Model::new(&self.parameters, self.start_time);
     }
 
-    fn initialize(&mut self, _log: &Logger) -> Result<(), SlaveError> {
+    fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
         self.check_law()?;
+        if self.parameters.restitution < PulseShape::MIN_RESTITUTION {
+            log.warning(format_args!(
+                "membrane.restitution = {}: pulses of C(t) fall as for {}, 100 times slower than they rise; without a \
+                 rebound they would never end",
+                self.parameters.restitution,
+                PulseShape::MIN_RESTITUTION
+            ));
+        }
         self.running().map(|_| ())
     }
 
+    /// The external force runs on at its rate over the step and stays where that took it, unless it is set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let model = self.running()?;
+        let events = log.is_enabled(LogCategory::Events);
+        let mut number = model.totals().impacts;
         let advanced = model.set_external_force(force, rate).and_then(|()| {
-            if log.is_enabled(LogCategory::Events) {
-                log_impacts(model, t + h, log)?;
-            }
-            model.advance(t + h)
+            model.advance_with(t + h, |impact| {
+                number += 1;
+                if events {
+                    log.event(describe(number, impact));
+                }
+            })
         });
-        advanced.map_err(|error| SlaveError::error(error.to_string()))
+        advanced.map_err(|error| SlaveError::error(error.to_string()))?;
+        self.external_force = force + rate * h;
+        Ok(())
     }
 
     fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
@@ -137,7 +152,9 @@ impl Slave for Harvester {
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if model.totals().impacts > impacts {
-            log_impact(model, log);
+            let side = if model.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
+            let (time, totals, rests) = (model.time(), model.totals(), model.resting().is_some());
+            log.event(describe(totals.impacts, &Impact { time, side, speed: totals.last_speed, rests }));
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }
@@ -155,22 +172,10 @@ impl Slave for Harvester {
     }
 }
 
-/// Goes from impact to impact up to `end`, s, and reports each. How a step is split does not change the motion.
-fn log_impacts(model: &mut Model, end: f64, log: &Logger) -> Result<(), ModelError> {
-    while let Some(time) = model.next_impact().filter(|&time| time <= end) {
-        model.advance(time)?;
-        log_impact(model, log);
-    }
-    Ok(())
-}
-
-/// Reports the impact that has just happened.
-fn log_impact(model: &Model, log: &Logger) {
-    let (time, totals) = (model.time(), model.totals());
-    let side = if model.relative_displacement() > 0.0 { "left" } else { "right" };
-    let rest = if model.resting().is_some() { "; the ball rests on it" } else { "" };
-    log.event(format_args!(
-        "impact {} at t = {time} s on the {side} membrane, relative speed {} m/s{rest}",
-        totals.impacts, totals.last_speed
-    ));
+/// An impact as the log shows it.
+fn describe(number: u64, impact: &Impact) -> String {
+    let Impact { time, side, speed, rests } = impact;
+    let side = if *side == Side::Left { "left" } else { "right" };
+    let rest = if *rests { "; the ball rests on it" } else { "" };
+    format!("impact {number} at t = {time} s on the {side} membrane, relative speed {speed} m/s{rest}")
 }

@@ -92,8 +92,8 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
         out.u64(count);
     }
     write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
-    out.f64(snapshot.period);
-    out.u64(snapshot.period_events);
+    out.f64(snapshot.second);
+    out.u64(snapshot.second_events);
 }
 
 fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
@@ -120,8 +120,8 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
             voltage_gain: from.f64()?,
             energy: from.f64()?,
         },
-        period: from.f64()?,
-        period_events: from.u64()?,
+        second: from.f64()?,
+        second_events: from.u64()?,
     })
 }
 

@@ -1,9 +1,7 @@
 //! The variable table: each name, unit and description stands here once, those of the real parameters in the table of
 //! the model.
 
-use std::sync::LazyLock;
-
-use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
 use videg_model::{NoiseModel, OutsideGap, Parameters, Side};
 
 use crate::slave::{ContactLaw, Harvester};
@@ -112,7 +110,7 @@ static CALCULATED: [V; 4] = [
 ];
 
 static INPUTS: [V; 3] = [
-    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7)")
+    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7); with its first derivative set it runs on over the step and stays at the value reached")
         .input_derivatives(1, |slave, _order, value| slave.external_force_rate = value)
         .access(|slave| slave.external_force, |slave, force| slave.external_force = force),
     V::input(
@@ -202,7 +200,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period",
+        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within the present hold interval)",
     )
     .discrete()
     .depends_on(&[])
@@ -260,9 +258,17 @@ static DERIVATIVES: [V; 4] = [
     .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
 ];
 
+/// Number of variables.
+const COUNT: usize = PARAMETERS.len()
+    + CHOICES.len()
+    + CALCULATED.len()
+    + INPUTS.len()
+    + LEFT.len()
+    + RIGHT.len()
+    + MOTION.len()
+    + EVENTS.len()
+    + DERIVATIVES.len();
+
 /// The whole table; the value reference of a variable is its index.
-pub static VARIABLES: LazyLock<Vec<V>> = LazyLock::new(|| {
-    let groups: [&[V]; 9] =
-        [&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &DERIVATIVES];
-    groups.concat()
-});
+pub static VARIABLES: [V; COUNT] =
+    concat(&[&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &DERIVATIVES]);

@@ -19,7 +19,7 @@ const CHATTER_HEIGHT: f64 = 1e-9;
 const PLACED_CHATTER_TOLERANCE: f64 = 1e-3;
 const PLACED_CHATTER_HEIGHT: f64 = 1e-6;
 
-/// Events allowed within one excitation period.
+/// Events allowed within one second of simulated time.
 const EVENT_BUDGET: u64 = 1_000_000;
 
 /// What the next event is. Times in s.
@@ -44,6 +44,15 @@ impl Event {
             Self::Impact { time, .. } | Self::Release { time } | Self::NoiseSample { time } => time,
         }
     }
+}
+
+/// How a chattering sequence ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Tail {
+    /// Endless bounces in a time so short that they are a geometric series.
+    Summed,
+    /// Bounces lower than rounding; what they would still gain is left out.
+    Unresolved,
 }
 
 /// How far the present flight (or rest) has been searched.
@@ -83,7 +92,7 @@ impl Harvester {
         let side = if dz > 0.0 { Side::Left } else { Side::Right };
         let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
         let at_rest = self.cylinder.velocity == self.ball.velocity;
-        if touching && at_rest && self.stays_on_membrane(self.time, side, 0.0) {
+        if touching && at_rest && self.end_of_bounces(self.time, side, 0.0).is_some() {
             self.rest(self.time, side);
         }
     }
@@ -164,15 +173,16 @@ impl Harvester {
         Ok(())
     }
 
-    /// Counts an event against the budget of its excitation period.
+    /// Counts an event against the budget of its second.
     pub(super) fn spend(&mut self, time: f64) -> Result<(), ModelError> {
-        let period = (time * self.parameters.frequency).floor();
-        if period != self.period {
-            (self.period, self.period_events) = (period, 0);
+        let second = time.floor();
+        if second != self.second {
+            (self.second, self.second_events) = (second, 0);
         }
-        self.period_events += 1;
-        if self.period_events > EVENT_BUDGET {
-            return Err(ModelError::TooManyEvents { time, limit: EVENT_BUDGET });
+        self.second_events += 1;
+        if self.second_events > EVENT_BUDGET {
+            let (travel, restitution) = (self.parameters.travel(), self.parameters.restitution);
+            return Err(ModelError::TooManyEvents { time, limit: EVENT_BUDGET, travel, restitution });
         }
         Ok(())
     }
@@ -194,11 +204,20 @@ impl Harvester {
             resting: None,
         };
         self.new_search(time, side.sign() * self.half_travel());
-        if self.stays_on_membrane(time, side, rebound) {
-            self.credit(self.membrane.excess_of_chatter(rebound, self.parameters.restitution));
-            self.totals.chatters += 1;
-            self.rest(time, side);
+        match self.end_of_bounces(time, side, rebound) {
+            Some(Tail::Summed) => {
+                self.credit(self.membrane.excess_of_chatter(rebound, self.parameters.restitution));
+                self.settle(time, side);
+            }
+            Some(Tail::Unresolved) => self.settle(time, side),
+            None => {}
         }
+    }
+
+    /// Ends a chattering sequence at `time`, s.
+    fn settle(&mut self, time: f64, side: Side) {
+        self.totals.chatters += 1;
+        self.rest(time, side);
     }
 
     /// From `time`, s, on the ball rests on the membrane at `side`.
@@ -217,15 +236,11 @@ impl Harvester {
     /// Whether a ball that leaves `side` with relative speed `rebound`, m/s, comes to rest there, because the wall
     /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the
     /// push is constant meanwhile.
-    fn stays_on_membrane(&self, time: f64, side: Side, rebound: f64) -> bool {
+    fn end_of_bounces(&self, time: f64, side: Side, rebound: f64) -> Option<Tail> {
         let push = side.sign() * self.cylinder.acceleration(time);
         let jerk = self.cylinder.jerk(time);
         if push <= 0.0 {
-            return push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0;
-        }
-        let height = rebound * rebound / (2.0 * push);
-        if height <= 4.0 * self.search.flight.rounding(0.0) {
-            return true;
+            return (push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
         }
         // Flights of 2 v / a, 2 v r / a, ...: their sum.
         let duration = 2.0 * rebound / (push * (1.0 - self.parameters.restitution));
@@ -237,7 +252,11 @@ impl Harvester {
         } else {
             (CHATTER_HEIGHT, CHATTER_TOLERANCE)
         };
-        height <= highest * self.half_travel() && change <= tolerance * push && time + duration <= noise_limit
+        let height = rebound * rebound / (2.0 * push);
+        if height <= highest * self.half_travel() && change <= tolerance * push && time + duration <= noise_limit {
+            return Some(Tail::Summed);
+        }
+        (height <= 4.0 * self.search.flight.rounding(0.0)).then_some(Tail::Unresolved)
     }
 
     pub(super) fn next_noise_sample(&mut self, time: f64) {

@@ -38,10 +38,10 @@ pub struct Snapshot {
     pub pulses: [Vec<Pulse>; 2],
     /// Sums over all impacts so far.
     pub totals: Totals,
-    /// Number of the excitation period in which events are being counted.
-    pub period: f64,
+    /// Number of the second in which events are being counted.
+    pub second: f64,
     /// Events counted in it.
-    pub period_events: u64,
+    pub second_events: u64,
 }
 
 impl Harvester {
@@ -59,8 +59,8 @@ impl Harvester {
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
             totals: self.totals,
-            period: self.period,
-            period_events: self.period_events,
+            second: self.second,
+            second_events: self.second_events,
         }
     }
 
@@ -118,8 +118,8 @@ impl Harvester {
             pulses: snapshot.pulses.clone().map(Pulses::from_inner),
             totals: snapshot.totals,
             placed: true,
-            period: snapshot.period,
-            period_events: snapshot.period_events,
+            second: snapshot.second,
+            second_events: snapshot.second_events,
         })
     }
 }
@@ -144,7 +144,7 @@ impl Snapshot {
         for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
             check("sum over the impacts", sum, sum.is_finite() && sum >= 0.0)?;
         }
-        check("period", self.period, self.period.is_finite())?;
+        check("second", self.second, self.second.is_finite())?;
         self.pulses.iter().try_for_each(|pulses| validate_pulses(pulses, time))
     }
 }

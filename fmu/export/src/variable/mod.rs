@@ -117,6 +117,27 @@ impl<M> Clone for Variable<M> {
 }
 impl<M> Copy for Variable<M> {}
 
+/// One table from several groups of rows. `N` must be the number of all rows; anything else does not compile where the
+/// table is a `static`. Such a table takes no memory that an unloaded library would leave behind.
+///
+/// # Panics
+/// At compile time, if `N` is not the number of rows or there is none.
+pub const fn concat<M, const N: usize>(groups: &[&[Variable<M>]]) -> [Variable<M>; N] {
+    let mut table = [groups[0][0]; N];
+    let (mut filled, mut group) = (0, 0);
+    while group < groups.len() {
+        let mut row = 0;
+        while row < groups[group].len() {
+            table[filled] = groups[group][row];
+            filled += 1;
+            row += 1;
+        }
+        group += 1;
+    }
+    assert!(filled == N, "N is not the number of rows");
+    table
+}
+
 impl<M> Variable<M> {
     /// Name, unique in the table.
     pub const fn name(&self) -> &'static str {

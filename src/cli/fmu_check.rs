@@ -1,0 +1,135 @@
+//! `videg fmu check`: whether an FMU loads, runs, and keeps the promises of its model description.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Verdict, output};
+use crate::fmi::{FmiError, Fmu, Instance, Kind, Logging};
+
+/// Step of the trial run if the FMU proposes none, s.
+const STEP: f64 = 1e-3;
+/// Number of steps of the trial run.
+const STEPS: u32 = 10;
+
+/// A check by name: says what it left out, or why it failed.
+type Task = (&'static str, fn(&mut Instance) -> Result<String, String>);
+
+/// One check and what came of it.
+#[derive(Serialize)]
+struct Check {
+    name: &'static str,
+    passed: bool,
+    /// Why it failed, or what was left out.
+    detail: String,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    file: &'a Path,
+    passed: bool,
+    checks: Vec<Check>,
+}
+
+/// Runs the checks; what was found goes to stdout, as text or as one JSON object.
+pub fn run(file: &Path, json: bool) -> anyhow::Result<Verdict> {
+    let fmu = Fmu::open(file)?;
+    let checks = checks(&fmu);
+    let passed = checks.iter().all(|check| check.passed);
+    if json {
+        output::print(&serde_json::to_string_pretty(&Output { file, passed, checks })?)?;
+    } else {
+        for check in &checks {
+            let (mark, detail) = (if check.passed { "ok    " } else { "FAILED" }, &check.detail);
+            let colon = if detail.is_empty() { "" } else { ": " };
+            output::print(&format!("{mark}  {}{colon}{detail}", check.name))?;
+        }
+    }
+    Ok(if passed { Verdict::Passed } else { Verdict::Failed })
+}
+
+fn check(name: &'static str, result: Result<String, String>) -> Check {
+    let passed = result.is_ok();
+    Check { name, passed, detail: result.unwrap_or_else(|reason| reason) }
+}
+
+fn text<T>(result: Result<T, FmiError>) -> Result<String, String> {
+    result.map(|_| String::new()).map_err(|error| error.to_string())
+}
+
+/// All checks, in the order in which a simulation needs them; the first that fails ends the list.
+fn checks(fmu: &Fmu) -> Vec<Check> {
+    let mut instance = match fmu.instantiate("check", Logging::default()) {
+        Ok(instance) => instance,
+        Err(error) => return vec![check("library loads and instantiates", Err(error.to_string()))],
+    };
+    let mut checks = vec![check("library loads and instantiates", Ok(String::new()))];
+    let tasks: [Task; 6] = [
+        ("initialises with its start values", |instance| text(initialize(instance))),
+        ("outputs are finite after initialisation", finite_outputs),
+        ("steps", |instance| text(step(instance, 0..STEPS))),
+        ("outputs are finite after the steps", finite_outputs),
+        ("saved state restores to the bit", rollback),
+        ("terminates, resets and initialises again", |instance| {
+            text(instance.terminate().and_then(|()| instance.reset()).and_then(|()| initialize(instance)))
+        }),
+    ];
+    for (name, task) in tasks {
+        checks.push(check(name, task(&mut instance)));
+        if checks.last().is_some_and(|check| !check.passed) {
+            break;
+        }
+    }
+    checks
+}
+
+fn initialize(instance: &mut Instance) -> Result<(), FmiError> {
+    instance.setup_experiment(0.0, None, None)?;
+    instance.enter_initialization_mode()?;
+    instance.exit_initialization_mode()
+}
+
+fn step(instance: &mut Instance, steps: std::ops::Range<u32>) -> Result<(), FmiError> {
+    let step = instance.description().default_experiment.step_size.unwrap_or(STEP);
+    steps.into_iter().try_for_each(|k| instance.do_step(f64::from(k) * step, step))
+}
+
+/// Value references and names of the real outputs.
+fn outputs(instance: &Instance) -> (Vec<u32>, Vec<String>) {
+    let outputs = instance.description().output_variables();
+    let reals = outputs.filter(|variable| matches!(variable.kind, Kind::Real { .. }));
+    reals.map(|variable| (variable.value_reference, variable.name.clone())).unzip()
+}
+
+fn values(instance: &Instance, references: &[u32]) -> Result<Vec<f64>, String> {
+    let mut values = vec![0.0; references.len()];
+    instance.get_real(references, &mut values).map_err(|error| error.to_string())?;
+    Ok(values)
+}
+
+fn finite_outputs(instance: &mut Instance) -> Result<String, String> {
+    let (references, names) = outputs(instance);
+    let values = values(instance, &references)?;
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(String::new()),
+        Some(index) => Err(format!("{} = {}", names[index], values[index])),
+    }
+}
+
+/// Runs on from a saved state twice; both runs must give the same bits.
+fn rollback(instance: &mut Instance) -> Result<String, String> {
+    if !instance.description().co_simulation.can_get_and_set_fmu_state {
+        return Ok("left out, the FMU cannot save its state".to_owned());
+    }
+    let (references, names) = outputs(instance);
+    let state = instance.save_state().map_err(|error| error.to_string())?;
+    step(instance, STEPS..2 * STEPS).map_err(|error| error.to_string())?;
+    let first = values(instance, &references)?;
+    instance.restore_state(&state).map_err(|error| error.to_string())?;
+    step(instance, STEPS..2 * STEPS).map_err(|error| error.to_string())?;
+    let second = values(instance, &references)?;
+    match first.iter().zip(&second).position(|(a, b)| a.to_bits() != b.to_bits()) {
+        None => Ok(String::new()),
+        Some(index) => Err(format!("{} = {} and then {}", names[index], first[index], second[index])),
+    }
+}

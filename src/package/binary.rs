@@ -1,0 +1,133 @@
+//! Libraries that were built elsewhere, looked at before they go into an archive.
+
+use std::path::{Path, PathBuf};
+
+use object::read::macho::{FatArch, MachOFatFile32, MachOFatFile64};
+use object::read::{File, FileKind, NameOrOrdinal, Object, ObjectKind};
+use object::{Architecture, BinaryFormat};
+
+use super::FMUS;
+use super::error::{PackageError, Result};
+use super::platform::Platform;
+
+/// The function that makes a library an FMU's.
+const ENTRY_POINT: &str = "fmi2Instantiate";
+
+/// A library that was built elsewhere, and where it belongs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AddedBinary {
+    /// The platform that it runs on.
+    pub platform: Platform,
+    /// Model identifier of its FMU.
+    pub identifier: &'static str,
+    /// The file.
+    pub path: PathBuf,
+}
+
+impl AddedBinary {
+    /// Reads `PLATFORM=PATH`, such as `darwin64=libVibroImpactHarvester.dylib`, and checks that the file is what it is
+    /// said to be. The file's name tells the FMU: it holds the model identifier.
+    ///
+    /// # Errors
+    /// When the platform is unknown, the name tells no FMU, or the file is no such library.
+    pub fn parse(text: &str) -> Result<Self> {
+        let Some((platform, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
+            return Err(PackageError::AddedForm { found: text.to_owned() });
+        };
+        let platform = Platform::of_folder(platform)?;
+        let path = PathBuf::from(path);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
+        let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: path.clone() })?;
+        let data = std::fs::read(&path).map_err(PackageError::io("read", &path))?;
+        check(&data, platform, &path)?;
+        Ok(Self { platform, identifier, path })
+    }
+}
+
+/// Checks that `data` is a shared library of the platform with the functions of an FMU.
+fn check(data: &[u8], platform: Platform, path: &Path) -> Result<()> {
+    let refuse = |found: String| PackageError::AddedLibrary { path: path.to_path_buf(), found, platform };
+    let broken = |cause: object::read::Error| refuse(format!("a broken file ({cause})"));
+    let kind = FileKind::parse(data).map_err(|_| refuse("no library at all".to_owned()))?;
+    match kind {
+        // One file for several machines: each part counts.
+        FileKind::MachOFat32 => {
+            check_parts(MachOFatFile32::parse(data).map_err(broken)?.arches(), data, platform, path)
+        }
+        FileKind::MachOFat64 => {
+            check_parts(MachOFatFile64::parse(data).map_err(broken)?.arches(), data, platform, path)
+        }
+        FileKind::Elf32 | FileKind::Elf64 | FileKind::MachO32 | FileKind::MachO64 | FileKind::Pe32 | FileKind::Pe64 => {
+            check_file(&File::parse(data).map_err(broken)?, platform, path)
+        }
+        other => Err(refuse(format!("a file of another kind ({other:?})"))),
+    }
+}
+
+fn check_parts<Arch: FatArch>(parts: &[Arch], data: &[u8], platform: Platform, path: &Path) -> Result<()> {
+    let refuse = |found: String| PackageError::AddedLibrary { path: path.to_path_buf(), found, platform };
+    if parts.is_empty() {
+        return Err(refuse("a Mach-O file of no machine".to_owned()));
+    }
+    let broken = |cause: object::read::Error| refuse(format!("a broken file ({cause})"));
+    parts.iter().try_for_each(|part| {
+        let part = part.data(data).map_err(broken)?;
+        check_file(&File::parse(part).map_err(broken)?, platform, path)
+    })
+}
+
+fn check_file(file: &File<'_>, platform: Platform, path: &Path) -> Result<()> {
+    let refuse = |found: String| Err(PackageError::AddedLibrary { path: path.to_path_buf(), found, platform });
+    let (format, bits) = (file.format(), if file.is_64() { 64 } else { 32 });
+    let machine = file.architecture();
+    if format != format_of(platform) || !machines_of(platform).contains(&machine) {
+        return refuse(format!("a {} file of {bits} bits for {machine:?}", format_name(format)));
+    }
+    if file.kind() != ObjectKind::Dynamic {
+        return refuse(format!("no shared library ({:?})", file.kind()));
+    }
+    let mut exports = match file.exports() {
+        Ok(exports) => exports,
+        Err(cause) => return refuse(format!("a broken file ({cause})")),
+    };
+    if exports.any(|export| export.is_ok_and(|export| is_entry_point(export.name()))) {
+        return Ok(());
+    }
+    Err(PackageError::AddedExport { path: path.to_path_buf(), symbol: ENTRY_POINT })
+}
+
+fn is_entry_point(name: NameOrOrdinal<&[u8]>) -> bool {
+    // C names begin with an underscore on macOS.
+    matches!(name, NameOrOrdinal::Name(name) if name.strip_prefix(b"_").unwrap_or(name) == ENTRY_POINT.as_bytes())
+}
+
+fn format_of(platform: Platform) -> BinaryFormat {
+    match platform.folder.as_bytes() {
+        [b'w', ..] => BinaryFormat::Pe,
+        [b'd', ..] => BinaryFormat::MachO,
+        _ => BinaryFormat::Elf,
+    }
+}
+
+/// FMI 2.0 tells no machines apart, and tools on ARM look into the same folders.
+fn machines_of(platform: Platform) -> &'static [Architecture] {
+    if platform.folder.ends_with("64") {
+        &[Architecture::X86_64, Architecture::Aarch64]
+    } else {
+        &[Architecture::I386, Architecture::Arm]
+    }
+}
+
+fn format_name(format: BinaryFormat) -> &'static str {
+    match format {
+        BinaryFormat::Elf => "Linux (ELF)",
+        BinaryFormat::Pe => "Windows (PE)",
+        BinaryFormat::MachO => "macOS (Mach-O)",
+        _ => "foreign",
+    }
+}
+
+#[cfg(test)]
+#[path = "binary_tests.rs"]
+mod tests;

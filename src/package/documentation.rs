@@ -1,0 +1,190 @@
+//! What an FMU carries for people: a page about the model, its picture, the licenses.
+
+use askama::Template;
+
+use super::contents::Contents;
+use super::error::{PackageError, Result};
+use super::picture;
+use crate::fmi::{Causality, EnumerationItem, Kind, ModelDescription, Variable};
+
+/// The licenses, wherever this program runs.
+const LICENSES: [(&str, &str); 4] = [
+    ("LICENSE-MIT", include_str!("../../LICENSE-MIT")),
+    ("LICENSE-APACHE", include_str!("../../LICENSE-APACHE")),
+    // The name under which FMI 2.0.4 has importers look first.
+    ("license.txt", include_str!("license.txt")),
+    ("spdx.txt", "SPDX-License-Identifier: MIT OR Apache-2.0\n"),
+];
+
+/// Headings, in the order in which a user needs them.
+const GROUPS: [(Causality, &str); 4] = [
+    (Causality::Parameter, "Parameters"),
+    (Causality::CalculatedParameter, "Calculated parameters"),
+    (Causality::Input, "Inputs"),
+    (Causality::Output, "Outputs"),
+];
+
+#[derive(Template)]
+#[template(path = "harvester/documentation/index.html")]
+struct HarvesterPage {
+    page: Page,
+}
+
+#[derive(Template)]
+#[template(path = "circuit/documentation/index.html")]
+struct CircuitPage {
+    page: Page,
+}
+
+/// What the pages say about every model.
+struct Page {
+    name: String,
+    description: String,
+    identifier: String,
+    guid: String,
+    tool: String,
+    groups: Vec<Group>,
+}
+
+struct Group {
+    heading: &'static str,
+    rows: Vec<Row>,
+}
+
+struct Row {
+    name: String,
+    unit: String,
+    start: String,
+    range: String,
+    meaning: String,
+}
+
+/// Adds page, picture and licenses to an archive.
+///
+/// # Errors
+/// When the page cannot be written or the picture not drawn.
+pub(super) fn add(contents: &mut Contents) -> Result<()> {
+    let description = contents.description();
+    let (page, picture) = (page(description)?, picture::draw(description)?);
+    if let Some(page) = page {
+        contents.add_bytes("documentation/index.html", page.into_bytes());
+    }
+    if let Some(picture) = picture {
+        contents.add_bytes("model.png", picture);
+    }
+    for (name, text) in LICENSES {
+        contents.add_bytes(&format!("documentation/licenses/{name}"), text.into());
+    }
+    Ok(())
+}
+
+/// The page of a model; none for a model unknown here.
+fn page(description: &ModelDescription) -> Result<Option<String>> {
+    let identifier = description.co_simulation.model_identifier.clone();
+    let page = Page {
+        name: description.model_name.clone(),
+        description: description.description.clone().unwrap_or_default(),
+        guid: description.guid.clone(),
+        tool: description.generation_tool.clone().unwrap_or_default(),
+        groups: GROUPS.iter().filter_map(|(causality, heading)| group(description, *causality, heading)).collect(),
+        identifier: identifier.clone(),
+    };
+    let text = match identifier.as_str() {
+        "VibroImpactHarvester" => HarvesterPage { page }.render(),
+        "HarvestingCircuit" => CircuitPage { page }.render(),
+        _ => return Ok(None),
+    };
+    text.map(Some).map_err(|cause| PackageError::Documentation { identifier, cause })
+}
+
+fn group(description: &ModelDescription, causality: Causality, heading: &'static str) -> Option<Group> {
+    let variables = description.variables.iter().filter(|variable| variable.causality == causality);
+    let rows: Vec<_> = variables.map(|variable| row(description, variable)).collect();
+    (!rows.is_empty()).then_some(Group { heading, rows })
+}
+
+fn row(description: &ModelDescription, variable: &Variable) -> Row {
+    let mut meaning = variable.description.clone().unwrap_or_default();
+    let (unit, start, range) = match &variable.kind {
+        Kind::Real { start, min, max, .. } => {
+            (variable.unit().unwrap_or("1"), start.map(number), range(min.map(number), max.map(number)))
+        }
+        Kind::Integer { start, min, max } => (
+            "integer",
+            start.map(|value| value.to_string()),
+            range(min.map(|value| value.to_string()), max.map(|value| value.to_string())),
+        ),
+        Kind::Boolean { start } => ("boolean", start.map(|value| value.to_string()), String::new()),
+        Kind::String { start } => ("text", start.clone(), String::new()),
+        Kind::Enumeration { start } => {
+            let items = description.enumeration(variable).map(|it| it.items.as_slice()).unwrap_or_default();
+            let explained = |item: &EnumerationItem| {
+                format!(". {} ({}): {}", item.name, item.value, item.description.as_deref().unwrap_or_default())
+            };
+            meaning.extend(items.iter().map(explained));
+            let chosen = items.iter().find(|item| Some(item.value) == *start);
+            ("enumeration", chosen.map(|item| item.name.clone()), String::new())
+        }
+    };
+    Row { name: variable.name.clone(), unit: unit.to_owned(), start: start.unwrap_or_default(), range, meaning }
+}
+
+/// A number as people write it.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+fn range(min: Option<String>, max: Option<String>) -> String {
+    match (min, max) {
+        (None, None) => String::new(),
+        (Some(min), None) => format!("at least {min}"),
+        (None, Some(max)) => format!("at most {max}"),
+        (Some(min), Some(max)) => format!("{min} to {max}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::package::FMUS;
+
+    fn text(identifier: &str) -> (ModelDescription, String) {
+        let path = format!("{}/modelDescription/{identifier}.xml", env!("CARGO_MANIFEST_DIR"));
+        let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), &path).unwrap();
+        let page = page(&description).unwrap().unwrap();
+        (description, page)
+    }
+
+    #[test]
+    fn each_page_has_its_text_and_a_row_for_every_variable() {
+        for fmu in FMUS {
+            let (description, page) = text(fmu.identifier);
+            for heading in ["What it is", "Equations", "How it is solved", "Assumptions and limits", "Parameters"] {
+                assert!(page.contains(&format!(">{heading}</h")), "{}: {heading}", fmu.identifier);
+            }
+            for variable in &description.variables {
+                assert!(page.contains(&format!("<td><code>{}</code></td>", variable.name)), "{}", variable.name);
+            }
+            assert_eq!(page.matches("<tr><td>").count(), description.variables.len());
+        }
+    }
+
+    #[test]
+    fn a_page_loads_nothing_and_is_ascii() {
+        for fmu in FMUS {
+            let (_, page) = text(fmu.identifier);
+            for loaded in ["src=", "href=", "url(", "@import", "<script"] {
+                assert!(!page.contains(loaded), "{}: {loaded}", fmu.identifier);
+            }
+            assert!(page.is_ascii(), "{}", fmu.identifier);
+        }
+    }
+
+    #[test]
+    fn rows_say_what_the_description_says() {
+        let (_, page) = text("VibroImpactHarvester");
+        let row = "<tr><td><code>ball.mass</code></td><td>kg</td><td>0.0035</td><td>1e-9 to 1e6</td>";
+        assert!(page.contains(row), "{page}");
+        assert!(page.contains("<td>enumeration</td><td>impulsive</td>"), "{page}");
+    }
+}

@@ -1,0 +1,185 @@
+#!/usr/bin/env bash
+# Installs what the tests need and runs them, stage by stage. See ./test.sh --help.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+readonly STAGES=(setup lint unit fmpy conformance)
+readonly VENV=.venv
+# The second takes the first in.
+readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
+
+usage() {
+    cat <<'EOF'
+Usage: ./test.sh [STAGE...]
+
+Runs the stages named, or all of them in this order:
+  setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
+  lint         cargo fmt, clippy and rustdoc, with warnings as errors
+  unit         the tests of all Rust packages
+  fmpy         FMPy simulates the FMUs and agrees with the command line
+  conformance  other tools check and run the FMUs; writes docs/conformance.md
+
+Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
+EOF
+}
+
+fail() {
+    echo "test.sh: $*" >&2
+    exit 1
+}
+
+# --- setup -----------------------------------------------------------------------------------------------------------
+
+has_command() {
+    command -v "$1" >/dev/null
+}
+
+has_library() {
+    # Not grep --quiet: it leaves early, and the broken pipe would count as a failure.
+    PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --fixed-strings "$1" >/dev/null
+}
+
+has_venv() {
+    python3 -c 'import ensurepip, venv' 2>/dev/null
+}
+
+# The Debian packages of those things that are not there.
+missing_packages() {
+    has_command cc || echo gcc libc6-dev
+    has_command python3 || echo python3
+    has_venv || echo python3-venv
+    has_command xmllint || echo libxml2-utils
+    has_library libtbb.so.12 || echo libtbb12
+    has_command valgrind || echo valgrind
+    has_command ngspice || echo ngspice
+    has_library libngspice.so.0 || echo libngspice0
+}
+
+install_packages() {
+    local as_root=()
+    if [[ $(id -u) -ne 0 ]]; then
+        has_command sudo || fail "these packages are missing, and neither root nor sudo is at hand: $*"
+        as_root=(sudo)
+    fi
+    has_command apt-get || fail "these Debian packages are missing, and there is no apt-get to install them: $*"
+    echo "installing $*"
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get)
+    "${apt[@]}" update --quiet=2
+    "${apt[@]}" install --quiet=2 --yes --no-install-recommends "$@" >/dev/null
+}
+
+# Installs the pinned Python packages, unless those of this very list are there already.
+install_python_packages() {
+    local stamp="$VENV/requirements.sha256" wanted
+    wanted=$(cat "${REQUIREMENTS[@]}" <(python3 --version) | sha256sum)
+    if [[ -f $stamp && $(<"$stamp") == "$wanted" ]]; then
+        echo "Python packages: up to date"
+        return
+    fi
+    echo "installing Python packages into $VENV"
+    python3 -m venv --clear "$VENV"
+    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "${REQUIREMENTS[1]}"
+    "$VENV/bin/pip" check
+    echo "$wanted" >"$stamp"
+}
+
+stage_setup() {
+    local packages
+    read -r -d '' -a packages < <(missing_packages && printf '\0')
+    if [[ ${#packages[@]} -eq 0 ]]; then
+        echo "system packages: up to date"
+    else
+        install_packages "${packages[@]}"
+    fi
+    has_venv || fail "the python3 on the PATH ($(command -v python3)) cannot make virtual environments"
+    install_python_packages
+}
+
+# --- checks ----------------------------------------------------------------------------------------------------------
+
+run() {
+    echo "+ $*"
+    "$@"
+}
+
+# A check that cannot run here; in continuous integration it must.
+skip() {
+    [[ -z ${CI:-} ]] || fail "$*"
+    echo "skipped: $*"
+}
+
+# fmi2-export is checked with its model-description feature in calls of its own: together with the FMUs, the feature
+# would get into their shared libraries, because Cargo unifies features within a build.
+stage_lint() {
+    if cargo fmt --version >/dev/null 2>&1; then
+        run cargo fmt --all --check
+    else
+        skip "cargo fmt is not installed"
+    fi
+    if cargo clippy --version >/dev/null 2>&1; then
+        run cargo clippy --quiet --workspace --all-targets -- -D warnings
+        run cargo clippy --quiet -p fmi2-export --all-targets --all-features -- -D warnings
+    else
+        skip "cargo clippy is not installed"
+    fi
+    run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+}
+
+stage_unit() {
+    run cargo test --workspace
+    run cargo test -p fmi2-export --all-features
+}
+
+need_python() {
+    [[ -x $VENV/bin/python ]] || fail "$VENV is not there; run ./test.sh setup first"
+}
+
+build_fmus() {
+    run cargo build --release
+    run cargo run --quiet --release -- fmu build
+}
+
+stage_fmpy() {
+    need_python
+    build_fmus
+    run "$VENV/bin/python" -m pytest tests/fmpy
+}
+
+stage_conformance() {
+    need_python
+    build_fmus
+    run "$VENV/bin/python" tests/conformance
+}
+
+# --- main ------------------------------------------------------------------------------------------------------------
+
+is_stage() {
+    local stage
+    for stage in "${STAGES[@]}"; do
+        [[ $stage == "$1" ]] && return
+    done
+    return 1
+}
+
+main() {
+    local stage started
+    for stage in "$@"; do
+        case $stage in
+            -h | --help)
+                usage
+                return
+                ;;
+            *) is_stage "$stage" || fail "no stage is called \"$stage\"; there are: ${STAGES[*]}" ;;
+        esac
+    done
+    [[ $# -gt 0 ]] || set -- "${STAGES[@]}"
+    for stage in "$@"; do
+        started=$SECONDS
+        echo "=== $stage"
+        "stage_$stage"
+        echo "=== $stage: passed in $((SECONDS - started)) s"
+    done
+    echo "=== all passed: $*"
+}
+
+main "$@"

@@ -1,0 +1,264 @@
+//! The command line as a user or a script meets it: exit codes, `--json`, the files written, and the paper's numbers.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+use approx::assert_relative_eq;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// What came back from the tool.
+struct Run {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+/// Runs the tool in a folder of its own, where `out/` does no harm.
+///
+/// One at a time: each run asks Cargo whether the FMUs are fresh, and a Cargo that waits for another says so on stderr.
+/// The first run compiles them.
+fn videg(arguments: &[&str]) -> Run {
+    static FOLDER: LazyLock<Mutex<TempDir>> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let built = run(&["fmu", "build"], folder.path());
+        assert_eq!(built.code, Some(0), "{}", built.stderr);
+        Mutex::new(folder)
+    });
+    let folder = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+    run(arguments, folder.path())
+}
+
+fn run(arguments: &[&str], folder: &Path) -> Run {
+    let output = Command::new(env!("CARGO_BIN_EXE_videg")).args(arguments).current_dir(folder).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+/// The JSON object that a successful run printed, and nothing beside it.
+fn json(arguments: &[&str]) -> Value {
+    let run = videg(arguments);
+    assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
+    assert_eq!(run.stderr, "", "{arguments:?}");
+    let value: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(value.is_object(), "{arguments:?}: {}", run.stdout);
+    value
+}
+
+/// A number of the object, by its path, e.g. `energy.load`.
+fn number(value: &Value, path: &str) -> f64 {
+    let found = path.split('.').fold(value, |value, key| &value[key]);
+    found.as_f64().unwrap_or_else(|| panic!("{path} is no number in {value}"))
+}
+
+fn simulate(case: &str, more: &[&str]) -> Value {
+    json(&[&["simulate", "--json", "--case", case], more].concat())
+}
+
+#[test]
+fn the_periodic_case_gives_the_gain_of_the_paper() {
+    let found = simulate("fig14", &[]);
+    assert_relative_eq!(number(&found, "average_voltage_gain"), 8078.9, max_relative = 1e-4);
+    assert_eq!(found["case"], "fig14");
+    assert_eq!(number(&found, "until"), 100.0);
+    assert_eq!(found["window"], serde_json::json!([50.0, 100.0]));
+    assert!(found["impacts"].as_u64().unwrap() > 590);
+}
+
+#[test]
+fn the_slow_transient_ends_within_the_spread_of_nearby_starts() {
+    let gain = number(&simulate("fig15", &[]), "average_voltage_gain");
+    assert!((8645.0..8670.0).contains(&gain), "{gain} V/s");
+}
+
+/// Four impacts a second at 0.17193 m/s. The printed equations give 457.62124 V for each of them.
+#[test]
+fn the_saw_tooth_motion_has_the_gain_of_its_exact_orbit() {
+    let found = simulate("fig10", &["--until", "21", "--window", "0.1,20.1"]);
+    assert_relative_eq!(number(&found, "average_voltage_gain"), 4.0 * 457.621_24, max_relative = 1e-6);
+}
+
+/// At 2 Hz the ball comes to rest in each cycle. The paper's 0.061 W counts an impact at each step of a resting ball;
+/// without those it is 0.0530 W at every step size.
+#[test]
+fn the_flashlight_gives_its_power_with_and_without_a_resting_ball() {
+    let power = |case| number(&simulate(case, &[]), "average_power_eq13");
+    assert_relative_eq!(power("table3-5hz"), 0.1321, max_relative = 1e-3);
+    assert_relative_eq!(power("table3-2hz"), 0.0530, max_relative = 5e-3);
+}
+
+#[test]
+fn the_books_of_a_co_simulation_balance() {
+    let found = json(&["cosim", "--json", "--until", "5"]);
+    for key in ["until", "impacts", "average_voltage_gain", "average_power_eq13", "charge.supply", "charge.load"] {
+        assert!(number(&found, key) > 0.0, "{key}");
+    }
+    assert_eq!(found["case"], "fig14");
+    assert_eq!(found["window"], serde_json::json!([2.5, 5.0]));
+    let energy = |key: &str| number(&found, &format!("energy.{key}"));
+    let converted = energy("load") + energy("zener") + energy("diode") + energy("stored") - energy("supply");
+    let scale = energy("supply");
+    assert_relative_eq!(energy("converted"), converted, epsilon = 1e-9 * scale);
+    assert_relative_eq!(energy("surplus"), energy("load") - energy("supply"), epsilon = 1e-9 * scale);
+    assert_relative_eq!(energy("mechanical"), converted, epsilon = 1e-9 * scale);
+    assert!(energy("eq13") > 0.0);
+}
+
+#[test]
+fn the_circuit_fmu_agrees_with_the_embedded_circuit() {
+    for load in ["1e9", "inf", "0"] {
+        agree_at(load);
+    }
+}
+
+fn agree_at(load: &str) {
+    let load = format!("load.resistance={load}");
+    let with = |circuit| json(&["cosim", "--json", "--until", "5", "--circuit", circuit, "--set", &load]);
+    let (embedded, fmu) = (with("embedded"), with("fmu"));
+    for group in ["energy", "charge"] {
+        let scale = number(&embedded, &format!("{group}.supply"));
+        for key in embedded[group].as_object().unwrap().keys() {
+            let path = format!("{group}.{key}");
+            let (one, other) = (number(&embedded, &path), number(&fmu, &path));
+            assert!((one - other).abs() <= 1e-9 * scale, "{path}: {one} and {other}");
+        }
+    }
+}
+
+/// C(t) goes into the circuit piecewise linear, so energies converge with the square of the communication step.
+#[test]
+fn energies_converge_with_the_communication_step() {
+    let converted = |step| number(&json(&["cosim", "--json", "--until", "5", "--step", step]), "energy.converted");
+    let (coarse, middle, fine) = (converted("2e-3"), converted("1e-3"), converted("5e-4"));
+    assert!((coarse - middle).abs() > 2.5 * (middle - fine).abs(), "{coarse:e} {middle:e} {fine:e}");
+    assert_relative_eq!(middle, fine, max_relative = 1e-3);
+}
+
+#[test]
+fn settings_of_the_circuit_are_left_out_of_a_simulation_with_a_warning() {
+    let run = videg(&["simulate", "--json", "--until", "2", "--set", "load.resistance=5"]);
+    assert_eq!(run.code, Some(0));
+    assert!(run.stderr.contains("load.resistance left out"), "{}", run.stderr);
+}
+
+#[test]
+fn settings_and_case_files_change_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("soft.toml");
+    std::fs::write(&file, "case = 'fig14'\nuntil = 4\n[set]\nmembrane.restitution = 0.3\n").unwrap();
+    let from_file = json(&["simulate", "--json", "--case-file", file.to_str().unwrap()]);
+    let set = simulate("fig14", &["--until", "4", "--set", "membrane.restitution=0.3"]);
+    let plain = simulate("fig14", &["--until", "4"]);
+    assert_eq!(from_file["average_voltage_gain"], set["average_voltage_gain"]);
+    assert_ne!(plain["average_voltage_gain"], set["average_voltage_gain"]);
+}
+
+#[test]
+fn the_output_folder_holds_everything_whole() {
+    for verb in ["cosim", "simulate"] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("new/folder");
+        let printed = json(&[verb, "--json", "--until", "2", "--output", output.to_str().unwrap()]);
+        let mut names: Vec<_> = std::fs::read_dir(&output)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        assert_eq!(names, ["figure.svg", "report.html", "result.json", "timeseries.csv"], "{verb}");
+        let read = |name: &str| std::fs::read_to_string(output.join(name)).unwrap();
+        assert_eq!(serde_json::from_str::<Value>(&read("result.json")).unwrap(), printed);
+        assert!(read("figure.svg").contains("<svg") && read("report.html").contains("</html>"), "{verb}");
+        let csv = read("timeseries.csv");
+        assert!(csv.starts_with("time,left.capacitance,right.capacitance,"), "{verb}");
+        assert!(csv.lines().last().unwrap().starts_with("2.0,"), "{verb}");
+    }
+}
+
+#[test]
+fn without_json_the_table_is_on_stdout_and_the_files_are_named() {
+    let run = videg(&["cosim", "--until", "2"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    for part in ["fig14", "<U>, Eq. (15)", "Zener", "report.html"] {
+        assert!(run.stdout.contains(part), "{part} is not in:\n{}", run.stdout);
+    }
+    assert!(!run.stdout.contains('\u{1b}'), "colours for a reader that is no terminal");
+}
+
+/// Each with parts of its message: the thing, the value, and what is allowed.
+#[test]
+fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
+    let cases: [(&[&str], &[&str]); 16] = [
+        (&["simulate", "--case", "fig8"], &["--case", "fig8", "fig14"]),
+        (&["cosim", "--case", "fig8"], &["--case", "fig8", "fig14"]),
+        (&["simulate", "--set", "ball.weight=1"], &["ball.weight"]),
+        (&["cosim", "--set", "load.resistence=1"], &["load.resistence", "load.resistance"]),
+        (&["simulate", "--set", "ball.mass"], &["--set", "ball.mass", "variable.name=VALUE"]),
+        (&["simulate", "--set", "ball.mass=heavy"], &["ball.mass", "heavy", "number"]),
+        (&["simulate", "--set", "membrane.restitution=1.5"], &["membrane.restitution", "1.5", "0 .. 1"]),
+        (&["cosim", "--set", "topology=star"], &["topology", "star", "sharedNode, isolated"]),
+        (&["simulate", "--until", "10", "--window", "5,20"], &["--window", "20 s", "10 s"]),
+        (&["simulate", "--window", "5"], &["--window", "'5'", "50,100"]),
+        (&["simulate", "--until", "-1"], &["--until", "-1 s", "1e9 s"]),
+        (&["simulate", "--until", "long"], &["--until", "'long'"]),
+        (&["cosim", "--step", "0"], &["--step", "0 s", "above 0"]),
+        (&["cosim", "--circuit", "paper"], &["--circuit", "'paper'", "embedded, fmu"]),
+        (&["simulate", "--case-file", "missing.toml"], &["missing.toml", "No such file"]),
+        (&["destroy"], &["destroy"]),
+    ];
+    for (arguments, parts) in cases {
+        assert_refused(arguments, parts);
+    }
+}
+
+fn assert_refused(arguments: &[&str], parts: &[&str]) {
+    let Run { code, stdout, stderr } = videg(arguments);
+    assert_eq!((code, stdout.as_str()), (Some(2), ""), "{arguments:?}: {stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{arguments:?}: {stderr}");
+    for part in parts {
+        assert!(stderr.contains(part), "{arguments:?} does not name {part}: {stderr}");
+    }
+}
+
+#[test]
+fn the_fmus_are_built_where_asked_and_described() {
+    let folder = tempfile::tempdir().unwrap();
+    let built = json(&["fmu", "build", "--json", "--output", folder.path().to_str().unwrap()]);
+    for (index, identifier) in ["VibroImpactHarvester", "HarvestingCircuit"].into_iter().enumerate() {
+        let path = folder.path().join(format!("{identifier}.fmu"));
+        assert_eq!(built["fmus"][index], path.to_str().unwrap());
+        let info = json(&["fmu", "info", "--json", path.to_str().unwrap()]);
+        assert_eq!((&info["model_identifier"], &info["fmi_version"]), (&identifier.into(), &"2.0".into()));
+        assert_eq!(info["platforms"].as_array().unwrap().len(), 1);
+        let variables = info["variables"].as_array().unwrap();
+        assert!(variables.iter().any(|variable| variable["name"] == "left.capacitance" && variable["unit"] == "F"));
+        let text = videg(&["fmu", "info", path.to_str().unwrap()]);
+        assert!(text.code == Some(0) && text.stdout.contains("left.capacitance"), "{}", text.stdout);
+    }
+}
+
+#[test]
+fn what_is_no_fmu_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, content: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let missing = folder.path().join("missing.fmu");
+    assert_refused(&["fmu", "info", missing.to_str().unwrap()], &["missing.fmu", "No such file"]);
+    assert_refused(&["fmu", "info", &file("text.fmu", b"no FMU at all\n")], &["text.fmu", "not a readable FMU"]);
+    assert_refused(&["fmu", "info", &file("nothing.fmu", b"")], &["nothing.fmu", "not a readable FMU"]);
+    // The end record of an archive without entries.
+    let empty = [b"PK\x05\x06".as_slice(), &[0; 18]].concat();
+    assert_refused(&["fmu", "info", &file("empty.fmu", &empty)], &["empty.fmu", "modelDescription.xml"]);
+}
+
+#[test]
+fn completions_and_help_are_data() {
+    let completions = videg(&["completions", "bash"]);
+    assert!(completions.code == Some(0) && completions.stdout.contains("_videg"));
+    let help = videg(&["--help"]);
+    assert!(help.code == Some(0) && help.stdout.contains("cosim") && help.stderr.is_empty());
+}

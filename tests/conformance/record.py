@@ -1,0 +1,79 @@
+"""What was found about one FMU with one tool, and the table of all that."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+BOUND = 1e-9
+"""Largest difference that passes, relative to the largest value of an output."""
+
+
+@dataclass
+class Record:
+    tool: str
+    version: str
+    proves: str
+    fmu: str
+    seconds: float
+    complaints: list[str]
+    known: list[str] = field(default_factory=list)
+    compared_with: str = ""
+    worst: float | None = None
+    optional: bool = False
+
+    @property
+    def passed(self) -> bool:
+        return not self.complaints and (self.worst is None or self.worst <= BOUND)
+
+    def difference(self) -> str:
+        """The worst difference in steps that do not change from machine to machine."""
+        if not self.compared_with:
+            return ""
+        if self.worst is None:
+            return "nothing to compare"
+        bounds = [bound for bound in (0.0, 1e-12, BOUND) if self.worst <= bound]
+        size = ("none" if bounds[0] == 0.0 else f"below {bounds[0]:.0e}") if bounds else f"{self.worst:.1e}"
+        return f"{size} (to {self.compared_with})"
+
+    def line(self) -> str:
+        """A line for the terminal."""
+        worst = "" if self.worst is None else f", worst difference {self.worst:.1e} to {self.compared_with}"
+        result = "passed" if self.passed else "FAILED"
+        return f"{result}  {self.tool} {self.version}, {self.fmu}{worst}, {self.seconds:.1f} s"
+
+
+HEADER = """\
+# Conformance of the FMUs
+
+Written by `./test.sh conformance`; do not edit. Checkers must find nothing, neither an error nor a warning, and must
+notice a broken FMU. Importers run the paper's Fig. 14 for {seconds:g} s in steps of {step:g} s, with the capacitances
+of the harvester connected to the circuit; at every communication point each of these outputs must agree within
+{bound:.0e} of its largest value:
+
+{outputs}
+
+FMPy is compared with videg's own importer (the circuit by the tests in `tests/fmpy`), the others with FMPy.
+
+| tool | version | what it shows | FMU | result | worst difference |
+|---|---|---|---|---|---|
+"""
+
+
+def table(records: list[Record], **facts) -> str:
+    """The page: the same on every machine, so optional tools are not on it."""
+    text = HEADER.format(bound=BOUND, **facts)
+    shown = [record for record in records if not record.optional]
+    for record in shown:
+        result = "passed" if record.passed else "failed"
+        cells = [record.tool, record.version, record.proves, record.fmu, result, record.difference()]
+        text += f"| {' | '.join(cells)} |\n"
+    known = sorted({f"- {record.tool}: {reason}." for record in shown for reason in record.known})
+    if known:
+        text += "\nWhat a tool says of itself, not of the FMUs:\n\n" + "\n".join(known) + "\n"
+    return text
+
+
+def write(path: Path, text: str) -> None:
+    """Writes the page if it says something new."""
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+        print(f"{path} has changed: commit it if that is right")

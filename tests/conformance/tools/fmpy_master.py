@@ -1,0 +1,54 @@
+"""FMPy as the importer, with a fixed-step master written out: what the other importers are compared with."""
+
+import shutil
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import FMU2Slave
+
+import job
+
+NAME = "FMPy"
+PROVES = "loads and runs both FMUs"
+
+
+def version() -> str:
+    return fmpy.__version__
+
+
+def instantiate(fmu: str) -> tuple[FMU2Slave, dict[str, int], str]:
+    folder = fmpy.extract(fmu)
+    description = fmpy.read_model_description(folder)
+    slave = FMU2Slave(
+        guid=description.guid,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        unzipDirectory=folder,
+        instanceName=description.modelName,
+    )
+    slave.instantiate()
+    slave.setupExperiment(startTime=0.0, stopTime=job.STEP * job.STEPS)
+    return slave, {variable.name: variable.valueReference for variable in description.modelVariables}, folder
+
+
+def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
+    slaves, references, folders = zip(*(instantiate(fmus[name]) for name in job.FMUS))
+    harvester, circuit = slaves
+    harvester.setReal([references[0][name] for name in job.START_VALUES], list(job.START_VALUES.values()))
+    sources, sinks = ([names[name] for name in job.CONNECTED] for names in references)
+    read = [[names[name] for name in job.OUTPUTS[fmu]] for fmu, names in zip(job.FMUS, references)]
+    for slave in slaves:
+        slave.enterInitializationMode()
+    circuit.setReal(sinks, harvester.getReal(sources))
+    for slave in slaves:
+        slave.exitInitializationMode()
+    rows = [[], []]
+    for index in range(job.STEPS):
+        circuit.setReal(sinks, harvester.getReal(sources))
+        for slave, values, wanted in zip(slaves, rows, read):
+            slave.doStep(index * job.STEP, job.STEP)
+            values.append(slave.getReal(wanted))
+    for slave, folder in zip(slaves, folders):
+        slave.terminate()
+        slave.freeInstance()
+        shutil.rmtree(folder)
+    return {fmu: dict(zip(job.OUTPUTS[fmu], np.array(values).T)) for fmu, values in zip(job.FMUS, rows)}

@@ -1,0 +1,109 @@
+//! `modelDescription/README.md` is the table that the model descriptions give: symbol of the paper, variable, unit,
+//! equation.
+
+#![allow(clippy::unwrap_used)] // a broken description is a failed test
+
+use std::fmt::Write as _;
+
+use videg::fmi::{Causality, Kind, ModelDescription, Variable};
+use videg::package::FMUS;
+
+const HEAD: &str = "\
+# Model descriptions
+
+`VibroImpactHarvester.xml` and `HarvestingCircuit.xml` are packaged as `modelDescription.xml` of the two FMUs. They
+follow from the variable tables in `fmu/*/src/variables.rs`, and this page follows from them; tests keep all equal.
+After a change of a table run `UPDATE_MODEL_DESCRIPTION=1 cargo test --workspace` (twice: the descriptions first).
+
+Symbols, equations, figures, tables and sections are those of the paper, \"Energy harvesting from a DE-based dynamic
+vibro-impact system\". A variable without a symbol has none in the paper.
+";
+
+/// Run with `UPDATE_MODEL_DESCRIPTION=1` to write the page after a change of a description.
+#[test]
+fn the_page_is_that_of_the_model_descriptions() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/modelDescription");
+    let mut expected = HEAD.to_owned();
+    for fmu in FMUS {
+        let path = format!("{folder}/{}.xml", fmu.identifier);
+        let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), &path).unwrap();
+        write_table(&mut expected, &description);
+    }
+    let path = format!("{folder}/README.md");
+    if std::env::var_os("UPDATE_MODEL_DESCRIPTION").is_some() {
+        std::fs::write(&path, &expected).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(found == expected, "{path} is out of date: run `UPDATE_MODEL_DESCRIPTION=1 cargo test --workspace`");
+}
+
+fn write_table(text: &mut String, description: &ModelDescription) {
+    write!(text, "\n## {}\n\n{}.\n", description.model_name, description.description.as_deref().unwrap()).unwrap();
+    for causality in [Causality::Parameter, Causality::CalculatedParameter, Causality::Input, Causality::Output] {
+        let variables: Vec<_> = description.variables.iter().filter(|it| it.causality == causality).collect();
+        if variables.is_empty() {
+            continue;
+        }
+        let heading = match causality {
+            Causality::Parameter => "Parameters",
+            Causality::CalculatedParameter => "Calculated parameters",
+            Causality::Input => "Inputs",
+            _ => "Outputs",
+        };
+        write!(text, "\n### {heading}\n\n| paper symbol | variable | unit | equation |\n|---|---|---|---|\n").unwrap();
+        for variable in variables {
+            let about = variable.description.as_deref().unwrap();
+            let symbol = symbol(about).map(|symbol| format!("`{symbol}`")).unwrap_or_default();
+            writeln!(text, "| {symbol} | `{}` | {} | {} |", variable.name, unit(variable), equations(about)).unwrap();
+        }
+    }
+}
+
+fn unit(variable: &Variable) -> String {
+    match variable.kind {
+        Kind::Real { .. } => variable.unit().unwrap_or("1").to_owned(),
+        ref other => other.name().to_lowercase(),
+    }
+}
+
+/// The symbol that a description begins with, up to the colon: no words but Greek letters and functions.
+fn symbol(about: &str) -> Option<&str> {
+    let (symbol, _) = about.split_once(": ")?;
+    // An index may be a word: U_out.
+    let words = symbol.split(|c: char| !c.is_alphanumeric() && c != '_').filter_map(|word| word.split('_').next());
+    let is_part = |word: &str| word.len() < 3 || ["lambda", "epsilon", "sigma", "delta", "abs"].contains(&word);
+    words.into_iter().all(is_part).then_some(symbol)
+}
+
+/// Every place of the paper that a description names, in order.
+fn equations(about: &str) -> String {
+    let marks = ["Eq. ", "Eqs. ", "Fig. ", "Table ", "Section "];
+    let mut found = Vec::new();
+    let mut rest = about;
+    while let Some((at, mark)) = marks.iter().filter_map(|mark| Some((rest.find(mark)?, *mark))).min() {
+        let numbers: Vec<_> = rest[at + mark.len()..]
+            .split(' ')
+            .take_while(|word| *word == "and" || word.contains(|c: char| c.is_ascii_digit()))
+            .collect();
+        let numbers = numbers.join(" ");
+        let place = format!("{mark}{}", numbers.trim_end_matches([',', ';', '.']));
+        rest = &rest[at + mark.len()..];
+        // "(10) and the rest": a number that ends its clause ends the place.
+        found.push(place.split([',', ';']).next().unwrap().trim_end_matches(" and").to_owned());
+    }
+    found.join(", ")
+}
+
+#[test]
+fn symbols_and_places_are_told_from_words() {
+    assert_eq!(symbol("R_2 = lambda R_1: radius"), Some("R_2 = lambda R_1"));
+    assert_eq!(symbol("z_M'(0): position"), Some("z_M'(0)"));
+    assert_eq!(symbol("U_out: voltage across the load"), Some("U_out"));
+    assert_eq!(symbol("Seed of the phase noise: equal seeds"), None);
+    assert_eq!(symbol("Current through the load"), None);
+    assert_eq!(equations("a jump, Eqs. (12) and (13)"), "Eqs. (12) and (13)");
+    assert_eq!(equations("abs(v) before, Eq. (10); 0 before the first"), "Eq. (10)");
+    assert_eq!(equations("Fig. 8(a), and as of Section 4.1"), "Fig. 8(a), Section 4.1");
+    assert_eq!(equations("at least U_in, Section 4.1"), "Section 4.1");
+    assert_eq!(equations("nothing"), "");
+}

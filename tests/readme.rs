@@ -1,0 +1,108 @@
+//! The tables of the README are what the commands print. `UPDATE_README=1 cargo test --test readme` writes them.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Largest relative difference between a number in the README and one computed now. Fig. 15 approaches its orbit so
+/// slowly that a last bit of rounding, which differs between C libraries, moves it by some 5e-4.
+const TOLERANCE: f64 = 1e-3;
+
+fn run(arguments: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_videg"))
+        .args(arguments)
+        .args(["--json", "--output"])
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn paper_table() -> String {
+    let mut table =
+        String::from("\n| case | quantity | paper | videg | deviation | remark |\n|---|---|---|---|---|---|\n");
+    let rows: [(&str, &[&str], &str); 5] = [
+        ("fig10", &[], "saw-tooth orbit"),
+        ("fig14", &[], "periodic"),
+        ("fig15", &[], "slow transient: nearby starts give 8653 to 8663"),
+        ("table3-2hz", &[], "the paper counts impacts of a resting ball, see below"),
+        ("table3-5hz", &[], ""),
+    ];
+    for (case, options, remark) in rows {
+        let result = run(&[&["simulate", "--case", case], options].concat());
+        let paper = &result["paper"];
+        let (quantity, unit, expected, found) = if let Some(power) = paper["average_power"].as_f64() {
+            ("P", "W", power, &result["average_power_eq13"])
+        } else {
+            ("`<U>`", "V/s", paper["average_voltage_gain"].as_f64().unwrap(), &result["average_voltage_gain"])
+        };
+        let found = found.as_f64().unwrap();
+        let shown = if unit == "W" { format!("{found:.5}") } else { format!("{found:.1}") };
+        let deviation = (found / expected - 1.0) * 100.0;
+        writeln!(table, "| `{case}` | {quantity}, {unit} | {expected} | {shown} | {deviation:+.3} % | {remark} |")
+            .unwrap();
+    }
+    table
+}
+
+fn energy_table() -> String {
+    let result = run(&["cosim"]);
+    let mut circuits = vec![&result];
+    circuits.extend(result["comparison"].as_array().unwrap());
+    let mut table = String::from(
+        "\n| circuit | W, Eq. (13) | supply | Zener | load | converted | surplus |\n|---|---|---|---|---|---|---|\n",
+    );
+    for circuit in circuits {
+        let label = circuit.get("label").or(circuit.get("circuit")).and_then(Value::as_str).unwrap();
+        write!(table, "| {label}").unwrap();
+        for key in ["eq13", "supply", "zener", "load", "converted", "surplus"] {
+            write!(table, " | {:.3}", 1e3 * circuit["energy"][key].as_f64().unwrap()).unwrap();
+        }
+        table.push_str(" |\n");
+    }
+    table
+}
+
+/// Equal words, and numbers within the tolerance. A number before `%` is a deviation: the difference of two numbers.
+fn agree(written: &str, now: &str) -> bool {
+    let (written, now): (Vec<_>, Vec<_>) = (written.split_whitespace().collect(), now.split_whitespace().collect());
+    let equal = |k: usize| match (written[k].parse::<f64>(), now[k].parse::<f64>()) {
+        (Ok(a), Ok(b)) if written.get(k + 1) == Some(&"%") => (a - b).abs() <= 100.0 * TOLERANCE,
+        (Ok(a), Ok(b)) => (a - b).abs() <= TOLERANCE * a.abs(),
+        _ => written[k] == now[k],
+    };
+    written.len() == now.len() && (0..written.len()).all(equal)
+}
+
+#[test]
+fn a_number_that_changed_and_a_word_that_changed_are_seen() {
+    assert!(agree("| fig14 | 8078.9 | -0.00 % |", "| fig14 | 8079.0 | +0.00 % |"));
+    for other in ["| fig14 | 8100.0 | -0.00 % |", "| fig14 | 8078.9 | -0.20 % |", "| fig13 | 8078.9 | -0.00 % |"] {
+        assert!(!agree("| fig14 | 8078.9 | -0.00 % |", other), "{other}");
+    }
+}
+
+fn check(name: &str, table: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let begin = text.find(&format!("<!-- {name}: begin")).unwrap();
+    let start = begin + text[begin..].find("-->").unwrap() + 4;
+    let end = text.find(&format!("<!-- {name}: end")).unwrap();
+    if std::env::var_os("UPDATE_README").is_some() {
+        std::fs::write(&path, format!("{}{table}\n{}", &text[..start], &text[end..])).unwrap();
+        return;
+    }
+    assert!(agree(&text[start..end], table), "the README says\n{}\nvideg says\n{table}", &text[start..end]);
+}
+
+#[test]
+fn the_tables_are_what_the_commands_say() {
+    check("paper", &paper_table());
+    check("energy", &energy_table());
+}
