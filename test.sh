@@ -8,6 +8,9 @@ readonly VENV=.venv
 # The second takes the first in.
 readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
 
+# Not among those that run by default: it installs Wine and cross compilers.
+readonly EXTRA_STAGES=(portability)
+
 usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
@@ -18,6 +21,9 @@ Runs the stages named, or all of them in this order:
   unit         the tests of all Rust packages
   fmpy         FMPy simulates the FMUs and agrees with the command line
   conformance  other tools check and run the FMUs; writes docs/conformance.md
+
+Only when named:
+  portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF
@@ -151,11 +157,16 @@ stage_conformance() {
     run "$VENV/bin/python" tests/conformance
 }
 
+stage_portability() {
+    run tests/linux-glibc/run.sh
+    run tests/windows/run.sh
+}
+
 # --- main ------------------------------------------------------------------------------------------------------------
 
 is_stage() {
     local stage
-    for stage in "${STAGES[@]}"; do
+    for stage in "${STAGES[@]}" "${EXTRA_STAGES[@]}"; do
         [[ $stage == "$1" ]] && return
     done
     return 1
@@ -169,7 +180,7 @@ main() {
                 usage
                 return
                 ;;
-            *) is_stage "$stage" || fail "no stage is called \"$stage\"; there are: ${STAGES[*]}" ;;
+            *) is_stage "$stage" || fail "no stage is called \"$stage\"; there are: ${STAGES[*]} ${EXTRA_STAGES[*]}" ;;
         esac
     done
     [[ $# -gt 0 ]] || set -- "${STAGES[@]}"
