@@ -17,11 +17,12 @@ const LICENSES: [(&str, &str); 4] = [
 ];
 
 /// Headings, in the order in which a user needs them.
-const GROUPS: [(Causality, &str); 4] = [
+const GROUPS: [(Causality, &str); 5] = [
     (Causality::Parameter, "Parameters"),
     (Causality::CalculatedParameter, "Calculated parameters"),
     (Causality::Input, "Inputs"),
     (Causality::Output, "Outputs"),
+    (Causality::Local, "Derivatives of the states (model exchange)"),
 ];
 
 #[derive(Template)]
