@@ -69,23 +69,13 @@ pub fn energy_table(finished: &Finished) -> String {
 pub fn html(finished: &Finished) -> Result<String, ReportError> {
     let scenario = &finished.scenario;
     let [from, to] = scenario.window;
-    let mut mechanics = Table::new([
-        Column::words("quantity"),
-        Column::words("unit"),
-        Column::numbers("paper"),
-        Column::numbers("videg"),
-        Column::numbers("deviation"),
-    ]);
-    for cells in simulate::rows(scenario, &finished.mechanics) {
-        mechanics = mechanics.row(cells);
-    }
     let columns = headings(finished).into_iter().enumerate();
     let mut energies =
         Table::new(columns.map(|(k, heading)| if k == 0 { Column::words(heading) } else { Column::numbers(heading) }));
     for cells in cells(finished) {
         energies = energies.row(cells);
     }
-    let mut result = Section::new("Result").table(mechanics);
+    let mut result = Section::new("Result").table(simulate::report_table(scenario, &finished.mechanics));
     for warning in &finished.warnings {
         result = result.warning(warning.clone());
     }

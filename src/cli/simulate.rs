@@ -101,16 +101,7 @@ fn write_files(
     let svg = picture::simulate(trace, scenario)?;
     let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
     output::write(&figure, &svg)?;
-    let mut table = report::Table::new([
-        Column::words("quantity"),
-        Column::words("unit"),
-        Column::numbers("paper"),
-        Column::numbers("videg"),
-        Column::numbers("deviation"),
-    ]);
-    for cells in rows(scenario, mechanics) {
-        table = table.row(cells);
-    }
+    let table = report_table(scenario, mechanics);
     let page = Report::new(
         format!("Simulation of {}", scenario.name),
         format!(
@@ -132,7 +123,7 @@ fn figure_caption() -> &'static str {
 }
 
 /// Rows of the result table: quantity, unit, paper, videg, deviation.
-pub fn rows(scenario: &Scenario, mechanics: &MechanicsSummary) -> Vec<[String; 5]> {
+fn rows(scenario: &Scenario, mechanics: &MechanicsSummary) -> Vec<[String; 5]> {
     let compared = |quantity: &str, unit: &str, paper: Option<f64>, found: f64, scale: f64| {
         [
             quantity.to_owned(),
@@ -160,6 +151,18 @@ pub fn text_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> String {
         table.add_row(format::row(&cells));
     }
     table.to_string()
+}
+
+/// The result table of the mechanics in the HTML report.
+pub fn report_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> report::Table {
+    let table = report::Table::new([
+        Column::words("quantity"),
+        Column::words("unit"),
+        Column::numbers("paper"),
+        Column::numbers("videg"),
+        Column::numbers("deviation"),
+    ]);
+    rows(scenario, mechanics).into_iter().fold(table, report::Table::row)
 }
 
 /// The line above the tables.
