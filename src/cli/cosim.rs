@@ -9,7 +9,7 @@ use videg_circuit::{Release, Settings, Topology, formulas, names};
 
 use super::options::RunOptions;
 use super::progress::TimeBar;
-use super::simulate::{Paper, file_list, heading, text_table};
+use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
@@ -49,21 +49,12 @@ pub struct Compared {
 
 #[derive(Serialize)]
 struct Output<'a> {
-    case: &'a str,
-    description: &'a str,
-    until: f64,
-    step: f64,
-    window: [f64; 2],
     #[serde(flatten)]
-    mechanics: MechanicsSummary,
+    run: RunOutput<'a>,
     circuit: &'a str,
     #[serde(flatten)]
     summary: &'a CircuitSummary,
     comparison: &'a [Compared],
-    paper: Paper,
-    settings: &'a [Setting],
-    warnings: &'a [String],
-    files: &'a [PathBuf],
 }
 
 /// A finished run.
@@ -215,23 +206,9 @@ fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result
 }
 
 fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Output<'a>> {
-    let scenario = &finished.scenario;
     let (first, comparison) = finished.circuits.split_first().context("a co-simulation without a circuit")?;
-    Ok(Output {
-        case: &scenario.name,
-        description: &scenario.description,
-        until: scenario.until,
-        step: scenario.step,
-        window: scenario.window,
-        mechanics: finished.mechanics,
-        circuit: &first.label,
-        summary: &first.summary,
-        comparison,
-        paper: Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power },
-        settings: &scenario.settings,
-        warnings: &finished.warnings,
-        files,
-    })
+    let run = RunOutput::new(&finished.scenario, finished.mechanics, &finished.warnings, files);
+    Ok(Output { run, circuit: &first.label, summary: &first.summary, comparison })
 }
 
 fn text(finished: &Finished, files: &[PathBuf]) -> String {

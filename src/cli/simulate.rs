@@ -20,8 +20,9 @@ pub struct Arguments {
     run: RunOptions,
 }
 
+/// What `--json` says of every run: what was run, and the mechanics.
 #[derive(Serialize)]
-struct Output<'a> {
+pub struct RunOutput<'a> {
     case: &'a str,
     description: &'a str,
     until: f64,
@@ -32,16 +33,39 @@ struct Output<'a> {
     paper: Paper,
     settings: &'a [Setting],
     warnings: &'a [String],
-    files: Vec<PathBuf>,
+    files: &'a [PathBuf],
+}
+
+impl<'a> RunOutput<'a> {
+    /// The output of a run of `scenario` that came to `mechanics`.
+    pub fn new(
+        scenario: &'a Scenario,
+        mechanics: MechanicsSummary,
+        warnings: &'a [String],
+        files: &'a [PathBuf],
+    ) -> Self {
+        Self {
+            case: &scenario.name,
+            description: &scenario.description,
+            until: scenario.until,
+            step: scenario.step,
+            window: scenario.window,
+            mechanics,
+            paper: Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power },
+            settings: &scenario.settings,
+            warnings,
+            files,
+        }
+    }
 }
 
 /// What the paper prints; absent where it prints nothing.
 #[derive(Serialize)]
-pub struct Paper {
+struct Paper {
     /// `<U>`, V/s.
-    pub average_voltage_gain: Option<f64>,
+    average_voltage_gain: Option<f64>,
     /// P, W.
-    pub average_power: Option<f64>,
+    average_power: Option<f64>,
 }
 
 /// Runs the verb.
@@ -67,25 +91,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     recorder.finish()?;
     std::fs::rename(output::partial(&csv), &csv).with_context(|| format!("cannot write {}", csv.display()))?;
     let files = write_files(&folder, &csv, &trace, &scenario, &mechanics)?;
-    let paper = Paper { average_voltage_gain: scenario.paper.voltage_gain, average_power: scenario.paper.power };
-    let result = Output {
-        case: &scenario.name,
-        description: &scenario.description,
-        until: scenario.until,
-        step: scenario.step,
-        window: scenario.window,
-        mechanics,
-        paper,
-        settings: &scenario.settings,
-        warnings: &warnings,
-        files,
-    };
+    let result = RunOutput::new(&scenario, mechanics, &warnings, &files);
     let json = serde_json::to_string_pretty(&result)?;
     output::write(&folder.join("result.json"), &json)?;
     if options.json {
         output::print(&json)?;
     } else {
-        output::print(&text(&scenario, &mechanics, &result.files))?;
+        output::print(&text(&scenario, &mechanics, &files))?;
     }
     output::warn(&warnings);
     Ok(Verdict::Passed)
