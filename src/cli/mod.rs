@@ -16,6 +16,7 @@ mod picture;
 mod progress;
 mod settings;
 mod simulate;
+mod worker;
 
 use std::process::ExitCode;
 
@@ -39,6 +40,9 @@ enum Verb {
     Fmu(fmu::Arguments),
     /// Print shell completions
     Completions(completions::Arguments),
+    /// Run the shared library of ngspice for another process
+    #[command(name = crate::ngspice::live::WORKER_VERB, hide = true)]
+    NgspiceWorker,
 }
 
 /// Whether everything that was checked holds.
@@ -60,6 +64,7 @@ pub fn main() -> ExitCode {
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),
+        Verb::NgspiceWorker => worker::run(),
     };
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,

@@ -1,0 +1,156 @@
+//! The master's side: starts the worker, exchanges a message a communication step, and ends it.
+
+use std::io::{self, BufReader, BufWriter, Read as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use tempfile::TempDir;
+use thiserror::Error;
+
+use super::protocol::{Job, Ramp, Reply, receive, send};
+
+/// Verb of the command-line tool that runs the worker.
+pub const WORKER_VERB: &str = "ngspice-worker";
+/// Bytes of the worker's stderr that are kept.
+const KEPT_STDERR: u64 = 4096;
+
+/// Why ngspice does not go on.
+#[derive(Debug, Error)]
+pub enum LiveError {
+    /// The worker cannot be started.
+    #[error("cannot start {} {WORKER_VERB}: {cause}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// ngspice, or the library itself, is at fault; in its words.
+    #[error("{0}")]
+    Failure(String),
+    /// The worker died.
+    #[error("the process of ngspice ended between {from} s and {to} s ({how}){said}")]
+    Died {
+        /// Last communication point reached, s.
+        from: f64,
+        /// The one that it was to reach, s.
+        to: f64,
+        /// Its exit status.
+        how: String,
+        /// Its last words on stderr, with a separator, or nothing.
+        said: String,
+    },
+    /// The worker does not answer.
+    #[error("ngspice did not get from {from} s to {to} s within {} s", limit.as_secs_f64())]
+    TimeLimit {
+        /// Last communication point reached, s.
+        from: f64,
+        /// The one that it was to reach, s.
+        to: f64,
+        /// Time that it had.
+        limit: Duration,
+    },
+}
+
+/// A running worker.
+pub struct Worker {
+    child: Child,
+    requests: BufWriter<ChildStdin>,
+    replies: Receiver<io::Result<Option<Reply>>>,
+    stderr: Option<JoinHandle<String>>,
+    limit: Duration,
+    vectors: usize,
+    /// Working folder and home of the worker: no start-up file of ngspice lies there.
+    _folder: TempDir,
+}
+
+impl Worker {
+    /// Starts `program` as a worker for `job`. Each communication step may take `limit` of real time.
+    ///
+    /// # Errors
+    /// If the program cannot be started.
+    pub fn start(program: &Path, job: &Job, limit: Duration) -> Result<Self, LiveError> {
+        let fail = |cause| LiveError::Start { program: program.to_owned(), cause };
+        let folder = tempfile::tempdir().map_err(fail)?;
+        let mut child = Command::new(program)
+            .arg(WORKER_VERB)
+            .current_dir(folder.path())
+            .env("HOME", folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(fail)?;
+        let missing = || fail(io::Error::other("no pipe"));
+        let requests = BufWriter::new(child.stdin.take().ok_or_else(missing)?);
+        let replies = read_replies(child.stdout.take().ok_or_else(missing)?);
+        let stderr = Some(read_stderr(child.stderr.take().ok_or_else(missing)?));
+        let vectors = job.vectors.len();
+        let mut worker = Self { child, requests, replies, stderr, limit, vectors, _folder: folder };
+        if send(&mut worker.requests, job).is_err() {
+            return Err(worker.died(0.0, 0.0));
+        }
+        Ok(worker)
+    }
+
+    /// Runs ngspice over a communication step; the job's vectors at its end.
+    ///
+    /// # Errors
+    /// If ngspice gives up, dies or takes too long.
+    pub fn step(&mut self, ramp: &Ramp) -> Result<Vec<f64>, LiveError> {
+        let (from, to) = (ramp.from, ramp.to);
+        // A worker that has died says why in its last reply, so that is read even if the request does not get through.
+        let _ = send(&mut self.requests, ramp);
+        match self.replies.recv_timeout(self.limit) {
+            Ok(Ok(Some(Reply::Values(values)))) if values.len() == self.vectors => Ok(values),
+            Ok(Ok(Some(Reply::Failure(text)))) => Err(LiveError::Failure(text)),
+            Err(RecvTimeoutError::Timeout) => Err(LiveError::TimeLimit { from, to, limit: self.limit }),
+            _ => Err(self.died(from, to)),
+        }
+    }
+
+    fn died(&mut self, from: f64, to: f64) -> LiveError {
+        // It has closed its stdout, but may still be about to end.
+        let _ = self.child.kill();
+        let how = self.child.wait().map_or_else(|cause| cause.to_string(), |status| status.to_string());
+        let said = self.stderr.take().and_then(|thread| thread.join().ok()).unwrap_or_default();
+        let said = said.trim().lines().fold(String::new(), |all, line| all + ": " + line);
+        LiveError::Died { from, to, how, said }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Reads replies in a thread of its own, because a pipe cannot be read with a time limit. At most one waits.
+fn read_replies(stdout: ChildStdout) -> Receiver<io::Result<Option<Reply>>> {
+    let (sender, receiver) = sync_channel(1);
+    std::thread::spawn(move || {
+        let mut reader = BufReader::new(stdout);
+        loop {
+            let reply = receive(&mut reader);
+            let last = !matches!(reply, Ok(Some(_)));
+            if sender.send(reply).is_err() || last {
+                break;
+            }
+        }
+    });
+    receiver
+}
+
+/// Keeps the beginning of what the worker says on stderr and drops the rest, so that it never waits for a reader.
+fn read_stderr(mut stderr: ChildStderr) -> JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut kept = Vec::new();
+        let _ = stderr.by_ref().take(KEPT_STDERR).read_to_end(&mut kept);
+        let _ = io::copy(&mut stderr, &mut io::sink());
+        String::from_utf8_lossy(&kept).into_owned()
+    })
+}
