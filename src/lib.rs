@@ -4,7 +4,7 @@
 //! - [`package`] puts the FMUs together, [`fmi`] loads them or any other FMU for FMI 2.0 co-simulation;
 //! - [`scenario`] says what to run: a case of the paper, settings, duration;
 //! - [`cosim`] couples the harvester FMU with a circuit and records what happens;
-//! - [`ngspice`] runs the circuit in ngspice instead;
+//! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`cli`] is the command-line tool.
 

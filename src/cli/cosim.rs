@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, formulas, names};
@@ -13,9 +13,10 @@ use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
-    Trace,
+    NgspiceCircuit, Trace,
 };
 use crate::fmi::Fmu;
+use crate::ngspice::{self, Elements};
 use crate::scenario::{Scenario, Setting};
 
 /// Arguments of the verb.
@@ -33,6 +34,8 @@ pub struct Arguments {
 enum Backend {
     /// The exact solver, called directly
     Embedded,
+    /// ngspice's shared library, in step with the harvester
+    Ngspice,
     /// The FMU HarvestingCircuit
     Fmu,
 }
@@ -106,9 +109,12 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
     let master = Master::new(harvester, circuits, &scenario);
-    let (mechanics, samples) = master.run(&mut [&mut recorder, &mut trace, &mut bar])?;
+    let outcome = master.run(&mut [&mut recorder, &mut trace, &mut bar]);
     bar.finish();
     recorder.finish()?;
+    // What is there when a subsystem gives up stays.
+    let (mechanics, samples) = outcome
+        .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
@@ -154,6 +160,12 @@ fn circuits(
     let capacitance = harvester.sample()?.capacitance();
     let first: Box<dyn CircuitSlave> = match backend {
         Backend::Embedded => Box::new(EmbeddedCircuit::new(&label(settings), settings, capacitance)?),
+        Backend::Ngspice => {
+            let elements = Elements::new(&settings.parameters())?;
+            let program = std::env::current_exe().context("cannot find this program's own file")?;
+            let run = ngspice::Run::new(scenario.until);
+            Box::new(NgspiceCircuit::new(&label(settings), &program, &elements, capacitance, &run)?)
+        }
         Backend::Fmu => {
             let fmu = packaging::open("HarvestingCircuit")?;
             let all = every_setting(settings);

@@ -51,7 +51,8 @@ impl CircuitSample {
         row
     }
 
-    fn from_columns(row: [f64; Self::NAMES.len()]) -> Self {
+    /// The sample of which these are the [`columns`](Self::columns).
+    pub fn from_columns(row: [f64; Self::NAMES.len()]) -> Self {
         let [
             left,
             right,

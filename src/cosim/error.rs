@@ -18,6 +18,14 @@ pub enum CosimError {
         /// Its error.
         cause: videg_circuit::Error,
     },
+    /// ngspice refused something.
+    #[error("circuit \"{label}\" in ngspice: {cause}")]
+    Ngspice {
+        /// The circuit.
+        label: String,
+        /// Its error.
+        cause: Box<crate::ngspice::NgspiceError>,
+    },
     /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
     #[error("{name} = {value}: {bound}")]
     Setting {

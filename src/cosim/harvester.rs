@@ -73,6 +73,7 @@ pub struct HarvesterFmu {
     instance: Instance,
     reals: [u32; REALS.len()],
     counts: [u32; 2],
+    voltages: [u32; 2],
     bias_voltage: f64,
 }
 
@@ -92,13 +93,14 @@ impl HarvesterFmu {
             *slot = reference(name)?;
         }
         let counts = [reference("impact.count")?, reference("solver.events")?];
+        let voltages = [reference("left.voltage")?, reference("right.voltage")?];
         let bias = [reference("biasVoltage")?];
         instance.setup_experiment(0.0, Some(scenario.until), None)?;
         instance.enter_initialization_mode()?;
         instance.exit_initialization_mode()?;
         let mut bias_voltage = [0.0];
         instance.get_real(&bias, &mut bias_voltage)?;
-        Ok(Self { instance, reals, counts, bias_voltage: bias_voltage[0] })
+        Ok(Self { instance, reals, counts, voltages, bias_voltage: bias_voltage[0] })
     }
 
     /// What the FMU warned of so far.
@@ -113,6 +115,14 @@ impl HarvesterFmu {
     /// What the FMU says.
     pub fn step(&mut self, time: f64, step: f64) -> Result<(), CosimError> {
         Ok(self.instance.do_step(time, step)?)
+    }
+
+    /// Connects the membranes to `voltage` (left, right), V, from the communication point on.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn set_voltage(&mut self, voltage: [f64; 2]) -> Result<(), CosimError> {
+        Ok(self.instance.set_real(&self.voltages, &voltage)?)
     }
 
     /// Outputs at the communication point.

@@ -70,6 +70,9 @@ impl Master {
                 break;
             }
             let next = self.schedule.next(now, harvester.next_knot());
+            if let Some(circuit) = samples.first() {
+                self.harvester.set_voltage(circuit.voltage)?;
+            }
             harvester = self.step(now, next, &harvester)?;
             samples = self.circuit_samples()?;
             now = next;

@@ -96,19 +96,27 @@ impl Worker {
         Ok(worker)
     }
 
-    /// Runs ngspice over a communication step; the job's vectors at its end.
+    /// Runs ngspice over a communication step; `point` gets the time, s, and the job's vectors at each time point that it
+    /// accepts on the way.
     ///
     /// # Errors
     /// If ngspice gives up, dies or takes too long.
-    pub fn step(&mut self, ramp: &Ramp) -> Result<Vec<f64>, LiveError> {
+    pub fn step(&mut self, ramp: &Ramp, mut point: impl FnMut(f64, &[f64])) -> Result<(), LiveError> {
         let (from, to) = (ramp.from, ramp.to);
         // A worker that has died says why in its last reply, so that is read even if the request does not get through.
         let _ = send(&mut self.requests, ramp);
-        match self.replies.recv_timeout(self.limit) {
-            Ok(Ok(Some(Reply::Values(values)))) if values.len() == self.vectors => Ok(values),
-            Ok(Ok(Some(Reply::Failure(text)))) => Err(LiveError::Failure(text)),
-            Err(RecvTimeoutError::Timeout) => Err(LiveError::TimeLimit { from, to, limit: self.limit }),
-            _ => Err(self.died(from, to)),
+        loop {
+            match self.replies.recv_timeout(self.limit) {
+                Ok(Ok(Some(Reply::Points(values)))) => {
+                    for row in values.chunks_exact(1 + self.vectors) {
+                        point(row[0], &row[1..]);
+                    }
+                }
+                Ok(Ok(Some(Reply::Reached))) => return Ok(()),
+                Ok(Ok(Some(Reply::Failure(text)))) => return Err(LiveError::Failure(text)),
+                Err(RecvTimeoutError::Timeout) => return Err(LiveError::TimeLimit { from, to, limit: self.limit }),
+                _ => return Err(self.died(from, to)),
+            }
         }
     }
 

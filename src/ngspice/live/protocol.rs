@@ -14,7 +14,7 @@ pub struct Job {
     pub netlist: Vec<String>,
     /// Names of the external sources, in the order of [`Ramp::start`].
     pub sources: Vec<String>,
-    /// Names of the vectors that a [`Reply`] holds, in their order.
+    /// The vectors that a [`Reply`] holds after the time, in their order, as a netlist names them: `v(node)`, `i(source)`.
     pub vectors: Vec<String>,
     /// Longest time step that ngspice may take, s.
     pub longest_step: f64,
@@ -48,8 +48,10 @@ impl Ramp {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reply {
-    /// The vectors of the job at the communication point asked for.
-    Values(Vec<f64>),
+    /// Time points that ngspice has accepted, one after the other: the time, s, then the vectors of the job.
+    Points(Vec<f64>),
+    /// The communication point asked for is reached; the last time point sent is there.
+    Reached,
     /// It cannot go on, and why.
     Failure(String),
 }
@@ -86,14 +88,14 @@ mod tests {
     fn numbers_arrive_with_all_their_bits() {
         let values: Vec<f64> = vec![0.1 + 0.2, 1e-300, -5e-324, f64::MAX, f64::EPSILON];
         let mut bytes = Vec::new();
-        send(&mut bytes, &Reply::Values(values.clone())).unwrap();
-        assert_eq!(receive::<Reply>(&mut bytes.as_slice()).unwrap(), Some(Reply::Values(values)));
+        send(&mut bytes, &Reply::Points(values.clone())).unwrap();
+        assert_eq!(receive::<Reply>(&mut bytes.as_slice()).unwrap(), Some(Reply::Points(values)));
     }
 
     #[test]
     fn the_end_of_the_stream_is_no_message_and_garbage_an_error() {
         assert_eq!(receive::<Reply>(&mut &b""[..]).unwrap(), None);
-        for garbage in [&b"\n"[..], b"{}\n", b"{\"values\":[null]}\n", b"{\"values\":[1"] {
+        for garbage in [&b"\n"[..], b"{}\n", b"{\"points\":[null]}\n", b"{\"points\":[1"] {
             assert!(receive::<Reply>(&mut &garbage[..]).is_err());
         }
     }

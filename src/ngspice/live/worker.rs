@@ -9,12 +9,15 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::io::{self, BufReader, Write};
+use std::iter;
 
 use super::library::{Callbacks, LibraryError, Ngspice, VectorValues};
 use super::protocol::{Job, Ramp, Reply, receive, send};
 
 /// Lines of ngspice that are kept for the message of a failure.
 const KEPT_LINES: usize = 12;
+/// Numbers of accepted time points that are kept before they are sent on.
+const MOST_KEPT: usize = 4096;
 /// Longest line that is kept, characters.
 const LONGEST_LINE: usize = 300;
 /// Time that differs by less than this part of a time step is the same.
@@ -30,8 +33,8 @@ struct Session<W> {
     ramp: Ramp,
     /// Position of each vector of the job in what ngspice sends; empty before the first time point.
     positions: Vec<usize>,
-    /// The job's vectors at the last accepted time point.
-    values: Vec<f64>,
+    /// Accepted time points that have not been sent yet: time and vectors, point by point.
+    points: Vec<f64>,
     lines: VecDeque<String>,
 }
 
@@ -48,9 +51,8 @@ pub fn serve<W: Write>(mut replies: W) -> io::Result<()> {
         Ok(library) => library,
         Err(error) => return send(&mut replies, &Reply::Failure(error.to_string())),
     };
-    let values = vec![0.0; job.vectors.len()];
-    let lines = VecDeque::new();
-    let session = RefCell::new(Session { requests, replies, job, ramp, positions: Vec::new(), values, lines });
+    let (positions, points, lines) = (Vec::new(), Vec::new(), VecDeque::new());
+    let session = RefCell::new(Session { requests, replies, job, ramp, positions, points, lines });
     let outcome = analyse(&library, &session);
     // ngspice returns only when it cannot go on: the end of the requests ends the process.
     let mut session = session.borrow_mut();
@@ -107,28 +109,33 @@ impl<W: Write> Session<W> {
         // SAFETY: ngspice sends `count` pointers to vectors.
         let vectors = unsafe { std::slice::from_raw_parts(all.values, count) };
         if self.positions.is_empty() {
-            for wanted in &self.job.vectors {
+            for wanted in iter::once("time").chain(self.job.vectors.iter().map(String::as_str)) {
+                let name = internal_name(wanted);
                 // SAFETY: the vectors are those that ngspice sends.
-                let position = vectors.iter().position(|&vector| unsafe { is_named(vector, wanted) });
+                let position = vectors.iter().position(|&vector| unsafe { is_named(vector, &name) });
                 self.positions.push(position.ok_or_else(|| format!("the circuit has no vector {wanted}"))?);
             }
         }
-        for (value, &position) in self.values.iter_mut().zip(&self.positions) {
+        for &position in &self.positions {
             let vector = vectors.get(position).ok_or("ngspice sent fewer vectors than before")?;
             // SAFETY: ngspice sends valid pointers.
-            *value = unsafe { (**vector).real };
+            let value = unsafe { (**vector).real };
+            if !value.is_finite() {
+                return Err(format!("a vector is {value} after {} s", self.ramp.from));
+            }
+            self.points.push(value);
         }
-        Ok(())
+        if self.points.len() >= MOST_KEPT { self.send_points().map_err(|cause| cause.to_string()) } else { Ok(()) }
+    }
+
+    fn send_points(&mut self) -> io::Result<()> {
+        send(&mut self.replies, &Reply::Points(std::mem::take(&mut self.points)))
     }
 
     /// At the communication point: answers and waits for the next ramp. Says whether there is one.
     fn exchange(&mut self) -> io::Result<bool> {
-        if let Some(index) = self.values.iter().position(|value| !value.is_finite()) {
-            let (name, time) = (self.job.vectors[index].clone(), self.ramp.to);
-            self.fail(&format!("{name} is {} at {time} s", self.values[index]))?;
-            return Ok(false);
-        }
-        send(&mut self.replies, &Reply::Values(self.values.clone()))?;
+        self.send_points()?;
+        send(&mut self.replies, &Reply::Reached)?;
         match receive::<Ramp>(&mut self.requests)? {
             Some(ramp) => self.ramp = ramp,
             None => return Ok(false),
@@ -152,6 +159,16 @@ impl<W: Write> Session<W> {
         } else {
             step
         }))
+    }
+}
+
+/// What the library calls a vector that a netlist calls `v(node)` or `i(source)`.
+fn internal_name(vector: &str) -> String {
+    let inside = |prefix| vector.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(')'));
+    match (inside("v("), inside("i(")) {
+        (Some(node), _) => node.to_owned(),
+        (_, Some(source)) => format!("{source}#branch"),
+        _ => vector.to_owned(),
     }
 }
 

@@ -1,0 +1,74 @@
+//! ngspice as a circuit that the master can step: the shared library, in a process of its own.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::{CircuitSample, CircuitSlave, CosimError};
+use crate::ngspice::live::{Job, Ramp, Worker};
+use crate::ngspice::{Books, CapacitanceSource, Elements, PICO, Run};
+
+/// Real time that ngspice may take from one communication point to the next. It takes some 10 us for a time step of its
+/// own; what lasts as long as this has got stuck.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The circuit in ngspice, which takes its own time steps between the communication points.
+pub struct NgspiceCircuit {
+    label: String,
+    worker: Worker,
+    elements: Elements,
+    books: Books,
+}
+
+impl NgspiceCircuit {
+    /// A circuit of `elements` for the time from 0 to `run.until`, s, both membranes charged, at `capacitance` (left,
+    /// right), F. `program` is the command-line tool of this crate, which runs the shared library of ngspice.
+    ///
+    /// # Errors
+    /// A number that cannot be put into a netlist, or a program that cannot be started.
+    pub fn new(
+        label: &str,
+        program: &Path,
+        elements: &Elements,
+        capacitance: [f64; 2],
+        run: &Run,
+    ) -> Result<Self, CosimError> {
+        let netlist = elements
+            .netlist(CapacitanceSource::External, capacitance, run)
+            .map_err(|cause| CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause) })?;
+        let job = Job {
+            netlist: netlist.text().lines().map(str::to_owned).collect(),
+            sources: vec!["vcl".to_owned(), "vcr".to_owned()],
+            vectors: elements.vectors().iter().map(|&name| name.to_owned()).collect(),
+            longest_step: run.max_step,
+            // Not the end of the run: there ngspice would end the analysis without a word.
+            stop: 2.0 * run.until,
+        };
+        let worker = Worker::start(program, &job, PATIENCE)
+            .map_err(|cause| CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause.into()) })?;
+        let books = Books::new(elements, capacitance);
+        Ok(Self { label: label.to_owned(), worker, elements: *elements, books })
+    }
+}
+
+impl CircuitSlave for NgspiceCircuit {
+    fn label(&self) -> &str {
+        &self.label
+    }
+
+    fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
+        let pico = |capacitance: [f64; 2]| capacitance.map(|c| c / PICO).to_vec();
+        let ramp = Ramp { from: time, to: time + step, start: pico(start), end: pico(end) };
+        let (elements, books) = (&self.elements, &mut self.books);
+        self.worker
+            .step(&ramp, |time, values| {
+                if let Some(instant) = Books::instant(elements, time, values) {
+                    books.take(&instant);
+                }
+            })
+            .map_err(|cause| CosimError::Ngspice { label: self.label.clone(), cause: Box::new(cause.into()) })
+    }
+
+    fn sample(&self) -> Result<CircuitSample, CosimError> {
+        Ok(self.books.sample())
+    }
+}

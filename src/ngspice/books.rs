@@ -1,0 +1,141 @@
+//! Energies and charges from the time points of ngspice.
+//!
+//! ngspice integrates charges by the trapezoidal rule; the same rule over its own points gives back exactly the charge
+//! that each of its capacitors took. Integrators within the netlist would do the same with tolerances of their own and
+//! would weigh in the control of the step.
+
+use videg_circuit::{Ledger, Topology};
+
+use super::circuit::{Branch, Elements};
+use crate::cosim::CircuitSample;
+
+/// What holds at one time point of ngspice.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Instant {
+    /// Time, s.
+    pub time: f64,
+    /// Capacitances of the nodes, F; on a shared node the first is the sum and the second 0.
+    pub capacitance: [f64; 2],
+    /// Voltages of the nodes, V.
+    pub voltage: [f64; 2],
+    /// Load voltage, V.
+    pub load_voltage: f64,
+    /// Currents of the charging diodes, A.
+    pub supply: [f64; 2],
+    /// Currents of the release elements, A.
+    pub release: [f64; 2],
+}
+
+/// Running books over the time points of a run, taken one after the other.
+#[derive(Debug, Clone)]
+pub struct Books {
+    elements: Elements,
+    last: Option<Instant>,
+    initial_energy: f64,
+    sums: Ledger,
+}
+
+impl Books {
+    /// Books of a run that has not begun.
+    pub fn new(elements: &Elements) -> Self {
+        Self { elements: *elements, last: None, initial_energy: 0.0, sums: Ledger::default() }
+    }
+
+    /// The values of [`Elements::vectors`], with the time, as an instant; capacitances in pF.
+    ///
+    /// `None` if there are too few of them.
+    pub fn instant(elements: &Elements, time: f64, values: &[f64]) -> Option<Instant> {
+        use super::capacitance::PICO;
+        match (elements.topology, values) {
+            (Topology::SharedNode, &[cl, cr, de, out, supply, release]) => Some(Instant {
+                time,
+                capacitance: [(cl + cr) * PICO, 0.0],
+                voltage: [de; 2],
+                load_voltage: out,
+                supply: [supply, 0.0],
+                release: [release, 0.0],
+            }),
+            (Topology::Isolated, &[cl, cr, left, right, out, sl, sr, rl, rr]) => Some(Instant {
+                time,
+                capacitance: [cl * PICO, cr * PICO],
+                voltage: [left, right],
+                load_voltage: out,
+                supply: [sl, sr],
+                release: [rl, rr],
+            }),
+            _ => None,
+        }
+    }
+
+    /// Takes the next time point.
+    pub fn take(&mut self, now: &Instant) {
+        match self.last {
+            None => self.initial_energy = stored(now),
+            Some(last) => self.book(&last, now),
+        }
+        self.last = Some(*now);
+    }
+
+    /// Books what flowed between two time points.
+    fn book(&mut self, last: &Instant, now: &Instant) {
+        let half = 0.5 * (now.time - last.time);
+        let sum = |rate: fn(&Elements, &Instant, usize) -> f64| {
+            let both = (0..2).map(|j| rate(&self.elements, last, j) + rate(&self.elements, now, j));
+            half * both.sum::<f64>()
+        };
+        let supply_charge = sum(|_, at, j| at.supply[j]);
+        let load_charge = sum(|_, at, j| at.release[j]);
+        let load = sum(|elements, at, j| match elements.branch {
+            Branch::Switch { .. } => at.voltage[j] * at.release[j],
+            Branch::Zener { .. } | Branch::Storage { .. } => at.load_voltage * at.release[j],
+        });
+        let drop = sum(|_, at, j| (at.voltage[j] - at.load_voltage) * at.release[j]);
+        let charging = sum(|elements, at, j| (elements.supply_voltage - at.voltage[j]) * at.supply[j]);
+        let (zener, release_diode) = match self.elements.branch {
+            Branch::Zener { .. } => (drop, 0.0),
+            Branch::Switch { .. } => (0.0, 0.0),
+            Branch::Storage { .. } => (0.0, drop),
+        };
+        self.sums.supply_charge += supply_charge;
+        self.sums.supply += self.elements.supply_voltage * supply_charge;
+        self.sums.load_charge += load_charge;
+        self.sums.load += load;
+        self.sums.zener += zener;
+        self.sums.diode += charging + release_diode;
+        self.sums.mechanical += (0..2).map(|j| work(last, now, j)).sum::<f64>();
+    }
+
+    /// The books at the last time point taken.
+    pub fn ledger(&self) -> Ledger {
+        let stored = self.last.map_or(0.0, |last| stored(&last) - self.initial_energy);
+        Ledger { stored, ..self.sums }
+    }
+
+    /// The circuit at the last time point taken.
+    pub fn sample(&self) -> CircuitSample {
+        let last = self.last.unwrap_or_default();
+        CircuitSample {
+            voltage: last.voltage,
+            load_voltage: last.load_voltage,
+            load_current: last.release.iter().sum(),
+            supply_current: last.supply.iter().sum(),
+            ledger: self.ledger(),
+        }
+    }
+
+    /// Last time point taken, s.
+    pub fn time(&self) -> f64 {
+        self.last.map_or(0.0, |last| last.time)
+    }
+}
+
+/// Energy of the field, J.
+fn stored(at: &Instant) -> f64 {
+    (0..2).map(|j| 0.5 * at.capacitance[j] * at.voltage[j] * at.voltage[j]).sum()
+}
+
+/// Work of the mechanics between two time points, `-integral 1/2 V^2 dC`, J: capacitance and voltage both linear.
+fn work(last: &Instant, now: &Instant, j: usize) -> f64 {
+    let (a, b) = (last.voltage[j], now.voltage[j]);
+    -(a * a + a * b + b * b) / 6.0 * (now.capacitance[j] - last.capacitance[j])
+}

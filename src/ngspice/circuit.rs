@@ -1,0 +1,254 @@
+//! The harvesting circuit as ngspice gets it: which templates, with which numbers.
+
+use videg_circuit::{DiodeParameters, Diodes, Parameters, Release, Topology, names};
+
+use super::NgspiceError;
+use super::capacitance::PICO;
+use super::template::{FileName, Netlist, Template, Value, Values, template};
+
+/// What lets the charge out to the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Branch {
+    /// A Zener diode in series with the load.
+    Zener {
+        /// `U_z`, V.
+        voltage: f64,
+    },
+    /// A lossless switch that is closed above `U_z`.
+    Switch {
+        /// `U_z`, V.
+        voltage: f64,
+    },
+    /// A diode into a storage of fixed voltage, in place of the load.
+    Storage {
+        /// Voltage of the storage, V, at least that of the supply.
+        voltage: f64,
+    },
+}
+
+/// The circuit, with everything that ngspice needs to know of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elements {
+    /// `U_in`, V.
+    pub supply_voltage: f64,
+    /// `R`, ohm, above 0 and finite; unused with a storage.
+    pub load_resistance: f64,
+    /// How the membranes are connected.
+    pub topology: Topology,
+    /// What releases the charge.
+    pub branch: Branch,
+    /// The diodes.
+    pub diode: DiodeParameters,
+}
+
+impl Elements {
+    /// The elements of an embedded circuit. ngspice has no ideal diodes: they become the near-ideal ones of
+    /// [`DiodeParameters::default`].
+    ///
+    /// # Errors
+    /// Parameters out of bounds; a load of 0 or infinite resistance.
+    pub fn new(parameters: &Parameters) -> Result<Self, NgspiceError> {
+        parameters.validate()?;
+        let voltage = parameters.zener_voltage;
+        Self {
+            supply_voltage: parameters.supply_voltage,
+            load_resistance: parameters.load_resistance,
+            topology: parameters.topology,
+            branch: match parameters.release {
+                Release::Zener => Branch::Zener { voltage },
+                Release::Switch => Branch::Switch { voltage },
+            },
+            diode: match parameters.diodes {
+                Diodes::Ideal => DiodeParameters::default(),
+                Diodes::Exponential(diode) => diode,
+            },
+        }
+        .checked()
+    }
+
+    /// Checks what a netlist needs beyond finite numbers.
+    ///
+    /// # Errors
+    /// A load of 0 or infinite resistance; a storage below the supply.
+    pub fn checked(self) -> Result<Self, NgspiceError> {
+        let fail = |name: &str, value: f64, bound| {
+            Err(NgspiceError::Value { name: name.to_owned(), value: value.to_string(), bound })
+        };
+        match self.branch {
+            Branch::Storage { voltage } if !(voltage >= self.supply_voltage && voltage.is_finite()) => {
+                fail("storage.voltage", voltage, "must be finite and at least supply.voltage")
+            }
+            Branch::Zener { .. } | Branch::Switch { .. }
+                if !(self.load_resistance > 0.0 && self.load_resistance.is_finite()) =>
+            {
+                fail(
+                    names::LOAD_RESISTANCE,
+                    self.load_resistance,
+                    "ngspice takes a load above 0 and below infinity only",
+                )
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// Vectors that ngspice saves, after the time. Those of [`super::Books`], in its order.
+    pub fn vectors(&self) -> &'static [&'static str] {
+        match self.topology {
+            Topology::SharedNode => &SHARED,
+            Topology::Isolated => &ISOLATED,
+        }
+    }
+
+    /// Voltage across the load before any charge has come through, V.
+    pub fn initial_load_voltage(&self) -> f64 {
+        match self.branch {
+            Branch::Storage { voltage } => voltage,
+            Branch::Zener { .. } | Branch::Switch { .. } => 0.0,
+        }
+    }
+
+    /// The netlist of a run from `initial` capacitances (left, right), F.
+    ///
+    /// # Errors
+    /// A number that is not finite.
+    pub fn netlist(&self, source: CapacitanceSource, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
+        let (whole, release) = self.templates();
+        let base = run.values(source, initial, self.vectors())?;
+        let values = self.device_values(base.number("initial_out", self.initial_load_voltage()));
+        let release = release.render(&values)?;
+        let models = template!("models.cir").render(&values)?;
+        whole.render(&values.with("release", Value::Fragment(release)).with("models", Value::Fragment(models)))
+    }
+
+    fn templates(&self) -> (Template, Template) {
+        match (self.topology, self.branch) {
+            (Topology::SharedNode, branch) => (
+                template!("shared_node.cir"),
+                match branch {
+                    Branch::Zener { .. } => template!("zener_shared.cir"),
+                    Branch::Switch { .. } => template!("switch_shared.cir"),
+                    Branch::Storage { .. } => template!("storage_shared.cir"),
+                },
+            ),
+            (Topology::Isolated, branch) => (
+                template!("isolated.cir"),
+                match branch {
+                    Branch::Zener { .. } => template!("zener_isolated.cir"),
+                    Branch::Switch { .. } => template!("switch_isolated.cir"),
+                    Branch::Storage { .. } => template!("storage_isolated.cir"),
+                },
+            ),
+        }
+    }
+
+    /// The one place where parameters of the embedded model meet those of ngspice's model cards; see the table in
+    /// `ngspice_netlists/README.md`.
+    fn device_values(&self, values: Values) -> Values {
+        let diode = &self.diode;
+        let (Branch::Zener { voltage } | Branch::Switch { voltage } | Branch::Storage { voltage }) = self.branch;
+        // The embedded solver bounds the conductance of a switch likewise, see its `SWITCH_CONDUCTANCE`.
+        let resistance = match self.branch {
+            Branch::Switch { .. } => self.load_resistance.max(LEAST_SWITCHED_RESISTANCE),
+            Branch::Zener { .. } | Branch::Storage { .. } => self.load_resistance,
+        };
+        values
+            .number("supply_voltage", self.supply_voltage)
+            .number("load_resistance", resistance)
+            .number("zener_voltage", voltage)
+            .number("storage_voltage", voltage)
+            .number("saturation_current", diode.saturation_current)
+            .number("emission_coefficient", diode.emission_coefficient)
+            .number("breakdown_current", diode.breakdown_current)
+            .number("breakdown_emission", diode.breakdown_emission)
+            .number("temperature", diode.temperature - ZERO_CELSIUS)
+            .number("band", diode.switch_band)
+            .number("half_band", 0.5 * diode.switch_band)
+            .number("quarter_band", 0.25 * diode.switch_band)
+    }
+}
+
+const SHARED: [&str; 6] = ["v(cl)", "v(cr)", "v(de)", "v(out)", "i(vs)", "i(vr)"];
+const ISOLATED: [&str; 9] = ["v(cl)", "v(cr)", "v(left)", "v(right)", "v(out)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)"];
+
+/// Smallest load behind a switch, ohm.
+const LEAST_SWITCHED_RESISTANCE: f64 = 1e3;
+
+/// 0 degrees Celsius, K: ngspice takes Celsius.
+const ZERO_CELSIUS: f64 = 273.15;
+
+/// Where C(t) comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CapacitanceSource {
+    /// The table file beside the netlist, for a batch run.
+    Table,
+    /// The voltage sources `vcl` and `vcr` of type `external`, in pF, for a program that has loaded ngspice as a library.
+    /// The netlist then has no control section: its owner gives the commands.
+    External,
+}
+
+/// Length and accuracy of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Run {
+    /// End of the run, s.
+    pub until: f64,
+    /// Longest internal step, s. The table sets no breakpoints, so this must stay well below the length of a pulse.
+    pub max_step: f64,
+    /// `reltol`.
+    pub relative_tolerance: f64,
+    /// `abstol`, A.
+    pub current_tolerance: f64,
+    /// `vntol`, V.
+    pub voltage_tolerance: f64,
+    /// `chgtol`, C.
+    pub charge_tolerance: f64,
+    /// `gmin`, S.
+    pub minimum_conductance: f64,
+}
+
+impl Run {
+    /// A run until `until`, s, with options that were found to hold for pulses of 10 ms and longer.
+    pub fn new(until: f64) -> Self {
+        Self {
+            until,
+            max_step: 1e-4,
+            relative_tolerance: 1e-5,
+            current_tolerance: 1e-12,
+            voltage_tolerance: 1e-6,
+            charge_tolerance: 1e-14,
+            minimum_conductance: 1e-20,
+        }
+    }
+
+    /// Values that every netlist has: C(t), options, commands.
+    pub(super) fn values(
+        &self,
+        source: CapacitanceSource,
+        [left, right]: [f64; 2],
+        saved: &'static [&'static str],
+    ) -> Result<Values, NgspiceError> {
+        let values = Values::default()
+            .number("until", self.until)
+            .number("max_step", self.max_step)
+            .number("reltol", self.relative_tolerance)
+            .number("abstol", self.current_tolerance)
+            .number("vntol", self.voltage_tolerance)
+            .number("chgtol", self.charge_tolerance)
+            .number("gmin", self.minimum_conductance)
+            .number("initial_left", left)
+            .number("initial_right", right)
+            .number("initial_total", left + right)
+            .number("initial_left_pf", left / PICO)
+            .number("initial_right_pf", right / PICO)
+            .number("initial_total_pf", (left + right) / PICO)
+            .with("saved", Value::Vectors(saved))
+            .with("table_file", Value::File(FileName::Table))
+            .with("raw_file", Value::File(FileName::Raw));
+        let (capacitance, run) = match source {
+            CapacitanceSource::Table => (template!("capacitance_table.cir"), template!("run_batch.cir")),
+            CapacitanceSource::External => (template!("capacitance_external.cir"), template!("run_live.cir")),
+        };
+        let capacitance = capacitance.render(&values)?;
+        let run = run.render(&values)?;
+        Ok(values.with("capacitance", Value::Fragment(capacitance)).with("run", Value::Fragment(run)))
+    }
+}

@@ -1,0 +1,142 @@
+//! What can go wrong between a circuit and the numbers that ngspice gives for it.
+
+use std::path::PathBuf;
+use std::process::ExitStatus;
+
+use thiserror::Error;
+
+use super::raw::RawError;
+
+/// Error of the ngspice backend. Where ngspice said something, the message carries its own lines.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NgspiceError {
+    /// There is no such program.
+    #[error(
+        "ngspice not found: {looked}; install it (Debian, Ubuntu: apt install ngspice) or name it in VIDEG_NGSPICE"
+    )]
+    Missing {
+        /// Where it was looked for.
+        looked: String,
+    },
+    /// The program is there and cannot be started.
+    #[error("cannot start {}: {cause}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// It took too long, and was ended.
+    #[error("ngspice did not finish within its time limit of {limit} s{said}")]
+    TimeLimit {
+        /// The limit, s.
+        limit: f64,
+        /// What ngspice said.
+        said: Said,
+    },
+    /// It failed and admits it.
+    #[error("ngspice failed ({status}){said}")]
+    Failed {
+        /// Exit status.
+        status: ExitStatus,
+        /// What ngspice said.
+        said: Said,
+    },
+    /// It claims success and has no, or half a, result.
+    #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{said}")]
+    Stopped {
+        /// Last time in its result, s; 0 if there is none.
+        reached: f64,
+        /// End of the run, s.
+        until: f64,
+        /// What ngspice said.
+        said: Said,
+    },
+    /// Its result cannot be read.
+    #[error("result of ngspice: {0}")]
+    Raw(#[from] RawError),
+    /// A value cannot be written into a netlist.
+    #[error("{name} = {value}: {bound}")]
+    Value {
+        /// What the value is.
+        name: String,
+        /// The value.
+        value: String,
+        /// What is allowed.
+        bound: &'static str,
+    },
+    /// A netlist template and the values for it do not fit together.
+    #[error("netlist template {template}: {reason}")]
+    Template {
+        /// File name of the template.
+        template: &'static str,
+        /// What does not fit.
+        reason: String,
+    },
+    /// A table of capacitances makes no sense.
+    #[error("table of capacitances, row {row}: {reason}")]
+    Table {
+        /// Index of the row, from 0.
+        row: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A file could not be written or read.
+    #[error("{}: {cause}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// The shared library, or the process that runs it, does not go on.
+    #[error(transparent)]
+    Live(#[from] super::live::LiveError),
+    /// The embedded circuit refused something.
+    #[error("embedded circuit: {0}")]
+    Circuit(#[from] videg_circuit::Error),
+    /// The harvester FMU refused something.
+    #[error(transparent)]
+    Harvester(#[from] crate::cosim::CosimError),
+}
+
+/// Lines of ngspice that tell why it stopped; empty if it said nothing of the kind.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Said(Vec<String>);
+
+impl Said {
+    /// Words by which ngspice's complaints are known.
+    const SIGNS: [&'static str; 7] = ["error", "abort", "too small", "singular", "fatal", "cannot", "no such"];
+    /// Lines kept: the first complaint is the cause, the rest its echo.
+    const LINES: usize = 8;
+    /// Characters kept of a line.
+    const WIDTH: usize = 200;
+
+    /// Picks the complaints out of what ngspice wrote; control characters are left out.
+    pub(super) fn in_output(output: &str) -> Self {
+        let complaint = |line: &&str| {
+            let line = line.to_lowercase();
+            Self::SIGNS.iter().any(|sign| line.contains(sign))
+        };
+        let shown = |line: &str| line.trim().chars().filter(|c| !c.is_control()).take(Self::WIDTH).collect();
+        Self(output.lines().filter(complaint).take(Self::LINES).map(shown).collect())
+    }
+
+    /// The lines.
+    pub fn lines(&self) -> &[String] {
+        &self.0
+    }
+
+    /// Whether ngspice says that it gave up.
+    pub(super) fn gave_up(&self) -> bool {
+        const FATAL: [&str; 3] = ["abort", "too small", "singular matrix"];
+        self.0.iter().any(|line| FATAL.iter().any(|sign| line.to_lowercase().contains(sign)))
+    }
+}
+
+impl std::fmt::Display for Said {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.iter().try_for_each(|line| write!(f, "\n  ngspice: {line}"))
+    }
+}

@@ -1,0 +1,191 @@
+//! ngspice as a program of its own: no shell, nothing to read from, a fresh folder, a time limit.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::capacitance::CapacitanceTable;
+use super::template::{FileName, Netlist};
+use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
+
+/// The program.
+#[derive(Debug, Clone)]
+pub struct Ngspice {
+    program: PathBuf,
+    /// Longest time that a run may take.
+    pub time_limit: Duration,
+}
+
+/// A finished run of ngspice, in a folder that is removed with it.
+#[derive(Debug)]
+pub struct Finished {
+    folder: tempfile::TempDir,
+    said: Said,
+}
+
+impl Ngspice {
+    /// Variable of the environment that names the program.
+    pub const VARIABLE: &'static str = "VIDEG_NGSPICE";
+    /// Longest time that a run may take unless something else is asked for.
+    pub const TIME_LIMIT: Duration = Duration::from_secs(600);
+    /// Bytes of ngspice's messages that are kept, of each stream; the rest is read and dropped.
+    const OUTPUT: u64 = 64 * 1024;
+
+    /// The program `named`, or else that of the environment variable [`Self::VARIABLE`], or else that on the `PATH`.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn find(named: Option<&Path>) -> Result<Self, NgspiceError> {
+        let environment = std::env::var_os(Self::VARIABLE).filter(|value| !value.is_empty()).map(PathBuf::from);
+        match named.map(Path::to_owned).or(environment) {
+            Some(program) if program.is_file() => {
+                // The program is started in another folder.
+                let program = std::path::absolute(&program).unwrap_or(program);
+                Ok(Self { program, time_limit: Self::TIME_LIMIT })
+            }
+            Some(program) => Err(NgspiceError::Missing { looked: format!("no file {}", program.display()) }),
+            None => Self::on_path(std::env::var_os("PATH").as_deref()),
+        }
+    }
+
+    fn on_path(path: Option<&OsStr>) -> Result<Self, NgspiceError> {
+        let name = format!("ngspice{}", std::env::consts::EXE_SUFFIX);
+        let folders = path.into_iter().flat_map(std::env::split_paths);
+        // A relative folder on the PATH would mean another one where the program is started.
+        let mut candidates = folders.filter(|folder| folder.is_absolute()).map(|folder| folder.join(&name));
+        let Some(program) = candidates.find(|candidate| candidate.is_file()) else {
+            return Err(NgspiceError::Missing { looked: format!("no {name} on the PATH") });
+        };
+        Ok(Self { program, time_limit: Self::TIME_LIMIT })
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Path {
+        &self.program
+    }
+
+    /// Runs `elements` over the whole of `table`.
+    ///
+    /// # Errors
+    /// What ngspice says, or does not say: see [`NgspiceError`].
+    pub fn simulate(
+        &self,
+        elements: &Elements,
+        table: &CapacitanceTable,
+        run: &Run,
+    ) -> Result<Waveforms, NgspiceError> {
+        let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), run)?;
+        let finished = self.run(&netlist, table)?;
+        let stopped = || NgspiceError::Stopped { reached: 0.0, until: run.until, said: finished.said.clone() };
+        let raw = finished.raw()?.ok_or_else(stopped)?;
+        let waveforms = Waveforms::from_raw(raw, elements, table, &finished.said)?;
+        if finished.said.gave_up() { Err(stopped()) } else { Ok(waveforms) }
+    }
+
+    /// Writes netlist and table into `folder`, where `ngspice -b harvesting.cir` runs them by hand.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
+        let path = folder.join(FileName::Netlist.name());
+        std::fs::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
+        let path = folder.join(FileName::Table.name());
+        let written = File::create(&path).and_then(|file| table.write(BufWriter::new(file)));
+        written.map_err(|cause| NgspiceError::File { path, cause })
+    }
+
+    /// Runs `netlist` with `table` beside it.
+    ///
+    /// # Errors
+    /// A program that cannot be started, takes too long, or fails.
+    pub fn run(&self, netlist: &Netlist, table: &CapacitanceTable) -> Result<Finished, NgspiceError> {
+        let file = |cause| NgspiceError::File { path: std::env::temp_dir(), cause };
+        let folder = tempfile::Builder::new().prefix("videg-ngspice-").tempdir().map_err(file)?;
+        Self::export(folder.path(), netlist, table)?;
+        let mut child = self.start(folder.path())?;
+        let outputs = [drain(child.stdout.take()), drain(child.stderr.take())];
+        let ended = wait(&mut child, self.time_limit);
+        let text = outputs.map(|output| output.and_then(|thread| thread.join().ok()).unwrap_or_default());
+        let said = Said::in_output(&text.concat());
+        let failed = |cause| NgspiceError::Start { program: self.program.clone(), cause };
+        match ended.map_err(failed)? {
+            None => Err(NgspiceError::TimeLimit { limit: self.time_limit.as_secs_f64(), said }),
+            Some(status) if !status.success() => Err(NgspiceError::Failed { status, said }),
+            Some(_) => Ok(Finished { folder, said }),
+        }
+    }
+
+    fn start(&self, folder: &Path) -> Result<Child, NgspiceError> {
+        let mut command = Command::new(&self.program);
+        command.args(["-n", "-b", FileName::Netlist.name()]).current_dir(folder);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // It would turn the result into ASCII.
+        command.env_remove("SPICE_ASCIIRAWFILE");
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        command.spawn().map_err(|cause| NgspiceError::Start { program: self.program.clone(), cause })
+    }
+}
+
+impl Finished {
+    /// The result, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be opened.
+    pub fn raw(&self) -> Result<Option<BufReader<File>>, NgspiceError> {
+        let path = self.folder.path().join(FileName::Raw.name());
+        match File::open(&path) {
+            Ok(file) => Ok(Some(BufReader::with_capacity(1 << 16, file))),
+            Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(cause) => Err(NgspiceError::File { path, cause }),
+        }
+    }
+
+    /// Complaints of ngspice.
+    pub fn said(&self) -> &Said {
+        &self.said
+    }
+}
+
+/// Reads a stream to its end, and keeps its beginning.
+fn drain(stream: Option<impl Read + Send + 'static>) -> Option<JoinHandle<String>> {
+    let mut stream = stream?;
+    Some(std::thread::spawn(move || {
+        let mut kept = Vec::new();
+        // A stream that breaks has ended.
+        let _ = stream.by_ref().take(Ngspice::OUTPUT).read_to_end(&mut kept);
+        let _ = std::io::copy(&mut stream, &mut std::io::sink());
+        String::from_utf8_lossy(&kept).into_owned()
+    }))
+}
+
+/// Waits for the end; after `limit` ends the program and all that it started, and returns nothing.
+fn wait(child: &mut Child, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
+    const PAUSE: Duration = Duration::from_millis(5);
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if start.elapsed() >= limit {
+            end(child)?;
+            return Ok(None);
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// Ends the program with its process group.
+fn end(child: &mut Child) -> std::io::Result<()> {
+    #[cfg(unix)]
+    if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
+        // It may have ended by itself meanwhile.
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+    let _ = child.kill();
+    child.wait().map(drop)
+}

@@ -1,0 +1,138 @@
+//! Results: the circuit at the times of a table, from ngspice or from the embedded solver.
+
+use std::io::BufRead;
+
+use videg_circuit::{Circuit, Ledger, Parameters};
+
+use super::books::Books;
+use super::capacitance::CapacitanceTable;
+use super::circuit::Elements;
+use super::raw::RawReader;
+use super::{NgspiceError, Said};
+use crate::cosim::{CircuitSample, CircuitSummary};
+
+/// A circuit over a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Waveforms {
+    /// Times, s: those of the table.
+    pub time: Vec<f64>,
+    /// The circuit at these times.
+    pub samples: Vec<CircuitSample>,
+    /// Internal time points, if the solver tells.
+    pub points: Option<u64>,
+}
+
+impl Waveforms {
+    /// The embedded solver on `table`.
+    ///
+    /// # Errors
+    /// What the solver says.
+    pub fn embedded(parameters: &Parameters, table: &CapacitanceTable) -> Result<Self, NgspiceError> {
+        let mut circuit = Circuit::new(*parameters, table.initial())?;
+        let mut found = Self::with_capacity(table.len());
+        let mut now = 0.0;
+        for (time, capacitance) in table.rows() {
+            circuit.advance(time - now, capacitance)?;
+            now = time;
+            let sample = CircuitSample {
+                voltage: circuit.voltage(),
+                load_voltage: circuit.load_voltage(),
+                load_current: circuit.load_current(),
+                supply_current: circuit.supply_current(),
+                ledger: circuit.ledger(),
+            };
+            found.push(time, sample);
+        }
+        Ok(found)
+    }
+
+    /// The result of ngspice for `elements`, at the times of `table`. It is read point by point; what is kept is as
+    /// large as the table.
+    ///
+    /// # Errors
+    /// A result that is none, or ends before the table does; `said` is why, then.
+    pub fn from_raw(
+        raw: impl BufRead,
+        elements: &Elements,
+        table: &CapacitanceTable,
+        said: &Said,
+    ) -> Result<Self, NgspiceError> {
+        let mut reader = RawReader::new(raw)?;
+        let columns = elements.vectors().iter().map(|name| reader.index(name)).collect::<Result<Vec<_>, _>>()?;
+        let mut books = Books::new(elements);
+        let mut found = Self::with_capacity(table.len());
+        let mut due = table.times().iter().copied().peekable();
+        let (mut point, mut values) = (Vec::new(), Vec::new());
+        while reader.next_point(&mut point)? {
+            values.clear();
+            values.extend(columns.iter().map(|&column| point[column]));
+            let Some(now) = Books::instant(elements, point[0], &values) else { break };
+            let before = (books.time(), books.sample());
+            books.take(&now);
+            let after = (now.time, books.sample());
+            let last = table.until();
+            while let Some(time) = due.next_if(|&time| time <= now.time + 1e-12 * last) {
+                let sample = if found.time.is_empty() { after.1 } else { interpolated(&before, &after, time) };
+                found.push(time, sample);
+            }
+        }
+        if due.peek().is_some() {
+            return Err(NgspiceError::Stopped { reached: books.time(), until: table.until(), said: said.clone() });
+        }
+        found.points = Some(reader.points());
+        Ok(found)
+    }
+
+    fn with_capacity(rows: usize) -> Self {
+        Self { time: Vec::with_capacity(rows), samples: Vec::with_capacity(rows), points: None }
+    }
+
+    fn push(&mut self, time: f64, sample: CircuitSample) {
+        self.time.push(time);
+        self.samples.push(sample);
+    }
+
+    /// The circuit at the end.
+    pub fn last(&self) -> CircuitSample {
+        self.samples.last().copied().unwrap_or_default()
+    }
+
+    /// The books at the end.
+    pub fn ledger(&self) -> Ledger {
+        self.last().ledger
+    }
+
+    /// The run summed up as that of any other circuit; `energy_eq13` is the harvester's sum of W, J.
+    pub fn summary(&self, energy_eq13: f64) -> CircuitSummary {
+        CircuitSummary::new(&self.last(), energy_eq13)
+    }
+
+    /// Root of the mean square of the difference of the voltages from those of `other`, left and right, V; `None` if
+    /// the two are not of the same times.
+    pub fn voltage_difference(&self, other: &Self) -> Option<[f64; 2]> {
+        if self.time != other.time || self.time.len() < 2 {
+            return None;
+        }
+        let difference = |index: usize, j: usize| self.samples[index].voltage[j] - other.samples[index].voltage[j];
+        let mean_square = |j: usize| {
+            let pieces = self.time.windows(2).enumerate();
+            let sum: f64 = pieces
+                .map(|(index, ends)| {
+                    // Of a difference that is linear in between.
+                    let (a, b) = (difference(index, j), difference(index + 1, j));
+                    (ends[1] - ends[0]) * (a * a + a * b + b * b) / 3.0
+                })
+                .sum();
+            sum / (self.time[self.time.len() - 1] - self.time[0])
+        };
+        Some([0, 1].map(|j| mean_square(j).sqrt()))
+    }
+}
+
+/// The sample at `time` between two others.
+fn interpolated(before: &(f64, CircuitSample), after: &(f64, CircuitSample), time: f64) -> CircuitSample {
+    let span = after.0 - before.0;
+    let part = if span > 0.0 { ((time - before.0) / span).clamp(0.0, 1.0) } else { 1.0 };
+    let (a, b) = (before.1.columns(), after.1.columns());
+    CircuitSample::from_columns(std::array::from_fn(|k| a[k] + part * (b[k] - a[k])))
+}

@@ -1,0 +1,186 @@
+//! ngspice's shared library in its worker process: the same energies as the embedded solver on the same C(t), and what
+//! happens when the worker or the library fails.
+#![cfg(unix)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use videg::cosim::{CircuitSample, CircuitSlave, EmbeddedCircuit, NgspiceCircuit};
+use videg::ngspice::live::{Job, LiveError, Ramp, WORKER_VERB, Worker};
+use videg::ngspice::{Elements, Run};
+use videg_circuit::{Release, Settings, Topology};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_videg");
+const UNTIL: f64 = 2.0;
+
+/// Capacitances of two membranes that are pressed in by turns, 30 ms every 250 ms, F.
+fn capacitance(time: f64) -> [f64; 2] {
+    let pulse = |time: f64| {
+        let phase = time.rem_euclid(0.5) / 0.03;
+        15e-12 + if phase < 1.0 { 5e-12 * (std::f64::consts::PI * phase).sin() } else { 0.0 }
+    };
+    [pulse(time), pulse(time + 0.25)]
+}
+
+/// Steps a circuit through the pulses.
+fn run(circuit: &mut dyn CircuitSlave, step: f64) -> CircuitSample {
+    let steps = (UNTIL / step).round() as u32;
+    for k in 0..steps {
+        let time = f64::from(k) * step;
+        circuit.step(time, step, capacitance(time), capacitance(time + step)).unwrap();
+    }
+    circuit.sample().unwrap()
+}
+
+fn ngspice(settings: &Settings) -> NgspiceCircuit {
+    let elements = Elements::new(&settings.parameters()).unwrap();
+    NgspiceCircuit::new("test", Path::new(PROGRAM), &elements, capacitance(0.0), &Run::new(UNTIL)).unwrap()
+}
+
+#[test]
+fn ngspice_step_by_step_gives_the_energies_of_the_embedded_solver() {
+    for topology in [Topology::SharedNode, Topology::Isolated] {
+        for (release, voltage) in [(Release::Zener, 2000.0), (Release::Zener, 2200.0), (Release::Switch, 2200.0)] {
+            let mut settings = Settings { exponential: true, ..Settings::default() };
+            settings.circuit.topology = topology;
+            settings.circuit.release = release;
+            settings.circuit.zener_voltage = voltage;
+            let here = run(&mut EmbeddedCircuit::new("test", &settings, capacitance(0.0)).unwrap(), 1e-3);
+            let there = run(&mut ngspice(&settings), 1e-3);
+            let scale = here.ledger.supply.abs();
+            assert!(scale > 1e-6, "{scale}");
+            // ngspice integrates with reltol 1e-5; three pulses a membrane add up to this much of the energy moved.
+            for (name, a, b) in [
+                ("supply", here.ledger.supply, there.ledger.supply),
+                ("load", here.ledger.load, there.ledger.load),
+                ("zener", here.ledger.zener, there.ledger.zener),
+            ] {
+                assert!((a - b).abs() < 3e-4 * scale, "{topology:?} {release:?} {voltage}: {name} {a:e} {b:e}");
+            }
+        }
+    }
+}
+
+/// Breakpoints at the communication points would make the error grow with their number.
+#[test]
+fn more_communication_points_on_the_same_ramps_do_not_cost_accuracy() {
+    let settings = Settings { exponential: true, ..Settings::default() };
+    let whole = run(&mut ngspice(&settings), 1e-3).ledger;
+    let mut circuit = ngspice(&settings);
+    let steps = (UNTIL / 1e-3).round() as u32;
+    for k in 0..steps {
+        let time = f64::from(k) * 1e-3;
+        let [start, end] = [capacitance(time), capacitance(time + 1e-3)];
+        let middle = [0, 1].map(|j| 0.5 * (start[j] + end[j]));
+        circuit.step(time, 0.5e-3, start, middle).unwrap();
+        circuit.step(time + 0.5e-3, 0.5e-3, middle, end).unwrap();
+    }
+    let halved = circuit.sample().unwrap().ledger;
+    assert!((halved.supply / whole.supply - 1.0).abs() < 1e-5, "{} {}", halved.supply, whole.supply);
+    assert!((halved.load / whole.load - 1.0).abs() < 1e-4, "{} {}", halved.load, whole.load);
+}
+
+fn job() -> Job {
+    let netlist = ["* test", "Vc c 0 external", "Rc c 0 1", ".end"].map(str::to_owned).to_vec();
+    Job { netlist, sources: vec!["vc".to_owned()], vectors: vec!["v(c)".to_owned()], longest_step: 1e-4, stop: 10.0 }
+}
+
+fn ramp() -> Ramp {
+    Ramp { from: 0.0, to: 1e-3, start: vec![1.0], end: vec![2.0] }
+}
+
+#[test]
+fn a_worker_follows_its_ramps_exactly() {
+    let mut worker = Worker::start(Path::new(PROGRAM), &job(), Duration::from_secs(60)).unwrap();
+    let mut points = Vec::new();
+    worker.step(&ramp(), |time, values| points.push((time, values[0]))).unwrap();
+    worker
+        .step(&Ramp { from: 1e-3, to: 2e-3, start: vec![2.0], end: vec![2.0] }, |time, values| {
+            points.push((time, values[0]));
+        })
+        .unwrap();
+    assert_eq!(points.last(), Some(&(2e-3, 2.0)));
+    for (time, value) in points {
+        assert!((value - (1.0 + 1e3 * time).min(2.0)).abs() < 1e-9, "{time} {value}");
+    }
+}
+
+/// A program that behaves as `script` says.
+fn fake(folder: &Path, script: &str) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt as _;
+    let path = folder.join("fake");
+    std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[test]
+fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
+    let folder = tempfile::tempdir().unwrap();
+    for (script, expected) in [
+        ("echo oh no >&2; exit 7", "ended between 0 s and 0.001 s (exit status: 7): oh no"),
+        ("kill -SEGV $$", "ended between 0 s and 0.001 s (signal: 11 (SIGSEGV)"),
+        ("sleep 1000", "did not get from 0 s to 0.001 s within 1 s"),
+        ("cat >/dev/null & echo '{\"points\":[1'; wait", "ended between 0 s and 0.001 s"),
+        ("read job; echo '{\"failure\":\"no circuit\"}'", "no circuit"),
+    ] {
+        let program = fake(folder.path(), script);
+        let mut worker = Worker::start(&program, &job(), Duration::from_secs(1)).unwrap();
+        let error: LiveError = worker.step(&ramp(), |_, _| {}).unwrap_err();
+        assert!(error.to_string().contains(expected), "{script}: {error}");
+    }
+    let missing = Worker::start(Path::new("/nowhere/videg"), &job(), Duration::from_secs(1)).err().unwrap();
+    assert!(missing.to_string().starts_with(&format!("cannot start /nowhere/videg {WORKER_VERB}: ")), "{missing}");
+}
+
+#[test]
+fn a_circuit_that_ngspice_cannot_read_is_an_error_in_its_own_words() {
+    for (line, expected) in
+        [("Xa c 0 nothing", "unknown subckt: xa c 0 nothing"), ("Ra c 0 foo bar", "unknown parameter (foo)")]
+    {
+        let mut job = job();
+        job.netlist.insert(2, line.to_owned());
+        let mut worker = Worker::start(Path::new(PROGRAM), &job, Duration::from_secs(60)).unwrap();
+        let error = worker.step(&ramp(), |_, _| {}).unwrap_err().to_string();
+        assert!(error.starts_with("the transient analysis ended early; ngspice said: "), "{error}");
+        assert!(error.contains(expected), "{error}");
+    }
+    let unknown = Job { vectors: vec!["v(nowhere)".to_owned()], ..job() };
+    let mut worker = Worker::start(Path::new(PROGRAM), &unknown, Duration::from_secs(60)).unwrap();
+    let error = worker.step(&ramp(), |_, _| {}).unwrap_err().to_string();
+    assert!(error.starts_with("the circuit has no vector v(nowhere)"), "{error}");
+}
+
+fn cosim(folder: &Path, library: Option<&str>) -> std::process::Output {
+    let mut command = Command::new(PROGRAM);
+    command.args(["cosim", "--circuit", "ngspice", "--until", "0.5", "--json", "--output"]).arg(folder);
+    if let Some(library) = library {
+        command.env("VIDEG_NGSPICE_LIBRARY", library);
+    }
+    command.output().unwrap()
+}
+
+#[test]
+fn cosim_couples_ngspice_and_writes_what_it_writes_for_any_circuit() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = cosim(folder.path(), None);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["energy"]["supply"].as_f64().unwrap() > 0.0);
+    for file in ["timeseries.csv", "report.html", "figure.svg", "result.json"] {
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn without_the_library_cosim_says_how_to_get_it_and_keeps_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = cosim(folder.path(), Some("/nowhere/libngspice.so.0"));
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("cannot load the shared library of ngspice (/nowhere/libngspice.so.0)"), "{error}");
+    assert!(error.contains("apt install libngspice0"), "{error}");
+    assert!(error.contains("timeseries.csv.part"), "{error}");
+    assert!(folder.path().join("timeseries.csv.part").is_file());
+}
