@@ -22,8 +22,10 @@
 //! - [`Ngspice`] finds the program and runs a [`Netlist`];
 //! - [`RawReader`] reads the result, [`Books`] sums up energies and charges point by point, also those of a program that
 //!   gets the points from the library;
+//! - [`Check`] holds ngspice's own capacitor against closed forms;
 //! - [`Waveforms`] is what comes out, of either solver.
 
+mod analytic;
 mod books;
 mod capacitance;
 mod circuit;
@@ -33,6 +35,7 @@ mod runner;
 mod template;
 mod waveforms;
 
+pub use analytic::{Check, Deviation};
 pub use books::{Books, Instant};
 pub use capacitance::{CapacitanceTable, PICO};
 pub use circuit::{Branch, CapacitanceSource, Elements, Run};
