@@ -30,15 +30,25 @@ pub struct Instant {
 #[derive(Debug, Clone)]
 pub struct Books {
     elements: Elements,
-    last: Option<Instant>,
+    last: Instant,
     initial_energy: f64,
     sums: Ledger,
 }
 
 impl Books {
-    /// Books of a run that has not begun.
-    pub fn new(elements: &Elements) -> Self {
-        Self { elements: *elements, last: None, initial_energy: 0.0, sums: Ledger::default() }
+    /// Books of a run that begins with `capacitance` (left, right), F, charged to `U_in`. ngspice does not tell its
+    /// first time point, 0 s.
+    pub fn new(elements: &Elements, capacitance: [f64; 2]) -> Self {
+        let start = Instant {
+            capacitance: match elements.topology {
+                Topology::SharedNode => [capacitance.iter().sum(), 0.0],
+                Topology::Isolated => capacitance,
+            },
+            voltage: [elements.supply_voltage; 2],
+            load_voltage: elements.initial_load_voltage(),
+            ..Instant::default()
+        };
+        Self { elements: *elements, initial_energy: stored(&start), last: start, sums: Ledger::default() }
     }
 
     /// The values of [`Elements::vectors`], with the time, as an instant; capacitances in pF.
@@ -69,11 +79,9 @@ impl Books {
 
     /// Takes the next time point.
     pub fn take(&mut self, now: &Instant) {
-        match self.last {
-            None => self.initial_energy = stored(now),
-            Some(last) => self.book(&last, now),
-        }
-        self.last = Some(*now);
+        let last = self.last;
+        self.book(&last, now);
+        self.last = *now;
     }
 
     /// Books what flowed between two time points.
@@ -107,13 +115,12 @@ impl Books {
 
     /// The books at the last time point taken.
     pub fn ledger(&self) -> Ledger {
-        let stored = self.last.map_or(0.0, |last| stored(&last) - self.initial_energy);
-        Ledger { stored, ..self.sums }
+        Ledger { stored: stored(&self.last) - self.initial_energy, ..self.sums }
     }
 
     /// The circuit at the last time point taken.
     pub fn sample(&self) -> CircuitSample {
-        let last = self.last.unwrap_or_default();
+        let last = &self.last;
         CircuitSample {
             voltage: last.voltage,
             load_voltage: last.load_voltage,
@@ -125,7 +132,7 @@ impl Books {
 
     /// Last time point taken, s.
     pub fn time(&self) -> f64 {
-        self.last.map_or(0.0, |last| last.time)
+        self.last.time
     }
 }
 

@@ -76,6 +76,16 @@ impl CapacitanceTable {
         &self.time
     }
 
+    /// Capacitances of the left membrane, F.
+    pub fn left(&self) -> &[f64] {
+        &self.left
+    }
+
+    /// Capacitances of the right membrane, F.
+    pub fn right(&self) -> &[f64] {
+        &self.right
+    }
+
     /// Time and capacitances (left, right), F, of each row.
     pub fn rows(&self) -> impl Iterator<Item = (f64, [f64; 2])> {
         self.time.iter().zip(&self.left).zip(&self.right).map(|((&time, &left), &right)| (time, [left, right]))

@@ -113,8 +113,11 @@ impl Elements {
     /// A number that is not finite.
     pub fn netlist(&self, source: CapacitanceSource, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
         let (whole, release) = self.templates();
-        let base = run.values(source, initial, self.vectors())?;
-        let values = self.device_values(base.number("initial_out", self.initial_load_voltage()));
+        self.fill(&whole, &release, run.values(source, initial, self.vectors())?)
+    }
+
+    fn fill(&self, whole: &Template, release: &Template, run: Values) -> Result<Netlist, NgspiceError> {
+        let values = self.device_values(run.number("initial_out", self.initial_load_voltage()));
         let release = release.render(&values)?;
         let models = template!("models.cir").render(&values)?;
         whole.render(&values.with("release", Value::Fragment(release)).with("models", Value::Fragment(models)))
@@ -211,10 +214,10 @@ impl Run {
         Self {
             until,
             max_step: 1e-4,
-            relative_tolerance: 1e-5,
-            current_tolerance: 1e-12,
+            relative_tolerance: 1e-8,
+            current_tolerance: 1e-11,
             voltage_tolerance: 1e-6,
-            charge_tolerance: 1e-14,
+            charge_tolerance: 1e-13,
             minimum_conductance: 1e-20,
         }
     }
@@ -250,5 +253,93 @@ impl Run {
         let capacitance = capacitance.render(&values)?;
         let run = run.render(&values)?;
         Ok(values.with("capacitance", Value::Fragment(capacitance)).with("run", Value::Fragment(run)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ngspice::{CapacitanceTable, Ngspice, Waveforms};
+
+    /// A pulse of the left membrane by 40 %.
+    fn pulse() -> CapacitanceTable {
+        let time: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5e-4).collect();
+        let bump = |t: f64| 1.0 + 0.4 * (std::f64::consts::PI * (t / 0.06).min(1.0)).sin();
+        let left = time.iter().map(|&t| 15e-12 * bump(t)).collect();
+        let right = vec![15e-12; time.len()];
+        CapacitanceTable::new(time, left, right).unwrap()
+    }
+
+    /// Relative difference of the load charge of a netlist made from `whole` from that of the embedded solver.
+    fn difference(ngspice: &Ngspice, whole: &Template) -> f64 {
+        let (table, parameters) = (pulse(), Parameters::default());
+        let elements = Elements::new(&parameters).unwrap();
+        // Loose, for the wrong form gets nowhere with the tight options.
+        let run = Run { relative_tolerance: 1e-5, charge_tolerance: 1e-12, ..Run::new(table.until()) };
+        let values = run.values(CapacitanceSource::Table, table.initial(), elements.vectors()).unwrap();
+        let netlist = elements.fill(whole, &template!("zener_shared.cir"), values).unwrap();
+        let finished = ngspice.run(&netlist, &table).unwrap();
+        let raw = finished.raw().unwrap().unwrap();
+        let found = Waveforms::from_raw(raw, &elements, &table, finished.said()).unwrap();
+        let expected = Waveforms::embedded(&parameters, &table).unwrap();
+        (found.ledger().load_charge / expected.ledger().load_charge - 1.0).abs()
+    }
+
+    #[test]
+    fn a_capacitor_that_loses_v_dc_dt_does_not_pass() {
+        let Some(ngspice) = Ngspice::for_tests() else { return };
+        let right = template!("shared_node.cir");
+        assert!(difference(&ngspice, &right) < 1e-3);
+        let start = right.text.find("Cfix de 0").unwrap();
+        let length = right.text[start..].find("\n\n").unwrap();
+        let wrong = right.text.replace(&right.text[start..start + length], "Cvar de 0 C='(V(cl)+V(cr))*1e-12'");
+        let wrong = Template { name: "wrong.cir", text: wrong.leak() };
+        assert!(difference(&ngspice, &wrong) > 0.1);
+    }
+
+    #[test]
+    fn every_circuit_has_a_netlist_without_placeholders_and_with_all_it_saves() {
+        for topology in [Topology::SharedNode, Topology::Isolated] {
+            for branch in [
+                Branch::Zener { voltage: 2100.0 },
+                Branch::Switch { voltage: 2100.0 },
+                Branch::Storage { voltage: 2100.0 },
+            ] {
+                let elements = Elements {
+                    supply_voltage: 2000.0,
+                    load_resistance: 1e9,
+                    topology,
+                    branch,
+                    diode: DiodeParameters::default(),
+                };
+                for source in [CapacitanceSource::Table, CapacitanceSource::External] {
+                    let netlist = elements.netlist(source, [15e-12; 2], &Run::new(1.0)).unwrap();
+                    let text = netlist.text();
+                    assert!(!text.contains('<') && text.ends_with(".end\n"), "{text}");
+                    assert_eq!(text.contains(".control"), source == CapacitanceSource::Table);
+                    assert!(text.contains(&elements.vectors().join(" ")));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_circuit_that_ngspice_cannot_have_is_named_with_its_bound() {
+        let load = |load_resistance| Parameters { load_resistance, ..Parameters::default() };
+        for (parameters, expected) in [
+            (load(0.0), "load.resistance = 0: ngspice takes"),
+            (load(f64::INFINITY), "load.resistance = inf: ngspice takes"),
+            (load(f64::NAN), "load.resistance = NaN"),
+            (Parameters { zener_voltage: 1.0, ..load(1e9) }, "zener.voltage = 1 V"),
+        ] {
+            let error = Elements::new(&parameters).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+        let mut storage = Elements::new(&load(1e9)).unwrap();
+        storage.branch = Branch::Storage { voltage: 1999.0 };
+        assert!(storage.checked().unwrap_err().to_string().contains("storage.voltage = 1999"));
+        let run = Run { max_step: f64::NAN, ..Run::new(1.0) };
+        let error = storage.netlist(CapacitanceSource::Table, [15e-12; 2], &run).unwrap_err().to_string();
+        assert!(error.contains("max_step = NaN"), "{error}");
     }
 }

@@ -23,8 +23,10 @@
 //! - [`RawReader`] reads the result, [`Books`] sums up energies and charges point by point, also those of a program that
 //!   gets the points from the library;
 //! - [`live`] runs ngspice's shared library step by step, as the partner of a co-simulation;
+//! - [`Check`] holds ngspice's own capacitor against closed forms;
 //! - [`Waveforms`] is what comes out, of either solver.
 
+mod analytic;
 mod books;
 mod capacitance;
 mod circuit;
@@ -35,6 +37,7 @@ mod runner;
 mod template;
 mod waveforms;
 
+pub use analytic::{Check, Deviation};
 pub use books::{Books, Instant};
 pub use capacitance::{CapacitanceTable, PICO};
 pub use circuit::{Branch, CapacitanceSource, Elements, Run};

@@ -174,3 +174,85 @@ fn variable(input: &mut impl BufRead, index: u64) -> Result<String, RawError> {
         _ => fail(format!("variable {index} is not on its line")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const HEADER: &str = "Title: a title\nDate: now\nPlotname: Transient Analysis\nFlags: real\nNo. Variables: 2\n\
+                          No. Points: 2       \nVariables:\n\t0\ttime\ttime\n\t1\tv(de)\tvoltage\nBinary:\n";
+
+    fn file(header: &str, numbers: &[f64]) -> Vec<u8> {
+        header.bytes().chain(numbers.iter().flat_map(|number| number.to_le_bytes())).collect()
+    }
+
+    fn read(bytes: &[u8]) -> Result<Vec<Vec<f64>>, RawError> {
+        let mut reader = RawReader::new(bytes)?;
+        let (mut point, mut points) = (Vec::new(), Vec::new());
+        while reader.next_point(&mut point)? {
+            points.push(point.clone());
+        }
+        Ok(points)
+    }
+
+    #[test]
+    fn points_are_read_to_the_last_bit() {
+        let bytes = file(HEADER, &[0.0, 2000.0, 1e-6, 1.0 / 3.0]);
+        assert_eq!(read(&bytes).unwrap(), [[0.0, 2000.0], [1e-6, 1.0 / 3.0]]);
+        let reader = RawReader::new(bytes.as_slice()).unwrap();
+        assert_eq!((reader.index("V(de)").unwrap(), reader.points()), (1, 2));
+        assert_eq!(reader.index("v(out)").unwrap_err().to_string(), "the raw file has no variable v(out)");
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_file_is_named() {
+        let numbers = [0.0, 2000.0, 1e-6, 2001.0];
+        for (from, to, expected) in [
+            ("Flags: real", "Flags: complex", "not flagged as real"),
+            ("Flags: real\n", "", "not flagged as real"),
+            ("No. Points: 2 ", "No. Points: 0 ", "No. Points = 0: must lie from 1"),
+            ("No. Points: 2 ", "No. Points: 99999999999999999999 ", "No. Points = 99999999999999999999"),
+            ("No. Points: 2 ", "No. Points: -2 ", "No. Points = -2"),
+            ("No. Points: 2 ", "No. Points: 3 ", "ends at point 2 of 3"),
+            ("No. Points: 2 ", "No. Points: 1000000000000 ", "ends at point 2 of 1000000000000"),
+            ("No. Variables: 2", "No. Variables: 1025", "No. Variables = 1025: must lie from 1 to 1024"),
+            ("No. Variables: 2", "No. Variables: 3", "variable 2 is not on its line"),
+            ("No. Variables: 2\n", "", "no number of variables"),
+            ("\t1\tv(de)", "\t7\tv(de)", "variable 1 is not on its line"),
+            ("Binary:", "Values:", "ASCII"),
+            ("Binary:", "Text:", "no line \"Binary:\""),
+        ] {
+            let error = read(&file(&HEADER.replace(from, to), &numbers)).unwrap_err().to_string();
+            assert!(error.contains(expected), "{to}: {error}");
+        }
+        let error = read(&file(HEADER, &[0.0, f64::NAN, 1e-6, 2.0])).unwrap_err().to_string();
+        assert_eq!(error, "v(de) = NaN at point 0 of the raw file");
+        let long = "x".repeat(5000);
+        assert!(read(long.as_bytes()).unwrap_err().to_string().contains("a line is too long"));
+        assert!(read("Title: x\n".repeat(100).as_bytes()).unwrap_err().to_string().contains("no list of variables"));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn garbage_is_an_error(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+            prop_assert!(read(&bytes).is_err());
+        }
+
+        #[test]
+        fn a_file_cut_or_with_a_byte_changed_never_panics(cut in 0..1000_usize, at in 0..1000_usize, to in any::<u8>()) {
+            let mut bytes = file(HEADER, &[0.0, 2000.0, 1e-6, 2001.0]);
+            let whole = bytes.len();
+            bytes.truncate(cut.min(whole));
+            if cut < whole {
+                prop_assert!(read(&bytes).is_err());
+            }
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte = to;
+            }
+            let _ = read(&bytes);
+        }
+    }
+}

@@ -63,6 +63,14 @@ impl Ngspice {
         Ok(Self { program, time_limit: Self::TIME_LIMIT })
     }
 
+    /// The program, for tests: where there is none, they are skipped, but not in continuous integration.
+    #[cfg(test)]
+    pub(super) fn for_tests() -> Option<Self> {
+        let found = Self::find(None);
+        assert!(found.is_ok() || std::env::var_os("CI").is_none(), "{}", found.unwrap_err());
+        found.inspect_err(|error| eprintln!("skipped: {error}")).ok()
+    }
+
     /// The program.
     pub fn program(&self) -> &Path {
         &self.program
@@ -189,3 +197,8 @@ fn end(child: &mut Child) -> std::io::Result<()> {
     let _ = child.kill();
     child.wait().map(drop)
 }
+
+#[cfg(test)]
+#[cfg(unix)]
+#[path = "runner_tests.rs"]
+mod tests;

@@ -138,3 +138,54 @@ impl Values {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn render(text: &'static str, values: &Values) -> Result<String, String> {
+        let template = Template { name: "test.cir", text };
+        template.render(values).map(|netlist| netlist.text().to_owned()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn numbers_have_no_suffix_letters_and_read_back_as_themselves() {
+        for value in [0.0, -0.0, 1e-13, 3.002_953_489_684_304e-11, 1e9, 2000.0, f64::MAX, 5e-324, -1.0 / 3.0] {
+            let text = number("x", value).unwrap();
+            assert!(text.chars().all(|c| c.is_ascii_digit() || "+-.e".contains(c)), "{text}");
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_none_have_no_way_in() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = render("R1 a 0 <r>", &Values::default().number("r", value)).unwrap_err();
+            assert!(error.starts_with("r = ") && error.contains("finite"), "{error}");
+        }
+    }
+
+    #[test]
+    fn placeholders_without_value_end_or_beginning_are_errors_that_name_them() {
+        let values = Values::default().number("r", 5.0);
+        assert_eq!(render("R1 a 0 <r>\n", &values).unwrap(), "R1 a 0 5e0\n");
+        for (text, expected) in [
+            ("R1 a 0 <q>", "test.cir: no value for <q>"),
+            ("R1 a 0 <R>", "no value for <R>"),
+            ("R1 a 0 <r", "\"<r\" has no end"),
+            ("R1 a 0 r>", "has no beginning"),
+            ("R1 a 0 <<r>>", "no value for <<r>"),
+        ] {
+            let error = render(text, &values).unwrap_err();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn fragments_are_not_rendered_twice() {
+        let values = Values::default().number("r", 5.0);
+        let fragment = Template { name: "fragment.cir", text: "R1 a 0 <r>\n" }.render(&values).unwrap();
+        let values = Values::default().with("load", Value::Fragment(fragment));
+        assert_eq!(render("<load>\n.end\n", &values).unwrap(), "R1 a 0 5e0\n.end\n");
+    }
+}

@@ -59,7 +59,7 @@ impl Waveforms {
     ) -> Result<Self, NgspiceError> {
         let mut reader = RawReader::new(raw)?;
         let columns = elements.vectors().iter().map(|name| reader.index(name)).collect::<Result<Vec<_>, _>>()?;
-        let mut books = Books::new(elements);
+        let mut books = Books::new(elements, table.initial());
         let mut found = Self::with_capacity(table.len());
         let mut due = table.times().iter().copied().peekable();
         let (mut point, mut values) = (Vec::new(), Vec::new());
@@ -72,8 +72,7 @@ impl Waveforms {
             let after = (now.time, books.sample());
             let last = table.until();
             while let Some(time) = due.next_if(|&time| time <= now.time + 1e-12 * last) {
-                let sample = if found.time.is_empty() { after.1 } else { interpolated(&before, &after, time) };
-                found.push(time, sample);
+                found.push(time, interpolated(&before, &after, time));
             }
         }
         if due.peek().is_some() {

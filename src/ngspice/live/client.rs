@@ -90,9 +90,8 @@ impl Worker {
         let stderr = Some(read_stderr(child.stderr.take().ok_or_else(missing)?));
         let vectors = job.vectors.len();
         let mut worker = Self { child, requests, replies, stderr, limit, vectors, _folder: folder };
-        if send(&mut worker.requests, job).is_err() {
-            return Err(worker.died(0.0, 0.0));
-        }
+        // A worker that is gone already is found out by the first step.
+        let _ = send(&mut worker.requests, job);
         Ok(worker)
     }
 

@@ -1,0 +1,114 @@
+//! The runner against programs that misbehave.
+
+use std::os::unix::fs::PermissionsExt as _;
+
+use super::*;
+use videg_circuit::Parameters;
+
+fn table() -> CapacitanceTable {
+    CapacitanceTable::new(vec![0.0, 0.01], vec![15e-12, 16e-12], vec![15e-12; 2]).unwrap()
+}
+
+/// A shell script in the place of ngspice, in a folder with a name that a shell would trip over.
+fn fake(script: &str) -> (tempfile::TempDir, Ngspice) {
+    let folder = tempfile::Builder::new().prefix("a '$(touch pwned)'; \"b").tempdir().unwrap();
+    let program = folder.path().join("ng spice;touch pwned");
+    std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let ngspice = Ngspice::find(Some(&program)).unwrap();
+    (folder, ngspice)
+}
+
+fn simulate(script: &str) -> Result<Waveforms, NgspiceError> {
+    let (folder, mut ngspice) = fake(script);
+    ngspice.time_limit = Duration::from_secs(20);
+    let elements = Elements::new(&Parameters::default()).unwrap();
+    let result = ngspice.simulate(&elements, &table(), &Run::new(0.01));
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "something was executed: {left:?}");
+    result
+}
+
+fn message(script: &str) -> String {
+    simulate(script).unwrap_err().to_string()
+}
+
+#[test]
+fn a_missing_program_is_named_with_how_to_get_it() {
+    for path in ["/no/such/ngspice", "/tmp", "$(touch pwned)"] {
+        let error = Ngspice::find(Some(Path::new(path))).unwrap_err().to_string();
+        assert!(error.contains(path) && error.contains("apt install ngspice"), "{error}");
+    }
+    let error = Ngspice::on_path(Some(OsStr::new("/no/such/folder:relative"))).unwrap_err().to_string();
+    assert!(error.starts_with("ngspice not found: no ngspice on the PATH"), "{error}");
+}
+
+#[test]
+fn a_failure_carries_the_lines_of_ngspice() {
+    let error = message("echo 'Error: no such node'; exit 3");
+    assert!(error.contains("ngspice failed (exit status: 3)"), "{error}");
+    assert!(error.ends_with("\n  ngspice: Error: no such node"), "{error}");
+}
+
+#[test]
+fn success_without_a_result_is_a_failure() {
+    let error = message("echo 'doAnalyses: TRAN:  Timestep too small' >&2; echo 'tran simulation(s) aborted'");
+    assert!(error.starts_with("ngspice stopped at 0 s, before the end of the run at 0.01 s"), "{error}");
+    assert!(error.contains("Timestep too small") && error.contains("aborted"), "{error}");
+}
+
+#[test]
+fn half_a_result_is_a_failure_that_says_how_far_it_got() {
+    let header = "Flags: real\\nNo. Variables: 7\\nNo. Points: 1\\nVariables:\\n0 time t\\n1 v(cl) v\\n2 v(cr) v\\n\
+                  3 v(de) v\\n4 v(out) v\\n5 i(vs) i\\n6 i(vr) i\\nBinary:\\n";
+    let script = format!("printf '{header}' > harvesting.raw; head -c 56 /dev/zero >> harvesting.raw");
+    let error = message(&script);
+    assert!(error.starts_with("ngspice stopped at 0 s"), "{error}");
+    let error = message(&script.replace("head -c 56", "head -c 55"));
+    assert!(error.contains("ends at point 0 of 1"), "{error}");
+}
+
+#[test]
+fn a_program_that_hangs_is_ended_with_its_children() {
+    let (_folder, mut ngspice) = fake("sleep 1000 & echo $! > \"$0.child\"; wait");
+    ngspice.time_limit = Duration::from_secs(1);
+    let elements = Elements::new(&Parameters::default()).unwrap();
+    let error = ngspice.simulate(&elements, &table(), &Run::new(0.01)).unwrap_err();
+    assert!(matches!(error, NgspiceError::TimeLimit { limit: 1.0, .. }), "{error}");
+    let child = ngspice.program().with_file_name("ng spice;touch pwned.child");
+    let id: i32 = std::fs::read_to_string(child).unwrap().trim().parse().unwrap();
+    // Gone, or a zombie that waits for its new parent; the system takes its time.
+    let ended = || {
+        let state = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+        state.is_empty() || state.contains(") Z ")
+    };
+    let start = Instant::now();
+    while !ended() && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(ended());
+}
+
+#[test]
+fn a_flood_of_messages_is_bounded_and_harmless() {
+    let error = message("yes 'error: \u{1b}[31mflood' | head -c 50000000; exit 1");
+    assert!(error.len() < 3000 && error.contains("flood") && !error.contains('\u{1b}'), "{}", error.len());
+}
+
+#[test]
+fn the_folder_of_a_run_is_removed_and_an_export_holds_two_files() {
+    let Some(ngspice) = Ngspice::for_tests() else { return };
+    let elements = Elements::new(&Parameters::default()).unwrap();
+    let netlist = elements.netlist(CapacitanceSource::Table, table().initial(), &Run::new(0.01)).unwrap();
+    let finished = ngspice.run(&netlist, &table()).unwrap();
+    let folder = finished.folder.path().to_owned();
+    assert!(finished.raw().unwrap().is_some());
+    drop(finished);
+    assert!(!folder.exists());
+    let export = tempfile::Builder::new().prefix("$(touch x)\n.control").tempdir().unwrap();
+    Ngspice::export(export.path(), &netlist, &table()).unwrap();
+    let mut files: Vec<_> = std::fs::read_dir(export.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    files.sort();
+    assert_eq!(files, ["capacitance.tab", "harvesting.cir"]);
+    assert!(!netlist.text().contains("touch"));
+}
