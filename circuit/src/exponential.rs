@@ -154,6 +154,10 @@ impl Exponential<'_> {
                     slope[4] += (v - out) * released;
                 }
                 Release::Switch => slope[3] += v * released,
+                Release::Storage => {
+                    slope[3] += out * released;
+                    slope[5] += (v - out) * released;
+                }
             }
             slope[5] += (supply - v) * drawn;
             slope[6] -= 0.5 * v * v * self.rate[j];

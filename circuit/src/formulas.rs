@@ -33,19 +33,22 @@ pub fn largest_net_gain(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
     0.5 * supply_voltage * supply_voltage * dc * dc / c2
 }
 
-/// Net gain of a cycle that releases its charge at `U_z` (J): `(C3 U_in - C2 U_z) (U_z - U_in)`, and zero
-/// when the constant charge does not reach `U_z`. With a series Zener this is burnt in the Zener.
-pub fn zener_net_gain(supply_voltage: f64, zener_voltage: f64, c2: f64, c3: f64) -> f64 {
-    (c3 * supply_voltage - c2 * zener_voltage).max(0.0) * (zener_voltage - supply_voltage)
+/// Net gain of a cycle that releases its charge at `U_r`, from and to `U_in` (J):
+/// `(C3 U_in - C2 U_r) (U_r - U_in)`, and zero when the constant charge does not reach `U_r`.
+///
+/// `U_r` is `U_z` of a Zener diode or a switch whose load holds the node there, or `U_out` of a storage. A storage and
+/// a lossless switch earn it, a series Zener burns it.
+pub fn release_net_gain(supply_voltage: f64, release_voltage: f64, c2: f64, c3: f64) -> f64 {
+    (c3 * supply_voltage - c2 * release_voltage).max(0.0) * (release_voltage - supply_voltage)
 }
 
-/// The `U_z` of the largest [`zener_net_gain`] (V): `U_in (C3 / C2 + 1) / 2`.
-pub fn best_zener_voltage(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+/// The `U_r` of the largest [`release_net_gain`] (V): `U_in (C3 / C2 + 1) / 2`.
+pub fn best_release_voltage(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
     0.5 * supply_voltage * (c3 / c2 + 1.0)
 }
 
-/// [`zener_net_gain`] at [`best_zener_voltage`] (J): `U_in^2 dC^2 / (4 C2)`, half of the largest net gain.
-pub fn best_zener_net_gain(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
+/// [`release_net_gain`] at [`best_release_voltage`] (J): `U_in^2 dC^2 / (4 C2)`, half of the largest net gain.
+pub fn best_release_net_gain(supply_voltage: f64, c2: f64, c3: f64) -> f64 {
     0.5 * largest_net_gain(supply_voltage, c2, c3)
 }
 
@@ -59,12 +62,12 @@ mod tests {
     const C3: f64 = 24e-12;
 
     #[test]
-    fn the_best_zener_voltage_is_the_top_of_the_net_gain() {
-        let best = best_zener_voltage(U, C2, C3);
-        let gain = zener_net_gain(U, best, C2, C3);
-        assert_relative_eq!(gain, best_zener_net_gain(U, C2, C3), max_relative = 1e-14);
+    fn the_best_release_voltage_is_the_top_of_the_net_gain() {
+        let best = best_release_voltage(U, C2, C3);
+        let gain = release_net_gain(U, best, C2, C3);
+        assert_relative_eq!(gain, best_release_net_gain(U, C2, C3), max_relative = 1e-14);
         for nearby in [best - 1.0, best + 1.0] {
-            assert!(zener_net_gain(U, nearby, C2, C3) < gain);
+            assert!(release_net_gain(U, nearby, C2, C3) < gain);
         }
     }
 
@@ -84,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zener_voltage_out_of_reach_gains_nothing() {
-        assert_eq!(zener_net_gain(U, 3201.0, C2, C3), 0.0);
+    fn a_release_voltage_out_of_reach_gains_nothing() {
+        assert_eq!(release_net_gain(U, 3201.0, C2, C3), 0.0);
     }
 }

@@ -40,6 +40,7 @@ impl Stage<'_> {
         match self.devices.release {
             Release::Zener => self.zeners(guess),
             Release::Switch => self.switches(guess),
+            Release::Storage => self.apart(guess, |v| self.devices.storing(v)),
         }
     }
 
@@ -78,12 +79,19 @@ impl Stage<'_> {
 
     /// An open load takes no charge; its voltage is what a breakdown without leakage would leave.
     fn unloaded(&self, guess: &Point) -> Option<Point> {
-        let mut point = Point::default();
+        let mut point = self.apart(guess, |_| (0.0, 0.0))?;
+        let top = point.voltage[..self.count].iter().copied().fold(0.0, f64::max);
+        point.load_voltage = (top - self.devices.threshold).max(0.0);
+        Some(point)
+    }
+
+    /// Nodes whose release currents do not depend on each other; the load is at the voltage of release, as a storage.
+    fn apart(&self, guess: &Point, release: impl Fn(f64) -> (f64, f64)) -> Option<Point> {
+        let mut point = Point { load_voltage: self.devices.threshold, ..Point::default() };
         for j in 0..self.count {
-            let v = self.node(j, guess.voltage[j], |_| (0.0, 0.0))?;
+            let v = self.node(j, guess.voltage[j], &release)?;
             point.voltage[j] = v;
-            [point.supply[j], _] = self.balanced(j, v, [self.devices.charging(v), (0.0, 0.0)]);
-            point.load_voltage = point.load_voltage.max(v - self.devices.threshold);
+            [point.supply[j], point.release[j]] = self.balanced(j, v, [self.devices.charging(v), release(v)]);
         }
         Some(point)
     }
