@@ -68,7 +68,7 @@ pub struct State {
     pub load_current: f64,
     /// Supply current at the end of the last step (A).
     pub supply_current: f64,
-    /// Internal step that the integrator would try next (s); 0 before the first (exponential diodes).
+    /// Internal step that the integrator begins the next call with (s); 0 before the first (exponential diodes).
     pub internal_step: f64,
     /// Stored energy at the start (J).
     pub initial_energy: f64,
