@@ -146,7 +146,7 @@ fn a_storage_gains_the_most_at_the_voltage_that_it_has_by_default() {
             number(&json(&[&storage, more].concat()), "energy.surplus")
         };
         let [low, best, high] =
-            [with(&["--set", "storage.voltage=2150"]), with(&[]), with(&["--set", "storage.voltage=2800"])];
+            [with(&["--set", "storage.voltage=2150"]), with(&[]), with(&["--set", "storage.voltage=3200"])];
         assert!(best > 0.0 && best > low && best > high, "{topology}: {low} J, {best} J, {high} J");
     }
 }

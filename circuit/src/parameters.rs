@@ -59,6 +59,7 @@ pub enum Topology {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Release {
     /// A Zener diode in series: conducts when `V_de - V_out` would exceed `U_z`, and burns `U_z I`.
+    /// One-way, as with a blocking diode: it never conducts from the load to a membrane.
     #[default]
     Zener,
     /// An ideal lossless switch, the literal reading of Section 4.1: closed while `V_de > U_z`, with
@@ -141,7 +142,7 @@ pub struct Parameters {
     pub supply_voltage: f64,
     /// `zener.voltage`: `U_z` (V), at least `U_in`, default 2000. Without effect on a storage.
     pub zener_voltage: f64,
-    /// `storage.voltage`: `U_out` (V), at least `U_in`, default 2300, near the best for Fig. 14 on a shared node.
+    /// `storage.voltage`: `U_out` (V), at least `U_in`, default 2450, near the best for Fig. 14 on a shared node.
     /// Effective with [`Release::Storage`] only.
     pub storage_voltage: f64,
     /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends, default 1e9. Without effect on a storage.
@@ -159,7 +160,7 @@ impl Default for Parameters {
         Self {
             supply_voltage: 2000.0,
             zener_voltage: 2000.0,
-            storage_voltage: 2300.0,
+            storage_voltage: 2450.0,
             load_resistance: 1e9,
             topology: Topology::default(),
             release: Release::default(),

@@ -169,7 +169,12 @@ fn a_start_below_the_supply_or_above_a_shorted_zener_is_booked() {
 
 #[test]
 fn a_start_above_a_storage_is_booked() {
-    let parameters = Parameters { topology: Topology::Isolated, release: Release::Storage, ..Parameters::default() };
+    let parameters = Parameters {
+        topology: Topology::Isolated,
+        release: Release::Storage,
+        storage_voltage: 2300.0,
+        ..Parameters::default()
+    };
     let circuit = Circuit::with_voltages(parameters, [10e-12; 2], [2100.0, 3300.0]).unwrap();
     let ledger = circuit.ledger();
     assert_eq!(circuit.voltage(), [2100.0, 2300.0]);
@@ -180,7 +185,7 @@ fn a_start_above_a_storage_is_booked() {
 
 #[test]
 fn a_storage_takes_what_a_jump_lifts_to_its_voltage() {
-    let parameters = Parameters { release: Release::Storage, ..Parameters::default() };
+    let parameters = Parameters { release: Release::Storage, storage_voltage: 2300.0, ..Parameters::default() };
     let mut circuit = Circuit::new(parameters, [20e-12, 15e-12]).unwrap();
     circuit.advance(0.0, [15e-12, 15e-12]).unwrap();
     let ledger = circuit.ledger();

@@ -13,7 +13,7 @@ use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
-    Trace,
+    Schedule, Trace,
 };
 use crate::fmi::Fmu;
 use crate::scenario::{Scenario, Setting};
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
     let (mechanical, electrical) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
-    let ratio = mean_capacitance_ratio(fmu, &scenario, &mechanical)?;
+    let ratio = best_capacitance_ratio(fmu, &scenario, &mechanical)?;
     let settings = circuit_settings(&electrical, harvester.bias_voltage(), ratio)?;
     let mut warnings = harvester.warnings();
     warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
@@ -118,7 +118,7 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
 }
 
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
-/// Section 4.1, or into a storage at the voltage that suits a mean impact best, unless the settings say otherwise.
+/// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.
 fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
     let mut settings = Settings::default();
     settings.circuit.supply_voltage = bias;
@@ -135,7 +135,7 @@ fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Re
     Ok(settings)
 }
 
-/// The voltage of release that gains the most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
+/// The voltage of release that gains most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
 fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
     let idle = match settings.circuit.topology {
         Topology::SharedNode => 1.0,
@@ -156,7 +156,7 @@ fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
 }
 
 /// The circuit asked for, and three to compare it with: the same with an ideal switch, and two that gain, with isolated
-/// membranes and the voltage of release that suits a mean impact best: a switch, and a storage in place of the load.
+/// membranes and the voltage of release that gains most: a switch, and a storage in place of the load.
 fn circuits(
     backend: Backend,
     scenario: &Scenario,
@@ -188,13 +188,26 @@ fn circuits(
     Ok(circuits)
 }
 
-/// Mean `C_3` / `C_2` of the impacts of the scenario, from a run of the mechanics ahead; 1 without impacts.
-fn mean_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
+/// `C_3` / `C_2` to choose a voltage of release by, from a run of the mechanics ahead. Impacts within one communication
+/// step count as equal.
+fn best_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
     let mut ahead = HarvesterFmu::new(fmu, scenario, mechanical)?;
-    ahead.step(0.0, scenario.until)?;
-    let [impacts, _] = ahead.counts()?;
-    let gain = ahead.sample()?.voltage_gain();
-    Ok(if impacts > 0 { 1.0 + gain / (f64::from(impacts) * ahead.bias_voltage()) } else { 1.0 })
+    let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
+    let (mut now, mut gain, mut impacts) = (0.0, 0.0, 0);
+    let mut ratios = Vec::new();
+    while now < scenario.until {
+        let next = schedule.next(now, f64::INFINITY);
+        ahead.step(now, next - now)?;
+        let [count, _] = ahead.counts()?;
+        if count > impacts {
+            let (total, number) = (ahead.sample()?.voltage_gain(), count - impacts);
+            let ratio = 1.0 + (total - gain) / (f64::from(number) * ahead.bias_voltage());
+            ratios.extend((0..number).map(|_| ratio));
+            (gain, impacts) = (total, count);
+        }
+        now = next;
+    }
+    Ok(formulas::best_release_ratio(ratios))
 }
 
 /// The settings as text, for an FMU. Numbers read back to the same bits.
