@@ -109,13 +109,15 @@ fn the_books_of_a_co_simulation_balance() {
 #[test]
 fn the_circuit_fmu_agrees_with_the_embedded_circuit() {
     for load in ["1e9", "inf", "0"] {
-        agree_at(load);
+        agree_with(&[&format!("load.resistance={load}")]);
     }
+    agree_with(&["release=storage"]);
+    agree_with(&["release=storage", "storage.voltage=2200", "topology=isolated"]);
 }
 
-fn agree_at(load: &str) {
-    let load = format!("load.resistance={load}");
-    let with = |circuit| json(&["cosim", "--json", "--until", "5", "--circuit", circuit, "--set", &load]);
+fn agree_with(settings: &[&str]) {
+    let settings: Vec<_> = settings.iter().flat_map(|setting| ["--set", *setting]).collect();
+    let with = |circuit| json(&[&["cosim", "--json", "--until", "5", "--circuit", circuit], &*settings].concat());
     let (embedded, fmu) = (with("embedded"), with("fmu"));
     for group in ["energy", "charge"] {
         let scale = number(&embedded, &format!("{group}.supply"));
@@ -134,6 +136,19 @@ fn energies_converge_with_the_communication_step() {
     let (coarse, middle, fine) = (converted("2e-3"), converted("1e-3"), converted("5e-4"));
     assert!((coarse - middle).abs() > 2.5 * (middle - fine).abs(), "{coarse:e} {middle:e} {fine:e}");
     assert_relative_eq!(middle, fine, max_relative = 1e-3);
+}
+
+#[test]
+fn a_storage_gains_the_most_at_the_voltage_that_it_has_by_default() {
+    for topology in ["topology=sharedNode", "topology=isolated"] {
+        let with = |more: &[&str]| {
+            let storage = ["cosim", "--json", "--until", "10", "--set", topology, "--set", "release=storage"];
+            number(&json(&[&storage, more].concat()), "energy.surplus")
+        };
+        let [low, best, high] =
+            [with(&["--set", "storage.voltage=2150"]), with(&[]), with(&["--set", "storage.voltage=3200"])];
+        assert!(best > 0.0 && best > low && best > high, "{topology}: {low} J, {best} J, {high} J");
+    }
 }
 
 #[test]
@@ -189,7 +204,7 @@ fn without_json_the_table_is_on_stdout_and_the_files_are_named() {
 /// Each with parts of its message: the thing, the value, and what is allowed.
 #[test]
 fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
-    let cases: [(&[&str], &[&str]); 16] = [
+    let cases: [(&[&str], &[&str]); 17] = [
         (&["simulate", "--case", "fig8"], &["--case", "fig8", "fig14"]),
         (&["cosim", "--case", "fig8"], &["--case", "fig8", "fig14"]),
         (&["simulate", "--set", "ball.weight=1"], &["ball.weight"]),
@@ -198,6 +213,10 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
         (&["simulate", "--set", "ball.mass=heavy"], &["ball.mass", "heavy", "number"]),
         (&["simulate", "--set", "membrane.restitution=1.5"], &["membrane.restitution", "1.5", "0 .. 1"]),
         (&["cosim", "--set", "topology=star"], &["topology", "star", "sharedNode, isolated"]),
+        (
+            &["cosim", "--set", "release=storage", "--set", "storage.voltage=1500"],
+            &["storage.voltage = 1500 V", "supply.voltage = 2000 V"],
+        ),
         (&["simulate", "--until", "10", "--window", "5,20"], &["--window", "20 s", "10 s"]),
         (&["simulate", "--window", "5"], &["--window", "'5'", "50,100"]),
         (&["simulate", "--until", "-1"], &["--until", "-1 s", "1e9 s"]),

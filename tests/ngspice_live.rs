@@ -41,22 +41,25 @@ fn ngspice(settings: &Settings) -> NgspiceCircuit {
 #[test]
 fn ngspice_step_by_step_gives_the_energies_of_the_embedded_solver() {
     for topology in [Topology::SharedNode, Topology::Isolated] {
-        for (release, voltage) in [(Release::Zener, 2000.0), (Release::Zener, 2200.0), (Release::Switch, 2200.0)] {
+        for (release, voltage) in
+            [(Release::Zener, 2000.0), (Release::Zener, 2200.0), (Release::Switch, 2200.0), (Release::Storage, 2200.0)]
+        {
             let mut settings = Settings { exponential: true, ..Settings::default() };
             settings.circuit.topology = topology;
             settings.circuit.release = release;
             settings.circuit.zener_voltage = voltage;
+            settings.circuit.storage_voltage = voltage;
             let here = run(&mut EmbeddedCircuit::new("test", &settings, capacitance(0.0)).unwrap(), 1e-3);
             let there = run(&mut ngspice(&settings), 1e-3);
             let scale = here.ledger.supply.abs();
             assert!(scale > 1e-6, "{scale}");
-            // ngspice integrates with reltol 1e-5; three pulses a membrane add up to this much of the energy moved.
+            // ngspice sees a switch close up to one of its steps late, 1e-4 s of a pulse of 30 ms.
             for (name, a, b) in [
                 ("supply", here.ledger.supply, there.ledger.supply),
                 ("load", here.ledger.load, there.ledger.load),
                 ("zener", here.ledger.zener, there.ledger.zener),
             ] {
-                assert!((a - b).abs() < 3e-4 * scale, "{topology:?} {release:?} {voltage}: {name} {a:e} {b:e}");
+                assert!((a - b).abs() < 1e-3 * scale, "{topology:?} {release:?} {voltage}: {name} {a:e} {b:e}");
             }
         }
     }

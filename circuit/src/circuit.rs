@@ -6,7 +6,7 @@ use crate::exponential::Exponential;
 use crate::ideal::EVENTS;
 use crate::ledger::Ledger;
 use crate::network::{Elements, Network};
-use crate::parameters::{DiodeParameters, Diodes, Parameters, Topology, names};
+use crate::parameters::{DiodeParameters, Diodes, Parameters, Release, Topology, names};
 use crate::state::{Mode, Node, State};
 
 /// The harvesting circuit of Fig. 8(a) with two time-varying membrane capacitances.
@@ -39,8 +39,8 @@ impl Circuit {
 
     /// A circuit that starts from given voltages, left and right (V), 0 or more; equal on a shared node.
     ///
-    /// The ideal diode fills a membrane below `U_in` at once and a load of 0 ohm empties one above `U_z` at once;
-    /// the ledger, zero before, holds that energy. The same rule for exponential diodes, whose inrush through no
+    /// The ideal diode fills a membrane below `U_in` at once, and a load of 0 ohm or a storage empties one above the
+    /// voltage of release at once; the ledger, zero before, holds that energy. The same rule for exponential diodes, whose inrush through no
     /// resistance at all has no other limit.
     ///
     /// # Errors
@@ -84,7 +84,8 @@ impl Circuit {
     /// Advances by `dt` seconds, the capacitances (left, right) (F) running linearly in time to the values given.
     ///
     /// With ideal diodes the result is exact, whatever `dt`. With `dt` = 0 the capacitances jump: charge is
-    /// conserved, the supply tops up at once what falls below `U_in`, and no charge reaches a load above 0 ohm.
+    /// conserved, the supply tops up at once what falls below `U_in`, and no charge reaches a load above 0 ohm; a
+    /// storage takes what rises to `U_out`.
     ///
     /// # Errors
     /// `dt` or a capacitance out of bounds, by name; [`Error::Integration`] with exponential diodes. The circuit
@@ -171,13 +172,13 @@ impl Circuit {
         }
     }
 
-    /// Load voltage `U_out` (V): `I R`, a mean value where a switch is duty-cycled. At a load of infinite
-    /// resistance it is the open-circuit voltage behind the release element.
+    /// Load voltage `U_out` (V): that of the storage, or else `I R`, a mean value where a switch is duty-cycled. At a
+    /// load of infinite resistance it is the open-circuit voltage behind the release element.
     pub fn load_voltage(&self) -> f64 {
         self.state.load_voltage
     }
 
-    /// Load current (A).
+    /// Current into the load or the storage (A).
     pub fn load_current(&self) -> f64 {
         self.state.load_current
     }
@@ -264,7 +265,8 @@ impl Circuit {
         } else {
             // Adding zero turns the -0 of an empty sum into 0.
             let current = elements.threshold * held + 0.0;
-            (current / elements.conductance, current)
+            let storage = elements.release == Release::Storage;
+            (if storage { elements.threshold } else { current / elements.conductance }, current)
         };
     }
 }

@@ -7,12 +7,14 @@
 //!   `-IS (1 + (3 N Vt / (e v))^3)`; both are `-IS` to rounding at hundreds of volts. `BV'` is `U_z` while
 //!   `IBV < IS BV / Vt`, which makes the current at `U_z` equal to `IS`; otherwise it is the voltage for which the
 //!   current at `U_z` is `IBV`;
-//! - `v > 0`, where a bare Zener diode conducts from load to node: blocked, `I = IS (1 - exp(-v / (N Vt)))`, as
+//! - diode into a storage, `v` the node above `U_out`: as the charging diode;
+//! - `v > 0` of the Zener diode, where a bare Zener diode conducts from load to node: blocked, `I = IS (1 - exp(-v / (N Vt)))`, as
 //!   the ideal release elements are one-way. It takes isolated membranes one of which is more than `U_z` above
 //!   the other to get there; without a blocking diode the one would charge the other through the load node;
 //! - ngspice's `gmin` is left out, since it falsifies the energy by percents at 2 kV.
 //!
-//! Thus with `U_z = U_in` an idle node leaks `sqrt(IS IBV)`, here `IS`, from supply to load.
+//! Thus with `U_z = U_in` an idle node leaks `sqrt(IS IBV)`, here `IS`, from supply to load, and a storage above `U_in`
+//! leaks `IS` through both diodes back to the supply.
 
 use crate::parameters::{DiodeParameters, Parameters, Release};
 
@@ -32,7 +34,7 @@ const SWITCH_CONDUCTANCE: f64 = 1e-3;
 pub(crate) struct Devices {
     /// `U_in` (V).
     pub supply: f64,
-    /// `U_z` (V).
+    /// Voltage of release (V): `U_z`, or `U_out` of a storage.
     pub threshold: f64,
     /// `R` (ohm), from 0 to infinity with both ends.
     pub resistance: f64,
@@ -60,10 +62,10 @@ impl Devices {
         let breakdown = if ratio < nominal / thermal { nominal } else { nominal - reverse * ratio.ln() };
         Self {
             supply: parameters.supply_voltage,
-            threshold: nominal,
+            threshold: parameters.release_voltage(),
             resistance: parameters.load_resistance,
             conductance: match parameters.release {
-                Release::Zener => 1.0 / parameters.load_resistance,
+                Release::Zener | Release::Storage => 1.0 / parameters.load_resistance,
                 Release::Switch => (1.0 / parameters.load_resistance).min(SWITCH_CONDUCTANCE),
             },
             release: parameters.release,
@@ -82,7 +84,17 @@ impl Devices {
 
     /// Current of a charging diode (A) and its conductance (S) at a node voltage.
     pub fn charging(&self, voltage: f64) -> (f64, f64) {
-        let x = ((self.supply - voltage) / self.forward).min(EXPONENT);
+        self.diode(self.supply - voltage)
+    }
+
+    /// Current of a diode into the storage (A) and its conductance (S) at a node voltage.
+    pub fn storing(&self, voltage: f64) -> (f64, f64) {
+        self.diode(voltage - self.threshold)
+    }
+
+    /// Current of a diode without breakdown (A) and its conductance (S), from anode to cathode.
+    fn diode(&self, across: f64) -> (f64, f64) {
+        let x = (across / self.forward).min(EXPONENT);
         (self.saturation * x.exp_m1(), self.saturation * x.exp() / self.forward)
     }
 

@@ -44,6 +44,16 @@ pub enum Error {
         /// `U_in` (V).
         supply: f64,
     },
+    /// The charging and the release diode in series would conduct all the time, limited by nothing.
+    #[error(
+        "storage.voltage = {storage} V is below supply.voltage = {supply} V: the supply would feed the storage without bound"
+    )]
+    StorageBelowSupply {
+        /// `U_out` (V).
+        storage: f64,
+        /// `U_in` (V).
+        supply: f64,
+    },
     /// Both membranes hang on one node, so that they cannot start at different voltages.
     #[error("right.voltage = {right} V differs from left.voltage = {left} V on the shared node")]
     VoltagesDiffer {

@@ -56,7 +56,8 @@ struct Step {
 }
 
 impl Exponential<'_> {
-    /// Integrates over `dt` seconds; `network` gets charges and ledger, `internal_step` the step to try next.
+    /// Integrates over `dt` seconds; `network` gets charges and ledger, `internal_step` the step to begin the next call
+    /// with: that begins with a kink of the capacitance, too, and after a kink the first step is the shortest.
     ///
     /// # Errors
     /// [`Error::Integration`] when steps underflow or are too many.
@@ -70,7 +71,7 @@ impl Exponential<'_> {
         let mut values = pack(network);
         let mut point = Point { voltage: network.nodes.map(|node| node.voltage()), load_voltage, ..Point::default() };
         let mut next = if *internal_step > 0.0 { *internal_step } else { dt };
-        let (mut elapsed, mut plateau) = (0.0, 0);
+        let (mut elapsed, mut plateau, mut first) = (0.0, 0, true);
         for _ in 0..self.solver.maximum_steps {
             let last = next >= dt - elapsed;
             let h = if last { dt - elapsed } else { next };
@@ -91,13 +92,16 @@ impl Exponential<'_> {
             }
             values = step.values;
             point = step.point;
-            // The last step is cut short by the end of the call, which says nothing against a longer one.
-            next = if last { proposed.max(next) } else { proposed };
+            if first {
+                // A step cut short by the end of the call says nothing against a longer one.
+                *internal_step = if last { proposed.max(next) } else { proposed };
+                first = false;
+            }
             if last {
-                *internal_step = next;
                 unpack(&values, network);
                 return Ok(point);
             }
+            next = proposed;
             elapsed += h;
             plateau = if proposed < 1.5 * h { plateau + 1 } else { 0 };
             if plateau == PLATEAU {
@@ -154,6 +158,10 @@ impl Exponential<'_> {
                     slope[4] += (v - out) * released;
                 }
                 Release::Switch => slope[3] += v * released,
+                Release::Storage => {
+                    slope[3] += out * released;
+                    slope[5] += (v - out) * released;
+                }
             }
             slope[5] += (supply - v) * drawn;
             slope[6] -= 0.5 * v * v * self.rate[j];

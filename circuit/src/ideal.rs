@@ -15,7 +15,7 @@ pub(crate) const EVENTS: usize = 64;
 enum Event {
     /// Node falls to `U_in`: the charging diode conducts.
     Supply(usize),
-    /// Node rises to `U_z`.
+    /// Node rises to the voltage of release.
     Threshold(usize),
     /// Blocked node meets the node that leads.
     Meet(usize),
@@ -178,8 +178,8 @@ impl Network {
     }
 
     /// Capacitances go to `ends` at once. No finite current moves charge meanwhile: charge is conserved, but
-    /// for what the ideal diode delivers at `U_in` and what a load of 0 ohm takes at `U_z`, both as along a
-    /// quick ramp.
+    /// for what the ideal diode delivers at `U_in` and what a load of 0 ohm or a storage takes at the
+    /// voltage of release, both as along a quick ramp.
     pub fn jump(&mut self, ends: [f64; 2]) {
         self.change(|network| {
             for (j, end) in ends.into_iter().enumerate().take(network.count) {
@@ -231,7 +231,8 @@ impl Network {
         node.mode = Mode::Charging;
     }
 
-    /// A node above `U_z` is emptied to `U_z` at once into a load of 0 ohm, the limit of a small one.
+    /// A node above the voltage of release is emptied down to it at once: into a load of 0 ohm, the limit of a small
+    /// one, or into a storage, where the ideal diode burns what is above `U_out`.
     pub fn outrush(&mut self, j: usize) {
         let threshold = self.elements.threshold;
         let node = &mut self.nodes[j];
@@ -239,16 +240,14 @@ impl Network {
         if surplus <= 0.0 || !self.elements.short() {
             return;
         }
-        let given = 0.5 * surplus * (node.voltage() + threshold);
-        let burnt = match self.elements.release {
-            Release::Zener => threshold * surplus,
-            Release::Switch => 0.0,
-        };
-        self.ledger.load_charge += surplus;
-        self.ledger.zener += burnt;
-        self.ledger.load += given - burnt;
+        let above = 0.5 * surplus * (node.voltage() - threshold);
         node.charge = threshold * node.capacitance;
         node.mode = Mode::Holding;
+        match self.elements.release {
+            Release::Zener | Release::Switch => self.ledger.load += above,
+            Release::Storage => self.ledger.diode += above,
+        }
+        self.release_at_threshold(surplus);
     }
 
     /// After a jump, or at the start: of the nodes above `U_z` the highest leads.

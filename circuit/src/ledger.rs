@@ -11,11 +11,12 @@ use crate::error::{Error, finite};
 pub struct Ledger {
     /// Energy drawn from the supply, `U_in` times its charge (J).
     pub supply: f64,
-    /// Energy given to the load resistor (J).
+    /// Energy given to the load resistor or the storage (J).
     pub load: f64,
-    /// Energy burnt in the Zener diodes (J); zero with a switch.
+    /// Energy burnt in the Zener diodes (J); zero with a switch or a storage.
     pub zener: f64,
-    /// Energy burnt in the charging diodes (J); with ideal diodes only by inrush from a start below `U_in`.
+    /// Energy burnt in the charging diodes and in those into a storage (J); with ideal diodes only by inrush from a
+    /// start below `U_in` or above `U_out`.
     pub diode: f64,
     /// Change of the stored energy `1/2 C V^2` since the start (J).
     pub stored: f64,
@@ -23,7 +24,7 @@ pub struct Ledger {
     pub mechanical: f64,
     /// Charge drawn from the supply (C).
     pub supply_charge: f64,
-    /// Charge through the load (C).
+    /// Charge through the load or into the storage (C).
     pub load_charge: f64,
 }
 

@@ -1,5 +1,6 @@
 //! The energy-harvesting circuit of Fig. 8(a): supply `U_in`, charging diode, membrane capacitances `C(t)`,
-//! release element (Zener or switch at `U_z`), load `R`. It knows no mechanics; its input is two capacitances.
+//! release element and load: a Zener or switch at `U_z` and a resistor `R`, or a storage at `U_out`. It knows no mechanics;
+//! its input is two capacitances.
 //!
 //! - [`Circuit`] advances over linear ramps of the capacitances: exactly with ideal diodes, with error control with
 //!   exponential ones.

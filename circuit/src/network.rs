@@ -13,11 +13,11 @@ pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 pub(crate) struct Elements {
     /// `U_in` (V).
     pub supply: f64,
-    /// `U_z` (V).
+    /// Voltage of release (V): `U_z`, or `U_out` of a storage.
     pub threshold: f64,
-    /// Drop between node and load while the load sets the current (V): `U_z` for a Zener, 0 for a switch.
+    /// Drop between node and load while the load sets the current (V): `U_z` for a Zener, else 0.
     pub drop: f64,
-    /// `1/R` (S), from 0 to infinity with both ends.
+    /// `1/R` (S), from 0 to infinity with both ends; a storage takes charge as a load of 0 ohm does.
     pub conductance: f64,
     /// Kind of the release element.
     pub release: Release,
@@ -27,17 +27,20 @@ impl Elements {
     pub fn new(parameters: &Parameters) -> Self {
         Self {
             supply: parameters.supply_voltage,
-            threshold: parameters.zener_voltage,
+            threshold: parameters.release_voltage(),
             drop: match parameters.release {
                 Release::Zener => parameters.zener_voltage,
-                Release::Switch => 0.0,
+                Release::Switch | Release::Storage => 0.0,
             },
-            conductance: 1.0 / parameters.load_resistance,
+            conductance: match parameters.release {
+                Release::Zener | Release::Switch => 1.0 / parameters.load_resistance,
+                Release::Storage => f64::INFINITY,
+            },
             release: parameters.release,
         }
     }
 
-    /// A load of 0 ohm holds the node at `U_z` whatever the current.
+    /// A load of 0 ohm, or a storage, holds the node at the voltage of release whatever the current.
     pub fn short(&self) -> bool {
         self.conductance == f64::INFINITY
     }
@@ -47,7 +50,7 @@ impl Elements {
         self.conductance == 0.0
     }
 
-    /// With `U_z = U_in` a node is never between the two elements.
+    /// With the voltage of release at `U_in` a node is never between the two elements.
     fn meet(&self) -> bool {
         self.supply == self.threshold
     }
@@ -145,7 +148,7 @@ impl Network {
         let count = self.count;
         let pressure: f64 = self.in_mode(Mode::Holding).map(|j| -self.nodes[j].rate).sum();
         let held = match self.elements.release {
-            Release::Zener => pressure <= 0.0,
+            Release::Zener | Release::Storage => pressure <= 0.0,
             Release::Switch => pressure <= self.elements.conductance,
         };
         if held {
@@ -231,18 +234,24 @@ impl Network {
         node.charge = supply * end;
     }
 
-    /// `V = U_z` along a falling capacitance.
+    /// The voltage of release along a falling capacitance.
     pub fn hold(&mut self, j: usize, end: f64) {
         let threshold = self.elements.threshold;
         let node = &mut self.nodes[j];
         let passed = threshold * (node.capacitance - end);
-        self.ledger.load_charge += passed;
-        match self.elements.release {
-            Release::Zener => self.ledger.zener += threshold * passed,
-            Release::Switch => self.ledger.load += threshold * passed,
-        }
-        self.ledger.mechanical += 0.5 * threshold * passed;
         node.capacitance = end;
         node.charge = threshold * end;
+        self.ledger.mechanical += 0.5 * threshold * passed;
+        self.release_at_threshold(passed);
+    }
+
+    /// Books a charge that leaves a node at the voltage of release.
+    pub fn release_at_threshold(&mut self, charge: f64) {
+        let energy = self.elements.threshold * charge;
+        self.ledger.load_charge += charge;
+        match self.elements.release {
+            Release::Zener => self.ledger.zener += energy,
+            Release::Switch | Release::Storage => self.ledger.load += energy,
+        }
     }
 }

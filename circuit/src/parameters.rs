@@ -8,6 +8,8 @@ pub mod names {
     pub const SUPPLY_VOLTAGE: &str = "supply.voltage";
     /// Voltage `U_z` of the release element (V).
     pub const ZENER_VOLTAGE: &str = "zener.voltage";
+    /// Voltage `U_out` of the storage (V).
+    pub const STORAGE_VOLTAGE: &str = "storage.voltage";
     /// Load resistance `R` (ohm).
     pub const LOAD_RESISTANCE: &str = "load.resistance";
     /// How the membranes are connected.
@@ -57,12 +59,17 @@ pub enum Topology {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Release {
     /// A Zener diode in series: conducts when `V_de - V_out` would exceed `U_z`, and burns `U_z I`.
+    /// One-way, as with a blocking diode: it never conducts from the load to a membrane.
     #[default]
     Zener,
     /// An ideal lossless switch, the literal reading of Section 4.1: closed while `V_de > U_z`, with
     /// `I = V_de / R`; at `V_de = U_z` it is duty-cycled without hysteresis, and the mean current is what
     /// holds `V_de` there, from 0 to `U_z / R`.
     Switch,
+    /// A diode into a storage, say a large capacitor or a battery, that stays at `U_out`: conducts when `V_de` would
+    /// exceed `U_out`. What goes in counts as the load's; there is no load resistance. The only one of the three that
+    /// gains without a switch to be driven.
+    Storage,
 }
 
 /// Model of the diodes.
@@ -133,9 +140,12 @@ impl Default for Solver {
 pub struct Parameters {
     /// `supply.voltage`: `U_in` (V), above 0, default 2000.
     pub supply_voltage: f64,
-    /// `zener.voltage`: `U_z` (V), at least `U_in`, default 2000.
+    /// `zener.voltage`: `U_z` (V), at least `U_in`, default 2000. Without effect on a storage.
     pub zener_voltage: f64,
-    /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends, default 1e9.
+    /// `storage.voltage`: `U_out` (V), at least `U_in`, default 2450, near the best for Fig. 14 on a shared node.
+    /// Effective with [`Release::Storage`] only.
+    pub storage_voltage: f64,
+    /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends, default 1e9. Without effect on a storage.
     pub load_resistance: f64,
     /// `topology`, default [`Topology::SharedNode`].
     pub topology: Topology,
@@ -150,6 +160,7 @@ impl Default for Parameters {
         Self {
             supply_voltage: 2000.0,
             zener_voltage: 2000.0,
+            storage_voltage: 2450.0,
             load_resistance: 1e9,
             topology: Topology::default(),
             release: Release::default(),
@@ -162,12 +173,18 @@ impl Parameters {
     /// Checks every bound.
     ///
     /// # Errors
-    /// The first parameter that is not finite (`R` may be infinite), out of its range, or a `U_z` below `U_in`.
+    /// The first parameter that is not finite (`R` may be infinite), out of its range, or a voltage of release below
+    /// `U_in`.
     pub fn validate(&self) -> Result<(), Error> {
         positive(names::SUPPLY_VOLTAGE, self.supply_voltage, "V")?;
         finite(names::ZENER_VOLTAGE, self.zener_voltage, "V")?;
-        if self.zener_voltage < self.supply_voltage {
-            return Err(Error::ZenerBelowSupply { zener: self.zener_voltage, supply: self.supply_voltage });
+        finite(names::STORAGE_VOLTAGE, self.storage_voltage, "V")?;
+        let (supply, release) = (self.supply_voltage, self.release_voltage());
+        if release < supply {
+            return Err(match self.release {
+                Release::Zener | Release::Switch => Error::ZenerBelowSupply { zener: release, supply },
+                Release::Storage => Error::StorageBelowSupply { storage: release, supply },
+            });
         }
         if self.load_resistance != f64::INFINITY {
             not_negative(names::LOAD_RESISTANCE, self.load_resistance, "ohm")?;
@@ -175,6 +192,14 @@ impl Parameters {
         match &self.diodes {
             Diodes::Ideal => Ok(()),
             Diodes::Exponential(diode) => diode.validate(),
+        }
+    }
+
+    /// Voltage at which a node begins to release its charge (V): `U_out` of a storage, else `U_z`.
+    pub fn release_voltage(&self) -> f64 {
+        match self.release {
+            Release::Zener | Release::Switch => self.zener_voltage,
+            Release::Storage => self.storage_voltage,
         }
     }
 

@@ -3,6 +3,9 @@
 /// Halving a bracket of doubles to its last bit takes about this many evaluations at most.
 const EVALUATIONS: usize = 200;
 
+/// Iterations of Newton's method without a bracket; it settles in fewer, or at nothing.
+pub(crate) const NEWTON: usize = 12;
+
 /// Root of `f` on `[a, b]` by Newton's method, halved where Newton leaves the bracket or is slow.
 ///
 /// `f` returns value and derivative; the value has to rise or fall through zero between `a` and `b`. Values
@@ -35,6 +38,20 @@ pub(crate) fn bracketed(mut f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, gu
         x = next;
     }
     x
+}
+
+/// Root of `f` by Newton's method alone, which from a good guess is the quickest; `None` where it does not settle.
+pub(crate) fn newton(mut f: impl FnMut(f64) -> (f64, f64), guess: f64) -> Option<f64> {
+    let mut x = guess;
+    for _ in 0..NEWTON {
+        let (value, slope) = f(x);
+        let step = -value / slope;
+        x += step;
+        if x.is_finite() && step.abs() <= 2.0 * f64::EPSILON * x.abs() {
+            return Some(x);
+        }
+    }
+    None
 }
 
 /// Root of an increasing `f` near `guess`: Newton's method while it converges, else strides of `reach`, four
@@ -130,6 +147,13 @@ mod tests {
     fn a_bracketed_root_is_found_to_the_last_bits() {
         let root = bracketed(|x| (x.exp() - 1e30, x.exp()), -1e3, 1e3, 0.0);
         assert_relative_eq!(root, 1e30_f64.ln(), max_relative = 1e-15);
+    }
+
+    #[test]
+    fn newton_alone_settles_near_a_root_and_gives_up_far_from_it() {
+        let f = |x: f64| (x.exp() - 1e30, x.exp());
+        assert_relative_eq!(newton(f, 69.0).unwrap(), 1e30_f64.ln(), max_relative = 1e-15);
+        assert_eq!(newton(f, -1e3), None);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! The nonlinear equations of one implicit stage: node voltages for given charges and step.
 //!
 //! Every equation is reduced to a scalar one that rises monotonically, and is solved inside a bracket: unlike a
-//! plain Newton iteration over exponentials, this cannot diverge or overflow.
+//! plain Newton iteration over exponentials, this cannot diverge or overflow. Where equations are nested, behind Zener
+//! diodes, Newton's method is tried on all of them at once, which from a good guess is much the quicker.
 
 use crate::devices::Devices;
 use crate::parameters::Release;
-use crate::roots::increasing;
+use crate::roots::{NEWTON, increasing, newton};
 
 /// Voltages and currents that solve the node equations.
 #[derive(Debug, Clone, Copy, Default)]
@@ -40,6 +41,7 @@ impl Stage<'_> {
         match self.devices.release {
             Release::Zener => self.zeners(guess),
             Release::Switch => self.switches(guess),
+            Release::Storage => self.apart(guess, |v| self.devices.storing(v)),
         }
     }
 
@@ -53,16 +55,64 @@ impl Stage<'_> {
                 self.capacitance[j] + self.span * (supply_slope + release_slope),
             )
         };
-        increasing(balance, guess, self.devices.reach())
+        newton(balance, guess).or_else(|| increasing(balance, guess, self.devices.reach()))
+    }
+
+    /// Nodes behind Zener diodes, all at once, by Newton's method; `None` where it does not settle.
+    fn zeners_at_once(&self, guess: &Point) -> Option<Point> {
+        let g = self.devices.conductance;
+        let mut point = *guess;
+        for _ in 0..NEWTON {
+            // Of the load: what its voltage lacks of taking the Zener currents, and the slope of that, in terms of the
+            // node voltages. Of the nodes: their Newton steps at constant load voltage, and how they follow that of the load.
+            let (mut lacking, mut slope) = (-g * point.load_voltage, g);
+            let (mut step, mut following) = ([0.0; 2], [0.0; 2]);
+            for j in 0..self.count {
+                let v = point.voltage[j];
+                let (supplied, supply_slope) = self.devices.charging(v);
+                let (released, release_slope) = self.devices.zener(v - point.load_voltage);
+                let rest = self.capacitance[j] + self.span * supply_slope;
+                let whole = rest + self.span * release_slope;
+                step[j] = (self.charge[j] + self.span * (supplied - released) - self.capacitance[j] * v) / whole;
+                following[j] = self.span * release_slope / whole;
+                lacking += released + release_slope * step[j];
+                slope += release_slope * (rest / whole);
+            }
+            let rise = if g == f64::INFINITY { -point.load_voltage } else { lacking / slope };
+            point.load_voltage += rise;
+            // The currents depend on differences of voltages that have no more bits than the supply. NaN never settles.
+            let settles = |step: f64| step.abs() <= 2.0 * f64::EPSILON * self.devices.supply;
+            let mut settled = settles(rise);
+            for j in 0..self.count {
+                let moved = step[j] + following[j] * rise;
+                point.voltage[j] += moved;
+                settled &= settles(moved);
+            }
+            if settled {
+                return Some(point);
+            }
+        }
+        None
+    }
+
+    /// Nodes behind Zener diodes.
+    fn zeners(&self, guess: &Point) -> Option<Point> {
+        if self.devices.conductance == 0.0 {
+            return self.unloaded(guess);
+        }
+        let mut point = self.zeners_at_once(guess).or_else(|| self.zeners_nested(guess))?;
+        for j in 0..self.count {
+            let v = point.voltage[j];
+            let currents = [self.devices.charging(v), self.devices.zener(v - point.load_voltage)];
+            [point.supply[j], point.release[j]] = self.balanced(j, v, currents);
+        }
+        Some(point)
     }
 
     /// Nodes behind Zener diodes: solved for a trial load voltage, which Kirchhoff's law at the load corrects.
-    fn zeners(&self, guess: &Point) -> Option<Point> {
+    fn zeners_nested(&self, guess: &Point) -> Option<Point> {
         let g = self.devices.conductance;
         let mut point = *guess;
-        if g == 0.0 {
-            return self.unloaded(guess);
-        }
         let load_voltage = if g == f64::INFINITY {
             0.0
         } else {
@@ -78,12 +128,19 @@ impl Stage<'_> {
 
     /// An open load takes no charge; its voltage is what a breakdown without leakage would leave.
     fn unloaded(&self, guess: &Point) -> Option<Point> {
-        let mut point = Point::default();
+        let mut point = self.apart(guess, |_| (0.0, 0.0))?;
+        let top = point.voltage[..self.count].iter().copied().fold(0.0, f64::max);
+        point.load_voltage = (top - self.devices.threshold).max(0.0);
+        Some(point)
+    }
+
+    /// Nodes whose release currents do not depend on each other; the load is at the voltage of release, as a storage.
+    fn apart(&self, guess: &Point, release: impl Fn(f64) -> (f64, f64)) -> Option<Point> {
+        let mut point = Point { load_voltage: self.devices.threshold, ..Point::default() };
         for j in 0..self.count {
-            let v = self.node(j, guess.voltage[j], |_| (0.0, 0.0))?;
+            let v = self.node(j, guess.voltage[j], &release)?;
             point.voltage[j] = v;
-            [point.supply[j], _] = self.balanced(j, v, [self.devices.charging(v), (0.0, 0.0)]);
-            point.load_voltage = point.load_voltage.max(v - self.devices.threshold);
+            [point.supply[j], point.release[j]] = self.balanced(j, v, [self.devices.charging(v), release(v)]);
         }
         Some(point)
     }
@@ -95,11 +152,9 @@ impl Stage<'_> {
         for j in 0..self.count {
             let guess = point.voltage[j] + moved * self.following(j, point);
             let v = self.node(j, guess, |v| self.devices.zener(v - load_voltage))?;
-            let (supplied, supply_slope) = self.devices.charging(v);
+            let supply_slope = self.devices.charging(v).1;
             let (released, slope) = self.devices.zener(v - load_voltage);
             point.voltage[j] = v;
-            let currents = [(supplied, supply_slope), (released, slope)];
-            [point.supply[j], point.release[j]] = self.balanced(j, v, currents);
             // The node voltage follows the load voltage in part: derivative of the implicit function.
             let rest = self.capacitance[j] + self.span * supply_slope;
             sum.0 += released;

@@ -12,7 +12,7 @@ pub(crate) enum Mode {
     Off,
     /// The charging diode conducts: `V = U_in`.
     Charging,
-    /// At `V = U_z`: a switch is duty-cycled, or a Zener works into a load of 0 ohm.
+    /// At the voltage of release: a switch is duty-cycled, a Zener works into a load of 0 ohm, or a diode into a storage.
     Holding,
     /// The release element conducts and the load sets the current. Two nodes in this mode are joined.
     Releasing,
@@ -58,7 +58,7 @@ pub struct State {
     pub capacitance: [f64; 2],
     /// The charging diode holds the node at `U_in` (ideal diodes).
     pub charging: [bool; 2],
-    /// The release element holds the node at `U_z` (ideal diodes).
+    /// The release element holds the node at `U_z`, or at `U_out` of a storage (ideal diodes).
     pub holding: [bool; 2],
     /// The node discharges into the load (ideal diodes).
     pub releasing: [bool; 2],
@@ -68,7 +68,7 @@ pub struct State {
     pub load_current: f64,
     /// Supply current at the end of the last step (A).
     pub supply_current: f64,
-    /// Internal step that the integrator would try next (s); 0 before the first (exponential diodes).
+    /// Internal step that the integrator begins the next call with (s); 0 before the first (exponential diodes).
     pub internal_step: f64,
     /// Stored energy at the start (J).
     pub initial_energy: f64,

@@ -16,6 +16,7 @@ fn parameters(topology: Topology, release: Release) -> impl Strategy<Value = Par
     let ratio = prop_oneof![Just(1.0), 1.0..1.8_f64];
     (ratio, 8.0..12.0_f64).prop_map(move |(ratio, decades)| Parameters {
         zener_voltage: 2000.0 * ratio,
+        storage_voltage: 2000.0 * ratio,
         load_resistance: 10.0_f64.powf(decades),
         topology,
         release,
@@ -61,3 +62,5 @@ agrees!(a_shared_node_with_a_zener_agrees, Topology::SharedNode, Release::Zener)
 agrees!(a_shared_node_with_a_switch_agrees, Topology::SharedNode, Release::Switch);
 agrees!(isolated_membranes_with_zeners_agree, Topology::Isolated, Release::Zener);
 agrees!(isolated_membranes_with_switches_agree, Topology::Isolated, Release::Switch);
+agrees!(a_shared_node_with_a_storage_agrees, Topology::SharedNode, Release::Storage);
+agrees!(isolated_membranes_with_a_storage_agree, Topology::Isolated, Release::Storage);

@@ -1,7 +1,7 @@
 //! Every bad input is an error that names thing, value and bound.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
-use videg_circuit::{Circuit, DiodeParameters, Diodes, Error, Parameters, Solver, Topology};
+use videg_circuit::{Circuit, DiodeParameters, Diodes, Error, Parameters, Release, Solver, Topology};
 
 const C: [f64; 2] = [15e-12, 12e-12];
 
@@ -13,6 +13,21 @@ fn message(parameters: Parameters) -> String {
 fn a_zener_below_the_supply_is_named_with_both_values() {
     let parameters = Parameters { zener_voltage: 1500.0, ..Parameters::default() };
     assert_eq!(message(parameters), "zener.voltage = 1500 V is below supply.voltage = 2000 V");
+}
+
+#[test]
+fn a_storage_below_the_supply_is_named_with_both_values() {
+    let below = Parameters { storage_voltage: 1999.0, ..Parameters::default() };
+    let storage = Parameters { release: Release::Storage, ..below };
+    assert_eq!(
+        message(storage),
+        "storage.voltage = 1999 V is below supply.voltage = 2000 V: the supply would feed the storage without bound"
+    );
+    // Only the element that is there has to be above the supply.
+    assert!(Circuit::new(below, C).is_ok());
+    assert!(Circuit::new(Parameters { zener_voltage: 1500.0, storage_voltage: 2000.0, ..storage }, C).is_ok());
+    let nan = Parameters { storage_voltage: f64::NAN, ..Parameters::default() };
+    assert_eq!(message(nan), "storage.voltage = NaN V is not a finite number");
 }
 
 #[test]

@@ -27,9 +27,10 @@ fn parameters() -> impl Strategy<Value = Parameters> {
     ];
     let ratio = prop_oneof![Just(1.0), 1.0..2.0_f64];
     let topology = prop_oneof![Just(Topology::SharedNode), Just(Topology::Isolated)];
-    let release = prop_oneof![Just(Release::Zener), Just(Release::Switch)];
+    let release = prop_oneof![Just(Release::Zener), Just(Release::Switch), Just(Release::Storage)];
     (ratio, load_resistance, topology, release).prop_map(|(ratio, r, topology, release)| Parameters {
         zener_voltage: 2000.0 * ratio,
+        storage_voltage: 2000.0 * ratio,
         load_resistance: r,
         topology,
         release,
@@ -64,8 +65,8 @@ proptest! {
             circuit.advance(dt, ends).unwrap();
             for v in circuit.voltage() {
                 prop_assert!(v >= 2000.0 * (1.0 - 1e-14), "{v} V is below the supply");
-                if parameters.load_resistance == 0.0 {
-                    prop_assert!(v <= parameters.zener_voltage * (1.0 + 1e-14), "{v} V is above U_z");
+                if parameters.load_resistance == 0.0 || parameters.release == Release::Storage {
+                    prop_assert!(v <= parameters.release_voltage() * (1.0 + 1e-14), "{v} V is above the release");
                 }
             }
             prop_assert!(circuit.load_current() >= -1e-18 && circuit.supply_current() >= 0.0);
@@ -164,4 +165,32 @@ fn a_start_below_the_supply_or_above_a_shorted_zener_is_booked() {
     assert_relative_eq!(ledger.zener, 2000.0 * 10e-12 * 1000.0, max_relative = 1e-12);
     assert_relative_eq!(ledger.load, 0.5 * 10e-12 * 1e6, max_relative = 1e-9);
     assert!(ledger.residual().abs() < 1e-12 * ledger.supply);
+}
+
+#[test]
+fn a_start_above_a_storage_is_booked() {
+    let parameters = Parameters {
+        topology: Topology::Isolated,
+        release: Release::Storage,
+        storage_voltage: 2300.0,
+        ..Parameters::default()
+    };
+    let circuit = Circuit::with_voltages(parameters, [10e-12; 2], [2100.0, 3300.0]).unwrap();
+    let ledger = circuit.ledger();
+    assert_eq!(circuit.voltage(), [2100.0, 2300.0]);
+    assert_relative_eq!(ledger.load, 2300.0 * 10e-12 * 1000.0, max_relative = 1e-12);
+    assert_relative_eq!(ledger.diode, 0.5 * 10e-12 * 1e6, max_relative = 1e-12);
+    assert!(ledger.residual().abs() < 1e-12 * ledger.load);
+}
+
+#[test]
+fn a_storage_takes_what_a_jump_lifts_to_its_voltage() {
+    let parameters = Parameters { release: Release::Storage, storage_voltage: 2300.0, ..Parameters::default() };
+    let mut circuit = Circuit::new(parameters, [20e-12, 15e-12]).unwrap();
+    circuit.advance(0.0, [15e-12, 15e-12]).unwrap();
+    let ledger = circuit.ledger();
+    assert_relative_eq!(ledger.load_charge, 2000.0 * 35e-12 - 2300.0 * 30e-12, max_relative = 1e-12);
+    assert_relative_eq!(ledger.load, 2300.0 * ledger.load_charge, max_relative = 1e-14);
+    assert_eq!((ledger.diode, ledger.zener, ledger.supply), (0.0, 0.0, 0.0));
+    assert_eq!(circuit.voltage(), [2300.0; 2]);
 }

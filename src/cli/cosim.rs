@@ -13,7 +13,7 @@ use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
-    NgspiceCircuit, Trace,
+    NgspiceCircuit, Schedule, Trace,
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
@@ -100,10 +100,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
     let (mechanical, electrical) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
-    let settings = circuit_settings(&electrical, harvester.bias_voltage())?;
+    let ratio = best_capacitance_ratio(fmu, &scenario, &mechanical)?;
+    let settings = circuit_settings(&electrical, harvester.bias_voltage(), ratio)?;
     let mut warnings = harvester.warnings();
     warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
-    let circuits = circuits(backend, fmu, &scenario, &mechanical, &settings, &harvester)?;
+    let circuits = circuits(backend, &scenario, &settings, ratio, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
@@ -123,17 +124,30 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
 }
 
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
-/// Section 4.1, unless the settings say otherwise.
-fn circuit_settings(electrical: &[Setting], bias: f64) -> anyhow::Result<Settings> {
+/// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.
+fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
     let mut settings = Settings::default();
     settings.circuit.supply_voltage = bias;
     for setting in electrical {
         EmbeddedCircuit::apply(&mut settings, setting)?;
     }
-    if !electrical.iter().any(|setting| setting.name == names::ZENER_VOLTAGE) {
+    let given = |name| electrical.iter().any(|setting| setting.name == name);
+    if !given(names::ZENER_VOLTAGE) {
         settings.circuit.zener_voltage = settings.circuit.supply_voltage;
     }
+    if !given(names::STORAGE_VOLTAGE) {
+        settings.circuit.storage_voltage = best_release_voltage(&settings, ratio);
+    }
     Ok(settings)
+}
+
+/// The voltage of release that gains most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
+fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
+    let idle = match settings.circuit.topology {
+        Topology::SharedNode => 1.0,
+        Topology::Isolated => 0.0,
+    };
+    formulas::best_release_voltage(settings.circuit.supply_voltage, 1.0 + idle, ratio + idle)
 }
 
 fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
@@ -147,14 +161,13 @@ fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
     })
 }
 
-/// The circuit asked for, and two to compare it with: the same with an ideal switch, and the better one, with isolated
-/// membranes and the release voltage that suits the mean impact best.
+/// The circuit asked for, and three to compare it with: the same with an ideal switch, and two that gain, with isolated
+/// membranes and the voltage of release that gains most: a switch, and a storage in place of the load.
 fn circuits(
     backend: Backend,
-    fmu: &Fmu,
     scenario: &Scenario,
-    mechanical: &[Setting],
     settings: &Settings,
+    ratio: f64,
     harvester: &HarvesterFmu,
 ) -> anyhow::Result<Vec<Box<dyn CircuitSlave>>> {
     let capacitance = harvester.sample()?.capacitance();
@@ -176,22 +189,37 @@ fn circuits(
     switch.circuit.release = Release::Switch;
     let mut better = switch;
     better.circuit.topology = Topology::Isolated;
-    let ratio = mean_capacitance_ratio(fmu, scenario, mechanical)?;
-    better.circuit.zener_voltage = formulas::best_zener_voltage(settings.circuit.supply_voltage, 1.0, ratio);
+    better.circuit.zener_voltage = best_release_voltage(&better, ratio);
+    let mut storage = better;
+    storage.circuit.release = Release::Storage;
+    storage.circuit.storage_voltage = better.circuit.zener_voltage;
     let mut circuits = vec![first];
-    for compared in [switch, better] {
+    for compared in [switch, better, storage] {
         circuits.push(Box::new(EmbeddedCircuit::new(&label(&compared), &compared, capacitance)?));
     }
     Ok(circuits)
 }
 
-/// Mean `C_3` / `C_2` of the impacts of the scenario, from a run of the mechanics ahead; 1 without impacts.
-fn mean_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
+/// `C_3` / `C_2` to choose a voltage of release by, from a run of the mechanics ahead. Impacts within one communication
+/// step count as equal.
+fn best_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
     let mut ahead = HarvesterFmu::new(fmu, scenario, mechanical)?;
-    ahead.step(0.0, scenario.until)?;
-    let [impacts, _] = ahead.counts()?;
-    let gain = ahead.sample()?.voltage_gain();
-    Ok(if impacts > 0 { 1.0 + gain / (f64::from(impacts) * ahead.bias_voltage()) } else { 1.0 })
+    let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
+    let (mut now, mut gain, mut impacts) = (0.0, 0.0, 0);
+    let mut ratios = Vec::new();
+    while now < scenario.until {
+        let next = schedule.next(now, f64::INFINITY);
+        ahead.step(now, next - now)?;
+        let [count, _] = ahead.counts()?;
+        if count > impacts {
+            let (total, number) = (ahead.sample()?.voltage_gain(), count - impacts);
+            let ratio = 1.0 + (total - gain) / (f64::from(number) * ahead.bias_voltage());
+            ratios.extend((0..number).map(|_| ratio));
+            (gain, impacts) = (total, count);
+        }
+        now = next;
+    }
+    Ok(formulas::best_release_ratio(ratios))
 }
 
 /// The settings as text, for an FMU. Numbers read back to the same bits.
@@ -207,7 +235,7 @@ fn label(settings: &Settings) -> String {
         let choice = &Settings::CHOICES[index];
         choice.items[(choice.get)(settings)].0
     };
-    format!("{}, {} at {:.0} V", chosen(0), chosen(1), settings.circuit.zener_voltage)
+    format!("{}, {} at {:.0} V", chosen(0), chosen(1), settings.circuit.release_voltage())
 }
 
 fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {

@@ -49,7 +49,7 @@ impl Elements {
     /// Parameters out of bounds; a load of 0 or infinite resistance.
     pub fn new(parameters: &Parameters) -> Result<Self, NgspiceError> {
         parameters.validate()?;
-        let voltage = parameters.zener_voltage;
+        let voltage = parameters.release_voltage();
         Self {
             supply_voltage: parameters.supply_voltage,
             load_resistance: parameters.load_resistance,
@@ -57,6 +57,7 @@ impl Elements {
             branch: match parameters.release {
                 Release::Zener => Branch::Zener { voltage },
                 Release::Switch => Branch::Switch { voltage },
+                Release::Storage => Branch::Storage { voltage },
             },
             diode: match parameters.diodes {
                 Diodes::Ideal => DiodeParameters::default(),

@@ -88,7 +88,7 @@ fn stepped(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32)
     let mut conducting = [false; 5];
     for &(dt, to) in ramps {
         // Short against the time constant of the load, too.
-        let relaxation = dt / (parameters.load_resistance * 5e-12);
+        let relaxation = dt / (load_resistance(parameters) * 5e-12);
         let mut refine = 1;
         while 20.0 * f64::from(refine) < relaxation && refine < 20 {
             refine += 1;
@@ -117,15 +117,23 @@ fn stepped(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32)
     book
 }
 
+/// A storage has no time constant to resolve.
+fn load_resistance(parameters: &Parameters) -> f64 {
+    if parameters.release == Release::Storage { f64::INFINITY } else { parameters.load_resistance }
+}
+
 /// Parts of a step in which a current may jump.
 const REFINEMENT: u32 = 1000;
 
-/// One step to the capacitances `c`; which diodes and release elements conducted, and if above `U_z`.
+/// One step to the capacitances `c`; which diodes and release elements conducted, and if above the voltage of release.
 fn euler(parameters: &Parameters, book: &mut Reference, c: [f64; 2], h: f64) -> [bool; 5] {
-    let (u_in, u_z) = (parameters.supply_voltage, parameters.zener_voltage);
+    let (u_in, u_z) = (parameters.supply_voltage, parameters.release_voltage());
     let drop = if parameters.release == Release::Zener { u_z } else { 0.0 };
     let free = [0, 1].map(|j| book.charge[j] / c[j]);
-    let top = load_line(c, free, h, u_z, drop, parameters.load_resistance);
+    let top = match parameters.release {
+        Release::Storage => u_z,
+        Release::Zener | Release::Switch => load_line(c, free, h, u_z, drop, parameters.load_resistance),
+    };
     let mut current = 0.0;
     let mut conducting = [false; 5];
     for j in 0..2 {

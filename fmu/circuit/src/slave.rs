@@ -1,7 +1,7 @@
 //! The slave: what the importer sets, and the circuit that it drives.
 
 use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
-use videg_circuit::{Circuit, Error, Settings, names};
+use videg_circuit::{Circuit, Error, Release, Settings, names};
 
 use crate::variables::VARIABLES;
 
@@ -38,7 +38,9 @@ impl Harvesting {
 
 impl Slave for Harvesting {
     const INFO: ModelInfo = ModelInfo::new("HarvestingCircuit")
-        .description("Energy-harvesting circuit with two time-varying capacitors: diode, Zener or switch, load")
+        .description(
+            "Energy-harvesting circuit with two time-varying capacitors: diode, Zener or switch, load or storage",
+        )
         .author("The videg developers")
         .version(env!("CARGO_PKG_VERSION"))
         .copyright("Copyright (c) The videg developers")
@@ -79,11 +81,14 @@ impl Slave for Harvesting {
         Ok(())
     }
 
-    /// At the start both membranes are charged to the supply and nothing flows yet. Afterwards they hold charge: no output
-    /// depends on an input of the same communication point.
+    /// At the start both membranes are charged to the supply and nothing flows yet; a storage stays at its voltage.
+    /// Afterwards the membranes hold charge: no output depends on an input of the same communication point.
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
         match unknown.name() {
             names::LEFT_VOLTAGE | names::RIGHT_VOLTAGE => f64::from(known.name() == names::SUPPLY_VOLTAGE),
+            "load.voltage" if self.settings.circuit.release == Release::Storage => {
+                f64::from(known.name() == names::STORAGE_VOLTAGE)
+            }
             _ => 0.0,
         }
     }

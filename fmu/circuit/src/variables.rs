@@ -23,18 +23,26 @@ const fn quantity<const INDEX: usize>() -> V {
     )
 }
 
-const fn items<const INDEX: usize>() -> [EnumerationItem; 2] {
+/// The items of choice number `INDEX`, all of them: a `COUNT` that is not theirs does not compile.
+const fn items<const INDEX: usize, const COUNT: usize>() -> [EnumerationItem; COUNT] {
     let items = Settings::CHOICES[INDEX].items;
-    [EnumerationItem::new(items[0].0, items[0].1), EnumerationItem::new(items[1].0, items[1].1)]
+    assert!(items.len() == COUNT);
+    let mut found = [EnumerationItem::new("", ""); COUNT];
+    let mut k = 0;
+    while k < COUNT {
+        found[k] = EnumerationItem::new(items[k].0, items[k].1);
+        k += 1;
+    }
+    found
 }
 
 const fn enumeration<const INDEX: usize>(name: &'static str, items: &'static [EnumerationItem]) -> EnumerationType {
     EnumerationType::new(name, Settings::CHOICES[INDEX].description, items)
 }
 
-static TOPOLOGY_ITEMS: [EnumerationItem; 2] = items::<0>();
-static RELEASE_ITEMS: [EnumerationItem; 2] = items::<1>();
-static DIODE_ITEMS: [EnumerationItem; 2] = items::<2>();
+static TOPOLOGY_ITEMS: [EnumerationItem; 2] = items::<0, 2>();
+static RELEASE_ITEMS: [EnumerationItem; 3] = items::<1, 3>();
+static DIODE_ITEMS: [EnumerationItem; 2] = items::<2, 2>();
 static TOPOLOGY: EnumerationType = enumeration::<0>("Topology", &TOPOLOGY_ITEMS);
 static RELEASE: EnumerationType = enumeration::<1>("Release", &RELEASE_ITEMS);
 static DIODE_MODEL: EnumerationType = enumeration::<2>("DiodeModel", &DIODE_ITEMS);
@@ -42,9 +50,10 @@ static DIODE_MODEL: EnumerationType = enumeration::<2>("DiodeModel", &DIODE_ITEM
 /// Choice number `INDEX` of the circuit's table. FMI counts items from 1, the table from 0.
 const fn choice<const INDEX: usize>(of: &'static EnumerationType) -> V {
     let choice = &Settings::CHOICES[INDEX];
+    #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, clippy::cast_sign_loss)] // numbers of items
     V::enumeration_parameter(choice.name, of, 1, choice.description).access(
-        |slave| if (Settings::CHOICES[INDEX].get)(&slave.settings) == 0 { 1 } else { 2 },
-        |slave, item| (Settings::CHOICES[INDEX].set)(&mut slave.settings, usize::from(item == 2)),
+        |slave| (Settings::CHOICES[INDEX].get)(&slave.settings) as i32 + 1,
+        |slave, item| (Settings::CHOICES[INDEX].set)(&mut slave.settings, item as usize - 1),
     )
 }
 
@@ -52,7 +61,7 @@ macro_rules! quantities {
     ($($index:literal)*) => { [$(quantity::<$index>()),*] };
 }
 
-static QUANTITIES: [V; Settings::QUANTITIES.len()] = quantities!(0 1 2 3 4 5 6 7 8 9);
+static QUANTITIES: [V; Settings::QUANTITIES.len()] = quantities!(0 1 2 3 4 5 6 7 8 9 10);
 
 static CHOICES: [V; Settings::CHOICES.len()] =
     [choice::<0>(&TOPOLOGY), choice::<1>(&RELEASE), choice::<2>(&DIODE_MODEL)];
@@ -80,18 +89,18 @@ macro_rules! outputs {
 static OUTPUTS: [V; 14] = outputs! {
     names::LEFT_VOLTAGE, "V", "U_DE: voltage of the left membrane, Table 1", |c| c.voltage()[0];
     names::RIGHT_VOLTAGE, "V", "U_DE: voltage of the right membrane, Table 1", |c| c.voltage()[1];
-    "load.voltage", "V", "U_out: voltage across the load, Fig. 8", Circuit::load_voltage;
-    "load.current", "A", "Current through the load", Circuit::load_current;
+    "load.voltage", "V", "U_out: voltage across the load or of the storage, Fig. 8", Circuit::load_voltage;
+    "load.current", "A", "Current through the load or into the storage", Circuit::load_current;
     "supply.current", "A", "Current drawn from the supply", Circuit::supply_current;
     "supply.energy", "J", "Energy drawn from the supply since the start", |c| c.ledger().supply;
-    "load.energy", "J", "Energy given to the load since the start", |c| c.ledger().load;
+    "load.energy", "J", "Energy given to the load or the storage since the start", |c| c.ledger().load;
     "zener.energy", "J", "Energy burnt in the Zener diodes since the start", |c| c.ledger().zener;
-    "diode.energy", "J", "Energy burnt in the charging diodes since the start", |c| c.ledger().diode;
+    "diode.energy", "J", "Energy burnt in the charging diodes and those into a storage since the start", |c| c.ledger().diode;
     "stored.energy", "J", "Change of the energy stored in the membranes since the start", |c| c.ledger().stored;
     "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + stored - supply", |c| c.ledger().converted();
     "mechanical.energy", "J", "The same, as the work -1/2 U^2 dC on the capacitances: an independent sum", |c| c.ledger().mechanical;
     "supply.charge", "C", "Charge drawn from the supply since the start", |c| c.ledger().supply_charge;
-    "load.charge", "C", "Charge through the load since the start", |c| c.ledger().load_charge;
+    "load.charge", "C", "Charge through the load or into the storage since the start", |c| c.ledger().load_charge;
 };
 
 /// Number of variables.

@@ -63,6 +63,8 @@ fn a_restored_circuit_goes_on_to_the_last_bit() {
         &[("diode.model", 2.0), ("zener.voltage", 2100.0)],
         &[("topology", 2.0), ("load.resistance", open)],
         &[("load.resistance", 0.0)],
+        &[("release", 3.0), ("topology", 2.0), ("storage.voltage", 2400.0)],
+        &[("release", 3.0), ("diode.model", 2.0)],
     ] {
         for taken in [0, 1, 7, 20] {
             let mut original = initialized(settings);
