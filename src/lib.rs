@@ -5,11 +5,13 @@
 //! - [`scenario`] says what to run: a case of the paper, settings, duration;
 //! - [`cosim`] couples the harvester FMU with a circuit and records what happens;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
+//! - [`crosscheck`] holds both, and the closed forms of the paper, against each other;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`cli`] is the command-line tool.
 
 pub mod cli;
 pub mod cosim;
+pub mod crosscheck;
 pub mod fmi;
 pub mod ngspice;
 pub mod package;

@@ -125,7 +125,7 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
 
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
 /// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.
-fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
+pub fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
     let mut settings = Settings::default();
     settings.circuit.supply_voltage = bias;
     for setting in electrical {
@@ -142,7 +142,7 @@ fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Re
 }
 
 /// The voltage of release that gains most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
-fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
+pub fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
     let idle = match settings.circuit.topology {
         Topology::SharedNode => 1.0,
         Topology::Isolated => 0.0,
@@ -150,7 +150,7 @@ fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
     formulas::best_release_voltage(settings.circuit.supply_voltage, 1.0 + idle, ratio + idle)
 }
 
-fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
+pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
     let supply = settings.circuit.supply_voltage;
     let name = names::SUPPLY_VOLTAGE;
     (supply != bias).then(|| {
@@ -230,7 +230,7 @@ fn every_setting(settings: &Settings) -> Vec<Setting> {
 }
 
 /// What a circuit is called in tables.
-fn label(settings: &Settings) -> String {
+pub fn label(settings: &Settings) -> String {
     let chosen = |index: usize| {
         let choice = &Settings::CHOICES[index];
         choice.items[(choice.get)(settings)].0

@@ -6,6 +6,10 @@
 mod completions;
 mod cosim;
 mod cosim_report;
+mod crosscheck;
+mod crosscheck_files;
+mod crosscheck_picture;
+mod crosscheck_report;
 mod fmu;
 mod fmu_check;
 mod format;
@@ -34,6 +38,8 @@ struct Cli {
 enum Verb {
     /// Co-simulate the harvester FMU with a harvesting circuit
     Cosim(cosim::Arguments),
+    /// Hold the closed forms of the paper, the embedded solver and ngspice against each other on one C(t)
+    Crosscheck(crosscheck::Arguments),
     /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
     Simulate(simulate::Arguments),
     /// Build, describe and check FMUs
@@ -61,6 +67,7 @@ pub fn main() -> ExitCode {
     };
     let result = match cli.verb {
         Verb::Cosim(arguments) => cosim::run(&arguments),
+        Verb::Crosscheck(arguments) => crosscheck::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),

@@ -54,10 +54,20 @@ impl RunOptions {
     /// # Errors
     /// Whatever in them makes no sense.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        self.scenario_with(Vec::new())
+    }
+
+    /// Resolves the options, with `more` settings on top of theirs.
+    ///
+    /// # Errors
+    /// Whatever in them makes no sense.
+    pub fn scenario_with(&self, more: Vec<Setting>) -> Result<Scenario, ScenarioError> {
+        let mut settings: Vec<_> = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
+        settings.extend(more);
         let request = Request {
             case: self.case.clone(),
             file: self.case_file.as_deref().map(CaseFile::read).transpose()?,
-            settings: self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?,
+            settings,
             until: self.until,
             step: self.step,
             window: self.window.map(|Window(window)| window),

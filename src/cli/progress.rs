@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cosim::{CosimError, Observer, Row};
+use crate::crosscheck::Watch;
 
 /// Parts into which the bar divides a run.
 const PARTS: u64 = 1000;
@@ -38,6 +39,37 @@ impl Observer for TimeBar {
             self.bar.set_position(part);
         }
         Ok(())
+    }
+}
+
+/// A bar that follows tasks and names those that run. It draws on stderr, and only if that is a terminal.
+pub struct TaskBar {
+    bar: ProgressBar,
+    name: String,
+}
+
+impl TaskBar {
+    /// A bar for the tasks of `name`.
+    pub fn new(name: String) -> Self {
+        let bar = ProgressBar::new(1);
+        let style = ProgressStyle::with_template("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        bar.enable_steady_tick(std::time::Duration::from_millis(500));
+        Self { bar, name }
+    }
+
+    /// Removes the bar.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watch for TaskBar {
+    fn show(&self, total: usize, done: usize, running: &[&str]) {
+        self.bar.set_prefix(self.name.clone());
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+        self.bar.set_message(running.join(" | "));
     }
 }
 

@@ -1,0 +1,269 @@
+//! The circuit asked for, quantity by quantity: by closed form and by every solver.
+
+use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
+
+use super::peaks::{Pulses, charges, largest_deviation, node_capacitances};
+use super::{Agreement, Case, Check, Claim, Impact, Solver, Values};
+use crate::ngspice::Waveforms;
+
+/// A claim holds up to this, relative: the paper gives its powers in two or three digits.
+const CLAIM: f64 = 0.02;
+/// What of the supply energy the two ways of booking may disagree on.
+const BOOKS: f64 = 1e-4;
+/// Smallest scale of a deviation, in units of what the membranes hold: about as much as an impact moves.
+const LEAST_SCALE: f64 = 0.1;
+
+/// What was found out about the circuit asked for.
+pub struct Findings<'a> {
+    /// The mechanics.
+    pub case: &'a Case,
+    /// The circuit.
+    pub settings: &'a Settings,
+    /// The circuit by solver.
+    pub runs: &'a [(Solver, Waveforms)],
+    /// The single pulses, if there are any.
+    pub pulses: Option<&'a Pulses>,
+    /// By solver, the peak voltage after each of them when nothing lets the charge out, V.
+    pub open: &'a [(Solver, Vec<f64>)],
+}
+
+/// Everything that is checked of the circuit asked for.
+pub fn checks(findings: &Findings<'_>) -> Vec<Check> {
+    let mut checks = findings.voltages();
+    checks.extend(findings.charges());
+    checks.extend(findings.energies());
+    checks.extend(findings.conversion());
+    checks.push(findings.waveforms());
+    checks.push(findings.books());
+    checks
+}
+
+/// A claim about a value of ngspice, relative to the claim or, where that is nothing, to `scale`.
+fn hold(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim> {
+    let found = values.ngspice_batch?;
+    let (says, scale) = if analytic.abs() > 1e-3 * scale {
+        (says.to_owned(), analytic.abs())
+    } else {
+        (format!("{says}, relative to the supply"), scale)
+    };
+    Some(Claim::new(says, (found - analytic) / scale, CLAIM))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+impl Findings<'_> {
+    /// The waveforms by a solver.
+    pub fn run(&self, solver: Solver) -> Option<&Waveforms> {
+        self.runs.iter().find(|(other, _)| *other == solver).map(|(_, waveforms)| waveforms)
+    }
+
+    fn ledgers(&self, value: impl Fn(&Ledger) -> f64) -> Values {
+        Values::of(|solver| self.run(solver).map(|waveforms| value(&waveforms.ledger())))
+    }
+
+    fn supply_voltage(&self) -> f64 {
+        self.settings.circuit.supply_voltage
+    }
+
+    fn topology(&self) -> Topology {
+        self.settings.circuit.topology
+    }
+
+    /// Energy, J, or charge, C, that the membranes hold at rest, to scale deviations by.
+    fn least(&self, unit: &str) -> f64 {
+        let charge = LEAST_SCALE * self.supply_voltage() * self.case.rest.iter().sum::<f64>();
+        if unit == "C" { charge } else { charge * self.supply_voltage() }
+    }
+
+    /// Energy from the supply by ngspice, J: what differences of energies are relative to.
+    fn supply_energy(&self) -> f64 {
+        let supply = self.run(Solver::Batch).map_or(0.0, |waveforms| waveforms.ledger().supply.abs());
+        supply.max(self.least("J"))
+    }
+
+    /// Sum over the impacts of a closed form of the node's `C_2` and `C_3`.
+    fn sum(&self, value: impl Fn(f64, f64) -> f64) -> f64 {
+        let form = |impact: &Impact| {
+            let [c2, c3] = node_capacitances(self.case, self.topology(), impact);
+            value(c2, c3)
+        };
+        self.case.impacts.iter().map(form).sum()
+    }
+
+    /// `U_DE4` of each single pulse.
+    fn voltages(&self) -> Vec<Check> {
+        let Some(pulses) = self.pulses else { return Vec::new() };
+        let open = |solver| self.open.iter().find(|(other, _)| *other == solver).map(|(_, found)| found.as_slice());
+        let values = Values::of(|solver| open(solver).map(mean));
+        let row = |name: &str, says: &str, topology, agreement| {
+            let analytic = pulses.expected(self.case, topology, self.supply_voltage());
+            let deviation = open(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(found, &analytic));
+            let claim = Some(Claim::new(says, deviation, self.open_circuit_tolerance(pulses)));
+            Check { name: name.to_owned(), unit: "V", analytic: Some(mean(&analytic)), values, agreement, claim }
+        };
+        let pair = |solver: Solver, tolerance| {
+            let deviation = largest_deviation(open(solver)?, open(Solver::Batch)?);
+            Some(Agreement::new(format!("{} and {}", solver.name(), Solver::Batch.name()), deviation, tolerance))
+        };
+        let pairs = [pair(Solver::Exponential, 3e-4), pair(Solver::Ideal, 1e-3)];
+        let agreement = Agreement::worst(pairs.into_iter().flatten());
+        let own = format!("U_DE4 after pulses of different height, mean of {}", pulses.order.len());
+        if self.topology() == Topology::Isolated {
+            return vec![row(&own, "Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
+        }
+        vec![
+            row(&own, "on the shared node U_in (C3+C2)/(2 C2)", Topology::SharedNode, agreement),
+            row("the same by Eq. (12) as printed", "Eq. (12) on the shared node: U_in C3/C2", Topology::Isolated, None),
+        ]
+    }
+
+    /// The error of the table, and what the reverse currents of charging and release diode take from the voltage by the
+    /// end of the run, relative.
+    fn open_circuit_tolerance(&self, pulses: &Pulses) -> f64 {
+        let [left, right] = self.case.rest;
+        let capacitance = if self.topology() == Topology::Isolated { left.min(right) } else { left + right };
+        let leaked = 2.0 * self.settings.diode.saturation_current * pulses.table.until();
+        Case::TABLE_ERROR + leaked / (capacitance * self.supply_voltage())
+    }
+
+    fn charges(&self) -> Vec<Check> {
+        let formula = |c2, c3| formulas::cycle_charge(self.supply_voltage(), c2, c3);
+        let each: Vec<f64> = (self.case.impacts.iter())
+            .map(|impact| node_capacitances(self.case, self.topology(), impact))
+            .map(|[c2, c3]| formula(c2, c3))
+            .collect();
+        let found = |solver| self.run(solver).map(|waveforms| charges(waveforms, &self.case.impacts));
+        let mut rows = Vec::new();
+        if each.len() > 1 {
+            let expected = &each[..each.len() - 1];
+            let values = Values::of(|solver| found(solver).as_deref().map(mean));
+            let deviation = found(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(&found, expected));
+            rows.push(Check {
+                name: "dQ from the supply, mean of the impacts".to_owned(),
+                unit: "C",
+                analytic: Some(mean(expected)),
+                values,
+                agreement: Agreement::of(&values, None),
+                claim: Some(Claim::new("every single impact moves dQ = U_in dC", deviation, CLAIM)),
+            });
+        }
+        rows.push(self.row(
+            "supply charge",
+            "C",
+            |ledger| ledger.supply_charge,
+            Some(("all impacts together move U_in dC", self.sum(formula))),
+        ));
+        rows.push(self.row("load charge", "C", |ledger| ledger.load_charge, None));
+        rows
+    }
+
+    /// A quantity of the books, relative to itself.
+    fn row(&self, name: &str, unit: &'static str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
+        let values = self.ledgers(value);
+        let own = values.ngspice_batch.map_or(0.0, f64::abs).max(self.least(unit));
+        self.scaled(name, unit, values, own, claim)
+    }
+
+    /// A difference of energies, relative to the energy from the supply.
+    fn difference(&self, name: &str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
+        self.scaled(name, "J", self.ledgers(value), self.supply_energy(), claim)
+    }
+
+    fn scaled(&self, name: &str, unit: &'static str, values: Values, scale: f64, claim: Option<(&str, f64)>) -> Check {
+        Check {
+            name: name.to_owned(),
+            unit,
+            analytic: claim.map(|(_, analytic)| analytic),
+            values,
+            agreement: Agreement::of(&values, Some(scale)),
+            claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, scale)),
+        }
+    }
+
+    fn energies(&self) -> Vec<Check> {
+        let supply = self.supply_voltage();
+        let eq13 = self.sum(|c2, c3| formulas::eq13_energy(supply, c2, c3));
+        let zener = self.settings.circuit.zener_voltage * self.sum(|c2, c3| formulas::cycle_charge(supply, c2, c3));
+        let zener = (self.settings.circuit.release == Release::Zener).then_some(("the Zener burns U_z U_in dC", zener));
+        vec![
+            self.row(
+                "supply energy",
+                "J",
+                |ledger| ledger.supply,
+                Some(("the supply gives U_in^2 dC = 2 W", 2.0 * eq13)),
+            ),
+            self.row("load energy", "J", |ledger| ledger.load, Some(("the load gets W of Eq. (13)", eq13))),
+            self.row("Zener energy", "J", |ledger| ledger.zener, zener),
+            self.difference("diode energy", |ledger| ledger.diode, None),
+            self.difference("change of the stored energy", |ledger| ledger.stored, None),
+            self.difference(
+                "surplus = load - supply",
+                Ledger::surplus,
+                Some(("W of Eq. (13) is what a user gains", eq13)),
+            ),
+        ]
+    }
+
+    /// What the mechanics gave, against the closed forms.
+    fn conversion(&self) -> Vec<Check> {
+        let supply = self.supply_voltage();
+        let release = self.settings.circuit.release_voltage();
+        let eq13 = self.sum(|c2, c3| formulas::eq13_energy(supply, c2, c3));
+        let quick = self.sum(|c2, c3| formulas::release_net_gain(supply, release, c2, c3));
+        let slow = self.sum(|c2, c3| formulas::largest_net_gain(supply, c2, c3));
+        let converted =
+            self.difference("converted", Ledger::converted, Some(("W of Eq. (13) is what the mechanics give", eq13)));
+        let mut quickly = self.difference(
+            "converted, quick release",
+            Ledger::converted,
+            Some(("quick release: (C3 U_in - C2 U_r)(U_r - U_in)", quick)),
+        );
+        let mut slowly =
+            self.difference("converted, largest", Ledger::converted, Some(("at most U_in^2 dC^2 / (2 C2)", slow)));
+        if let Some(claim) = &mut slowly.claim {
+            claim.holds = claim.deviation <= claim.tolerance;
+        }
+        // The same quantity three times: the solvers need to agree on it but once.
+        quickly.agreement = None;
+        slowly.agreement = None;
+        vec![converted, quickly, slowly]
+    }
+
+    /// Voltages of the membranes over the whole run.
+    fn waveforms(&self) -> Check {
+        let batch = self.run(Solver::Batch);
+        let difference = |solver| {
+            let [left, right] = self.run(solver)?.voltage_difference(batch?)?;
+            Some(if left.is_nan() { left } else { left.max(right) })
+        };
+        let values = Values::of(|solver| if solver == Solver::Batch { None } else { difference(solver) });
+        Check {
+            name: "V(de), RMS difference from ngspice batch".to_owned(),
+            unit: "V",
+            analytic: None,
+            values,
+            agreement: Agreement::of_voltages(&values),
+            claim: None,
+        }
+    }
+
+    /// Each solver's own books: the work on the membranes, summed on a path of its own, is what was converted.
+    fn books(&self) -> Check {
+        let values = self.ledgers(Ledger::residual);
+        let scale = self.supply_energy();
+        let own = |solver: Solver| {
+            let residual = values.get(solver)?.abs();
+            Some(Agreement::new(format!("two ways to book in {}", solver.name()), residual / scale, BOOKS))
+        };
+        Check {
+            name: "converted - work on the membranes".to_owned(),
+            unit: "J",
+            analytic: Some(0.0),
+            values,
+            agreement: Agreement::worst(Solver::ALL.into_iter().filter_map(own)),
+            claim: None,
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! What happens at each impact: peak voltages and the charge drawn.
+
+use videg_circuit::{Topology, formulas};
+
+use super::{Case, Impact};
+use crate::ngspice::{CapacitanceTable, NgspiceError, Waveforms};
+
+/// `C_2` and `C_3` of the node that an impact acts on, F: with both membranes on one node the idle one lies in parallel.
+pub fn node_capacitances(case: &Case, topology: Topology, impact: &Impact) -> [f64; 2] {
+    let c2 = case.rest[impact.side];
+    let idle = match topology {
+        Topology::SharedNode => case.rest[1 - impact.side],
+        Topology::Isolated => 0.0,
+    };
+    [c2 + idle, impact.ratio * c2 + idle]
+}
+
+/// The pulses of a run that differ in height, in its order, one after the other.
+///
+/// On an open circuit a membrane keeps the charge of the highest pulse so far, so that a lower one after it would say
+/// nothing about Eq. (12). In this order each pulse raises the voltage to its own `U_DE4`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pulses {
+    /// C(t) of the pulses.
+    pub table: CapacitanceTable,
+    /// The impacts that made them, by their indices in the case, in this order.
+    pub order: Vec<usize>,
+    /// First row of each, and the number of rows.
+    starts: Vec<usize>,
+}
+
+impl Pulses {
+    /// A membrane counts as at rest up to this part of the height of the pulse.
+    const REST: f64 = 1e-3;
+    /// Pulses count as equal up to this, relative: the error of C(t). A periodic motion has few that differ.
+    const DISTINCT: f64 = Case::TABLE_ERROR;
+    /// Rest between two pulses, s.
+    const GAP: f64 = 1e-3;
+
+    /// The pulses of `case` that end before the next impact, one of each height; `None` without any.
+    ///
+    /// # Errors
+    /// Never: the rows are those of a table.
+    pub fn new(case: &Case, topology: Topology) -> Result<Option<Self>, NgspiceError> {
+        let mut pieces: Vec<(usize, [usize; 2])> = rows_of_impacts(case.table.times(), &case.impacts)
+            .enumerate()
+            .filter_map(|(index, rows)| Some((index, Self::pulse(case, &case.impacts[index], rows)?)))
+            .collect();
+        let height = |index: usize| node_capacitances(case, topology, &case.impacts[index])[1];
+        pieces.sort_by(|(a, _), (b, _)| height(*a).total_cmp(&height(*b)));
+        let mut highest = [0.0; 2];
+        pieces.retain(|&(index, _)| {
+            let side = case.impacts[index].side;
+            let node = if topology == Topology::SharedNode { 0 } else { side };
+            let higher = height(index) > highest[node] * (1.0 + Self::DISTINCT);
+            if higher {
+                highest[node] = height(index);
+            }
+            higher
+        });
+        if pieces.is_empty() {
+            return Ok(None);
+        }
+        let rows: Vec<_> = case.table.rows().collect();
+        let (mut time, mut left, mut right) = (vec![0.0], vec![case.rest[0]], vec![case.rest[1]]);
+        let (mut now, mut starts) = (Self::GAP, Vec::new());
+        for &(_, [from, to]) in &pieces {
+            starts.push(time.len());
+            for &(at, capacitance) in &rows[from..=to] {
+                time.push(now + at - rows[from].0);
+                left.push(capacitance[0]);
+                right.push(capacitance[1]);
+            }
+            // To the very end of the pulse, where the voltage is highest.
+            now += rows[to].0 - rows[from].0 + Self::GAP;
+            time.push(now - 0.5 * Self::GAP);
+            left.push(case.rest[0]);
+            right.push(case.rest[1]);
+        }
+        starts.push(time.len());
+        let order = pieces.into_iter().map(|(index, _)| index).collect();
+        Ok(Some(Self { table: CapacitanceTable::new(time, left, right)?, order, starts }))
+    }
+
+    /// First and last row of a pulse between the rows of two impacts, if both membranes are at rest there.
+    fn pulse(case: &Case, impact: &Impact, [from, to]: [usize; 2]) -> Option<[usize; 2]> {
+        let least = Self::REST * (impact.ratio - 1.0) * case.rest[impact.side];
+        let columns = [case.table.left(), case.table.right()];
+        let rests = |row: usize| (0..2).all(|j| (columns[j][row] - case.rest[j]).abs() <= least);
+        let last = (from..to).rev().find(|&row| !rests(row))?;
+        (rests(from) && rests(to)).then_some([from, last + 1])
+    }
+
+    /// `U_DE4` of each pulse by `U_in C_3 / C_2` of the node, V.
+    pub fn expected(&self, case: &Case, topology: Topology, supply_voltage: f64) -> Vec<f64> {
+        let form = |&index: &usize| {
+            let [c2, c3] = node_capacitances(case, topology, &case.impacts[index]);
+            formulas::peak_voltage(supply_voltage, c2, c3)
+        };
+        self.order.iter().map(form).collect()
+    }
+
+    /// Highest voltage of the struck membrane after each pulse in `waveforms`, which are of [`Self::table`], V.
+    pub fn peaks(&self, case: &Case, waveforms: &Waveforms) -> Vec<f64> {
+        let highest = |(&index, ends): (&usize, &[usize])| {
+            let samples = &waveforms.samples[ends[0]..ends[1]];
+            let voltages = samples.iter().map(|sample| sample.voltage[case.impacts[index].side]);
+            voltages.max_by(f64::total_cmp).unwrap_or(f64::NAN)
+        };
+        self.order.iter().zip(self.starts.windows(2)).map(highest).collect()
+    }
+}
+
+/// Charge drawn from the supply from each impact to the next, C; not after the last.
+pub fn charges(waveforms: &Waveforms, impacts: &[Impact]) -> Vec<f64> {
+    let charge = |row: usize| waveforms.samples.get(row).map_or(f64::NAN, |sample| sample.ledger.supply_charge);
+    rows_of_impacts(&waveforms.time, impacts).map(|[from, to]| charge(to) - charge(from)).collect()
+}
+
+/// Rows from each impact to the next, of a table with these times.
+fn rows_of_impacts<'a>(times: &'a [f64], impacts: &'a [Impact]) -> impl Iterator<Item = [usize; 2]> + 'a {
+    // Impacts are landed on by the table and by the run that found them, each with rounding of its own.
+    let row = |impact: &Impact| times.partition_point(|&time| time < impact.time - 1e-9);
+    impacts.windows(2).map(move |pair| [row(&pair[0]), row(&pair[1])])
+}
+
+/// Largest deviation of `found` from `expected`, relative to it; not a number without any.
+pub fn largest_deviation(found: &[f64], expected: &[f64]) -> f64 {
+    // In the total order, what is not a number lies above everything else.
+    found.iter().zip(expected).map(|(a, b)| (a / b - 1.0).abs()).max_by(f64::total_cmp).unwrap_or(f64::NAN)
+}

@@ -1,0 +1,153 @@
+//! Net gain over load and voltage of release, by the embedded solver, with ngspice as a witness at a few points.
+
+use serde::Serialize;
+use videg_circuit::{Release, Settings, Topology, formulas};
+
+use super::{Bench, Case, Solver, Task, Watch, in_parallel};
+use crate::ngspice::NgspiceError;
+
+/// What a circuit comes to at one point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Point {
+    /// Load resistance, ohm, or voltage of release, V.
+    pub x: f64,
+    /// What the mechanics gave, J.
+    pub converted: f64,
+    /// What a user gains, J.
+    pub surplus: f64,
+}
+
+/// A circuit over one of its parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Curve {
+    /// What the circuit is, e.g. `isolated, storage`.
+    pub circuit: String,
+    /// Name of the parameter.
+    pub parameter: &'static str,
+    /// By the embedded solver with ideal diodes.
+    pub points: Vec<Point>,
+    /// By ngspice.
+    pub witnesses: Vec<Point>,
+}
+
+impl Curve {
+    /// The point where the mechanics give most.
+    pub fn best(&self) -> Option<&Point> {
+        self.points.iter().max_by(|a, b| a.converted.total_cmp(&b.converted))
+    }
+}
+
+/// The sweep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sweep {
+    /// Over the voltage of release, of six circuits: shared node and isolated, Zener, switch and storage.
+    pub voltage: Vec<Curve>,
+    /// Over the load resistance, of the four that have one.
+    pub load: Vec<Curve>,
+    /// `(U_in / 2) (C_3 / C_2 + 1)` on the shared node and with isolated membranes, V, for the `C_3` / `C_2` that
+    /// [`formulas::best_release_ratio`] takes from the impacts.
+    pub predicted: [f64; 2],
+}
+
+const TOPOLOGIES: [(Topology, &str); 2] = [(Topology::SharedNode, "shared node"), (Topology::Isolated, "isolated")];
+const RELEASES: [(Release, &str); 3] =
+    [(Release::Zener, "Zener"), (Release::Switch, "switch"), (Release::Storage, "storage")];
+
+/// Points of a curve over the voltage, and of one over the load.
+const VOLTAGES: u32 = 25;
+const LOADS: u32 = 21;
+/// Load resistances, powers of ten of an ohm.
+const LOAD_DECADES: [f64; 2] = [7.0, 12.0];
+
+/// A curve to come: the circuit, its parameter, how to set that, and where.
+struct Plan {
+    circuit: String,
+    parameter: &'static str,
+    settings: Settings,
+    set: fn(&mut Settings, f64),
+    xs: Vec<f64>,
+    witnesses: Vec<f64>,
+}
+
+impl Sweep {
+    /// Sweeps around `settings` on the C(t) of `case`.
+    ///
+    /// # Errors
+    /// What a solver says.
+    pub fn new(bench: &Bench<'_>, case: &Case, settings: &Settings, watch: &dyn Watch) -> Result<Self, NgspiceError> {
+        let supply = settings.circuit.supply_voltage;
+        let predicted =
+            [1.0, 0.0].map(|idle| formulas::best_release_voltage(supply, 1.0 + idle, case.best_ratio() + idle));
+        let plans: Vec<Plan> = over_voltage(case, settings, predicted).chain(over_load(settings)).collect();
+        let tasks = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
+        let mut results = in_parallel(tasks, watch)?.into_iter();
+        let mut curves = plans.into_iter().map(|plan| {
+            let points = results.by_ref().take(plan.xs.len()).collect();
+            let witnesses = results.by_ref().take(plan.witnesses.len()).collect();
+            Curve { circuit: plan.circuit, parameter: plan.parameter, points, witnesses }
+        });
+        let voltage = curves.by_ref().take(TOPOLOGIES.len() * RELEASES.len()).collect();
+        let load = curves.collect();
+        Ok(Self { voltage, load, predicted })
+    }
+}
+
+impl Plan {
+    fn tasks<'a>(&'a self, bench: &'a Bench<'a>) -> impl Iterator<Item = Task<'a, Point>> {
+        let embedded = self.xs.iter().map(|&x| (x, Solver::Ideal));
+        let witnesses = self.witnesses.iter().map(|&x| (x, Solver::Batch));
+        embedded.chain(witnesses).map(move |(x, solver)| {
+            let mut settings = self.settings;
+            (self.set)(&mut settings, x);
+            Task::new(format!("{} in {}", self.circuit, solver.name()), move || {
+                let ledger = bench.run(solver, &settings)?.ledger();
+                Ok(Point { x, converted: ledger.converted(), surplus: ledger.surplus() })
+            })
+        })
+    }
+}
+
+/// From `U_in` to beyond the largest `U_DE4`; ngspice where the most is predicted.
+fn over_voltage<'a>(case: &'a Case, settings: &'a Settings, predicted: [f64; 2]) -> impl Iterator<Item = Plan> + 'a {
+    let supply = settings.circuit.supply_voltage;
+    let largest = case.impacts.iter().map(|impact| impact.ratio).fold(1.0, f64::max);
+    circuits(settings).map(move |(circuit, settings)| {
+        let shared = settings.circuit.topology == Topology::SharedNode;
+        let idle = if shared { 1.0 } else { 0.0 };
+        let span = formulas::peak_voltage(supply, 1.0 + idle, largest + idle) - supply;
+        let part = |k: u32| f64::from(k) / f64::from(VOLTAGES - 1);
+        let xs = (0..VOLTAGES).map(|k| supply + 1.05 * span * part(k)).collect();
+        let set = |settings: &mut Settings, voltage| {
+            settings.circuit.zener_voltage = voltage;
+            settings.circuit.storage_voltage = voltage;
+        };
+        let witnesses = vec![predicted[usize::from(!shared)]];
+        Plan { circuit, parameter: "release voltage", settings, set, xs, witnesses }
+    })
+}
+
+/// From a quick to a slow release; ngspice at the load asked for.
+fn over_load(settings: &Settings) -> impl Iterator<Item = Plan> {
+    let asked = settings.circuit.load_resistance;
+    circuits(settings).filter(|(_, settings)| settings.circuit.release != Release::Storage).map(
+        move |(circuit, settings)| {
+            let [from, to] = LOAD_DECADES;
+            let exponent = |k: u32| from + (to - from) * f64::from(k) / f64::from(LOADS - 1);
+            let xs = (0..LOADS).map(|k| 10.0_f64.powf(exponent(k))).collect();
+            let set = |settings: &mut Settings, resistance| settings.circuit.load_resistance = resistance;
+            Plan { circuit, parameter: "load resistance", settings, set, xs, witnesses: vec![asked] }
+        },
+    )
+}
+
+fn circuits(settings: &Settings) -> impl Iterator<Item = (String, Settings)> {
+    let base = *settings;
+    TOPOLOGIES.into_iter().flat_map(move |(topology, node)| {
+        RELEASES.into_iter().map(move |(release, element)| {
+            let mut settings = base;
+            settings.circuit.topology = topology;
+            settings.circuit.release = release;
+            (format!("{node}, {element}"), settings)
+        })
+    })
+}
