@@ -200,6 +200,7 @@ fn solve(
         checks(&Findings { case: &case, settings: &settings, runs: &runs, pulses: pulses.as_ref(), open: &open });
     all.extend(comparison_checks(&compared));
     all.extend(capacitor);
+    all.extend(sweep.iter().flat_map(Sweep::checks));
     let mut warnings = case.warnings.clone();
     warnings.extend(voltage_warning(&settings, case.bias_voltage));
     let conclusion = conclusion(&all, &compared);

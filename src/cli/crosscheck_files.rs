@@ -52,8 +52,11 @@ fn shown(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:?}"))
 }
 
-/// Columns of a solver in `waveforms.csv`.
-const COLUMNS: [(&str, fn(&CircuitSample) -> f64); 7] = [
+/// A column of a solver in `waveforms.csv`: its name, and how to read it.
+type Column = (&'static str, fn(&CircuitSample) -> f64);
+
+/// They are called as the variables of the FMUs.
+const COLUMNS: [Column; 7] = [
     ("left.voltage", |at| at.voltage[0]),
     ("right.voltage", |at| at.voltage[1]),
     ("load.voltage", |at| at.load_voltage),

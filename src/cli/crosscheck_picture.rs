@@ -8,6 +8,9 @@ use crate::report::{Figure, Panel, ReportError, Series, Style, render_svg};
 
 type Points = Vec<(f64, f64)>;
 
+/// An energy: its name, and how to read it in mJ.
+type Energy = (&'static str, fn(&CircuitSample) -> f64);
+
 /// Length of the detail, s: some periods of the paper's 2 Hz.
 const DETAIL: f64 = 2.0;
 /// Markers of ngspice over the width of a figure.
@@ -48,7 +51,7 @@ pub fn overlay(finished: &Finished) -> Result<String, ReportError> {
         let pairs = points(other, from, |at| at.voltage[0]).into_iter().zip(points(ngspice, from, |at| at.voltage[0]));
         pairs.map(|((time, a), (_, b))| (time, 1e3 * (a - b))).collect()
     });
-    let energies: [(&str, fn(&CircuitSample) -> f64); 4] = [
+    let energies: [Energy; 4] = [
         ("supply", |at| 1e3 * at.ledger.supply),
         ("Zener", |at| 1e3 * at.ledger.zener),
         ("load", |at| 1e3 * at.ledger.load),

@@ -68,8 +68,10 @@ pub fn check_table(finished: &Finished) -> String {
     table.to_string()
 }
 
-/// Energies that are compared, by name.
-const ENERGIES: [(&str, fn(&Energies) -> f64); 6] = [
+/// An energy that is compared: its name, and how to read it.
+type Energy = (&'static str, fn(&Energies) -> f64);
+
+const ENERGIES: [Energy; 6] = [
     ("supply", |energy| energy.supply),
     ("Zener", |energy| energy.zener),
     ("diode", |energy| energy.diode),
@@ -125,10 +127,10 @@ const SWEEP: [&str; 6] = [
 fn sweep_rows(finished: &Finished) -> Option<Vec<Vec<String>>> {
     let sweep = finished.sweep.as_ref()?;
     let row = |curve: &crate::crosscheck::Curve| {
-        let best = curve.best()?;
+        let (best, top) = curve.best()?;
         let predicted = sweep.predicted[usize::from(curve.circuit.starts_with("isolated"))];
         let witness = curve.witnesses.first().map_or(f64::NAN, |point| point.converted);
-        let numbers = [best.x, predicted, 1e3 * best.converted, 1e3 * best.surplus, 1e3 * witness];
+        let numbers = [top, predicted, 1e3 * best.converted, 1e3 * best.surplus, 1e3 * witness];
         let numbers = numbers.map(|value| format::significant(value, 5));
         Some(std::iter::once(curve.circuit.clone()).chain(numbers).collect())
     };

@@ -49,6 +49,17 @@ fn hold(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim>
     Some(Claim::new(says, (found - analytic) / scale, CLAIM))
 }
 
+fn scaled(name: &str, unit: &'static str, values: Values, scale: f64, claim: Option<(&str, f64)>) -> Check {
+    Check {
+        name: name.to_owned(),
+        unit,
+        analytic: claim.map(|(_, analytic)| analytic),
+        values,
+        agreement: Agreement::of(&values, Some(scale)),
+        claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, scale)),
+    }
+}
+
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -163,23 +174,12 @@ impl Findings<'_> {
     fn row(&self, name: &str, unit: &'static str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
         let values = self.ledgers(value);
         let own = values.ngspice_batch.map_or(0.0, f64::abs).max(self.least(unit));
-        self.scaled(name, unit, values, own, claim)
+        scaled(name, unit, values, own, claim)
     }
 
     /// A difference of energies, relative to the energy from the supply.
     fn difference(&self, name: &str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
-        self.scaled(name, "J", self.ledgers(value), self.supply_energy(), claim)
-    }
-
-    fn scaled(&self, name: &str, unit: &'static str, values: Values, scale: f64, claim: Option<(&str, f64)>) -> Check {
-        Check {
-            name: name.to_owned(),
-            unit,
-            analytic: claim.map(|(_, analytic)| analytic),
-            values,
-            agreement: Agreement::of(&values, Some(scale)),
-            claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, scale)),
-        }
+        scaled(name, "J", self.ledgers(value), self.supply_energy(), claim)
     }
 
     fn energies(&self) -> Vec<Check> {
@@ -264,6 +264,87 @@ impl Findings<'_> {
             values,
             agreement: Agreement::worst(Solver::ALL.into_iter().filter_map(own)),
             claim: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cosim::MechanicsSummary;
+    use crate::ngspice::CapacitanceTable;
+    use videg_circuit::Circuit;
+
+    /// One pulse of the left membrane by 40 %, and the beginning of another.
+    fn case() -> Case {
+        let time: Vec<f64> = (0..=450).map(|k| f64::from(k) * 1e-3).collect();
+        let bump = |t: f64| 1.0 + 0.4 * (std::f64::consts::PI * (t / 0.06).clamp(0.0, 1.0)).sin();
+        let left = time.iter().map(|&t| 15e-12 * bump(t).max(bump(t - 0.4))).collect();
+        let right = vec![15e-12; time.len()];
+        let impact = |time| Impact { time, side: 0, ratio: 1.4 };
+        let mechanics = MechanicsSummary {
+            impacts: 2,
+            events: 2,
+            average_voltage_gain: 0.0,
+            average_power_eq13: 0.0,
+            voltage_gain: 0.0,
+            energy_eq13: 0.0,
+        };
+        Case {
+            table: CapacitanceTable::new(time, left, right).unwrap(),
+            mechanics,
+            impacts: vec![impact(0.0), impact(0.4)],
+            rest: [15e-12; 2],
+            bias_voltage: 2000.0,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// What comes of a capacitor with I = C dV/dt: it keeps its voltage when C changes, as if each change were a start.
+    fn without_v_dc_dt(settings: &Settings, table: &CapacitanceTable) -> Waveforms {
+        let mut found = Waveforms::embedded(&settings.parameters(), table).unwrap();
+        let idle = Circuit::new(settings.parameters(), table.initial()).unwrap();
+        for sample in &mut found.samples {
+            sample.voltage = idle.voltage();
+            sample.ledger = idle.ledger();
+        }
+        found
+    }
+
+    fn failures(wrong: Option<Solver>) -> Vec<String> {
+        let (case, settings) = (case(), Settings::default());
+        let runs = Solver::ALL.map(|solver| {
+            let right = Waveforms::embedded(&settings.parameters(), &case.table).unwrap();
+            (solver, if wrong == Some(solver) { without_v_dc_dt(&settings, &case.table) } else { right })
+        });
+        let findings = Findings { case: &case, settings: &settings, runs: &runs, pulses: None, open: &[] };
+        checks(&findings).into_iter().filter(Check::failed).map(|check| check.name).collect()
+    }
+
+    #[test]
+    fn a_capacitor_that_loses_v_dc_dt_fails_whichever_solver_has_it() {
+        assert_eq!(failures(None), Vec::<String>::new());
+        for solver in Solver::ALL {
+            let failed = failures(Some(solver));
+            for name in ["supply energy", "load energy", "V(de), RMS difference from ngspice batch"] {
+                assert!(failed.iter().any(|other| other == name), "{solver:?}: {name} is not among {failed:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_pulse_on_an_open_circuit_reaches_its_own_peak_voltage() {
+        let case = case();
+        for (topology, expected) in [(Topology::Isolated, 2800.0), (Topology::SharedNode, 2400.0)] {
+            let pulses = Pulses::new(&case, topology).unwrap().unwrap();
+            assert_eq!(pulses.order, [0]);
+            let mut open = Settings::default();
+            open.circuit.topology = topology;
+            open.circuit.zener_voltage = 1e4;
+            let found = Waveforms::embedded(&open.parameters(), &pulses.table).unwrap();
+            let [peak] = pulses.peaks(&case, &found)[..] else { panic!("one pulse has one peak") };
+            assert!((peak - expected).abs() < 1e-6 * expected, "{topology:?}: {peak}");
+            assert!((pulses.expected(&case, topology, 2000.0)[0] - expected).abs() < 1e-9, "{topology:?}");
         }
     }
 }

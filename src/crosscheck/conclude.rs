@@ -15,7 +15,7 @@ pub fn conclusion(checks: &[Check], compared: &[Compared]) -> Vec<String> {
 fn agreement(checks: &[Check]) -> String {
     let failed: Vec<_> = checks.iter().filter(|check| check.failed()).collect();
     let compared = checks.iter().filter(|check| check.agreement.is_some()).count();
-    if let [] = failed[..] {
+    if failed.is_empty() {
         return format!("The solvers agree on all {compared} quantities compared, each within its tolerance.");
     }
     let names: Vec<_> = failed

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, formulas};
 
-use super::{Bench, Case, Solver, Task, Watch, in_parallel};
+use super::{Agreement, Bench, Case, Check, Solver, Task, Values, Watch, in_parallel};
 use crate::ngspice::NgspiceError;
 
 /// What a circuit comes to at one point.
@@ -15,6 +15,8 @@ pub struct Point {
     pub converted: f64,
     /// What a user gains, J.
     pub surplus: f64,
+    /// What the supply gave, J.
+    pub supply: f64,
 }
 
 /// A circuit over one of its parameters.
@@ -31,9 +33,41 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// The point where the mechanics give most.
-    pub fn best(&self) -> Option<&Point> {
-        self.points.iter().max_by(|a, b| a.converted.total_cmp(&b.converted))
+    /// The point where the mechanics give most, and where a parabola through it and its neighbours has its top.
+    pub fn best(&self) -> Option<(&Point, f64)> {
+        let (index, best) =
+            self.points.iter().enumerate().max_by(|(_, a), (_, b)| a.converted.total_cmp(&b.converted))?;
+        let neighbours =
+            index.checked_sub(1).and_then(|before| Some((self.points.get(before)?, self.points.get(index + 1)?)));
+        let top = neighbours.map_or(best.x, |(before, after)| {
+            let (p, q) = (best.x - before.x, best.x - after.x);
+            let (fall_p, fall_q) = (best.converted - before.converted, best.converted - after.converted);
+            let curvature = p * fall_q - q * fall_p;
+            if curvature > 0.0 { best.x - 0.5 * (p * p * fall_q - q * q * fall_p) / curvature } else { best.x }
+        });
+        Some((best, top))
+    }
+
+    /// ngspice against the embedded solver at the points that both have. Its diodes drop some mV where ideal ones do not.
+    fn checks(&self) -> impl Iterator<Item = Check> + '_ {
+        const TOLERANCE: f64 = 1e-3;
+        let pairs = self.witnesses.iter().filter_map(|b| Some((self.points.iter().find(|a| a.x == b.x)?, b)));
+        pairs.map(|(a, b)| {
+            let between = format!("{} and {}", Solver::Ideal.name(), Solver::Batch.name());
+            let deviation = (a.converted - b.converted).abs() / b.supply.abs().max(a.supply.abs());
+            Check {
+                name: format!("{}, {} = {:.6}: converted", self.circuit, self.parameter, b.x),
+                unit: "J",
+                analytic: None,
+                values: Values {
+                    embedded_ideal: Some(a.converted),
+                    ngspice_batch: Some(b.converted),
+                    ..Values::default()
+                },
+                agreement: Some(Agreement::new(between, deviation, TOLERANCE)),
+                claim: None,
+            }
+        })
     }
 }
 
@@ -92,6 +126,21 @@ impl Sweep {
     }
 }
 
+impl Sweep {
+    /// ngspice against the embedded solver, point by point.
+    pub fn checks(&self) -> Vec<Check> {
+        self.voltage.iter().chain(&self.load).flat_map(Curve::checks).collect()
+    }
+}
+
+/// `xs` and those that ngspice is asked for, in order.
+fn with_witnesses(xs: impl Iterator<Item = f64>, witnesses: &[f64]) -> Vec<f64> {
+    let mut all: Vec<f64> = xs.chain(witnesses.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
 impl Plan {
     fn tasks<'a>(&'a self, bench: &'a Bench<'a>) -> impl Iterator<Item = Task<'a, Point>> {
         let embedded = self.xs.iter().map(|&x| (x, Solver::Ideal));
@@ -101,7 +150,7 @@ impl Plan {
             (self.set)(&mut settings, x);
             Task::new(format!("{} in {}", self.circuit, solver.name()), move || {
                 let ledger = bench.run(solver, &settings)?.ledger();
-                Ok(Point { x, converted: ledger.converted(), surplus: ledger.surplus() })
+                Ok(Point { x, converted: ledger.converted(), surplus: ledger.surplus(), supply: ledger.supply })
             })
         })
     }
@@ -116,12 +165,12 @@ fn over_voltage<'a>(case: &'a Case, settings: &'a Settings, predicted: [f64; 2])
         let idle = if shared { 1.0 } else { 0.0 };
         let span = formulas::peak_voltage(supply, 1.0 + idle, largest + idle) - supply;
         let part = |k: u32| f64::from(k) / f64::from(VOLTAGES - 1);
-        let xs = (0..VOLTAGES).map(|k| supply + 1.05 * span * part(k)).collect();
+        let witnesses = vec![predicted[usize::from(!shared)]];
+        let xs = with_witnesses((0..VOLTAGES).map(|k| supply + 1.05 * span * part(k)), &witnesses);
         let set = |settings: &mut Settings, voltage| {
             settings.circuit.zener_voltage = voltage;
             settings.circuit.storage_voltage = voltage;
         };
-        let witnesses = vec![predicted[usize::from(!shared)]];
         Plan { circuit, parameter: "release voltage", settings, set, xs, witnesses }
     })
 }
@@ -133,9 +182,10 @@ fn over_load(settings: &Settings) -> impl Iterator<Item = Plan> {
         move |(circuit, settings)| {
             let [from, to] = LOAD_DECADES;
             let exponent = |k: u32| from + (to - from) * f64::from(k) / f64::from(LOADS - 1);
-            let xs = (0..LOADS).map(|k| 10.0_f64.powf(exponent(k))).collect();
+            let witnesses = vec![asked];
+            let xs = with_witnesses((0..LOADS).map(|k| 10.0_f64.powf(exponent(k))), &witnesses);
             let set = |settings: &mut Settings, resistance| settings.circuit.load_resistance = resistance;
-            Plan { circuit, parameter: "load resistance", settings, set, xs, witnesses: vec![asked] }
+            Plan { circuit, parameter: "load resistance", settings, set, xs, witnesses }
         },
     )
 }
@@ -150,4 +200,23 @@ fn circuits(settings: &Settings) -> impl Iterator<Item = (String, Settings)> {
             (format!("{node}, {element}"), settings)
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_top_of_a_parabola_is_found_between_uneven_points() {
+        let at = |x: f64| Point { x, converted: 5.0 - (x - 2.3) * (x - 2.3), surplus: 0.0, supply: 1.0 };
+        let curve = Curve {
+            circuit: String::new(),
+            parameter: "x",
+            points: [0.0, 1.0, 2.0, 3.5, 4.0].map(at).to_vec(),
+            witnesses: Vec::new(),
+        };
+        let (best, top) = curve.best().unwrap();
+        assert_eq!(best.x, 2.0);
+        assert!((top - 2.3).abs() < 1e-12, "{top}");
+    }
 }

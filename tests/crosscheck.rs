@@ -1,0 +1,252 @@
+//! `videg crosscheck` as a user meets it: verdicts, exit codes, files, the folder for ngspice alone, hostile input.
+//!
+//! Without ngspice the tests that need it are skipped, but not in continuous integration.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
+
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+use serde_json::Value;
+use tempfile::TempDir;
+use videg::ngspice::Ngspice;
+
+/// Runs the tool in `folder`, one at a time, because each run asks Cargo whether the FMUs are fresh.
+fn videg(folder: &Path, arguments: &[&str], environment: &[(&str, &Path)]) -> Output {
+    static FIRST: LazyLock<Mutex<()>> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(command(folder.path(), &["fmu", "build"]).output().unwrap().status.success());
+        Mutex::new(())
+    });
+    let _held = FIRST.lock().unwrap_or_else(PoisonError::into_inner);
+    command(folder, arguments).envs(environment.iter().copied()).output().unwrap()
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+    command.args(arguments).current_dir(folder);
+    command
+}
+
+fn ngspice() -> Option<PathBuf> {
+    let found = Ngspice::find(None);
+    assert!(found.is_ok() || std::env::var_os("CI").is_none(), "{}", found.unwrap_err());
+    found.inspect_err(|error| eprintln!("skipped: {error}")).ok().map(|ngspice| ngspice.program().to_owned())
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(output: &Output, code: i32) -> Value {
+    assert_eq!(output.status.code(), Some(code), "{}", stderr(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn check<'a>(value: &'a Value, name: &str) -> &'a Value {
+    let checks = value["checks"].as_array().unwrap();
+    checks.iter().find(|check| check["name"] == name).unwrap_or_else(|| panic!("no check {name} in {checks:#?}"))
+}
+
+/// A short run of the paper's circuit, with its folder for ngspice alone.
+fn paper_circuit(folder: &TempDir) -> Value {
+    let arguments = ["crosscheck", "--json", "--until", "2", "--export", "for-ngspice"];
+    json(&videg(folder.path(), &arguments, &[]), 0)
+}
+
+#[test]
+fn the_solvers_agree_on_the_paper_circuit_and_the_claims_are_judged() {
+    let Some(program) = ngspice() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let found = paper_circuit(&folder);
+    for key in ["case", "until", "window", "impacts", "average_voltage_gain", "average_power_eq13", "circuit"] {
+        assert!(!found[key].is_null(), "{key}");
+    }
+    for key in ["supply", "load", "zener", "diode", "stored", "converted", "surplus", "eq13"] {
+        assert!(found["energy"][key].is_number(), "{key}");
+    }
+    assert!(found["charge"]["supply"].as_f64().unwrap() > 0.0);
+    assert_eq!((&found["energy_by"], &found["passed"]), (&"embedded_exponential".into(), &true.into()));
+    let names: Vec<_> = found["solvers"].as_array().unwrap().iter().map(|solver| solver["name"].clone()).collect();
+    assert_eq!(names, ["embedded_ideal", "embedded_exponential", "ngspice_batch", "ngspice_live"]);
+    let supply = check(&found, "supply energy");
+    assert_eq!(supply["agreement"]["agree"], true, "{supply}");
+    assert_eq!(check(&found, "load energy")["claim"]["holds"], false, "W of Eq. (13) is not what the load gets");
+    assert_eq!(check(&found, "the same by Eq. (12) as printed")["claim"]["holds"], false);
+    assert!(found["comparison"][2]["ngspice"]["energy"]["surplus"].as_f64() > found["energy"]["surplus"].as_f64());
+    for file in ["waveforms.csv", "checks.csv", "impacts.csv", "figure.svg", "report.html", "result.json"] {
+        assert!(folder.path().join("out/crosscheck-fig14").join(file).is_file(), "{file}");
+    }
+    runs_by_ngspice_alone(&program, &folder.path().join("for-ngspice"));
+}
+
+/// What stands in the README of the folder is what ngspice prints there.
+fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
+    let page = std::fs::read_to_string(folder.join("README.txt")).unwrap();
+    let mut own = PathBuf::new();
+    let mut printed = String::new();
+    let mut compared = 0;
+    for line in page.lines() {
+        if let Some((name, _)) = line.split_once("/: ") {
+            own = folder.join(name);
+            let run = |file| Command::new(program).args(["-b", file]).current_dir(&own).output().unwrap();
+            run("harvesting.cir");
+            printed = String::from_utf8_lossy(&run("evaluate.cir").stdout).into_owned();
+        } else if let Some((name, rest)) = line.strip_prefix("    ").and_then(|line| line.split_once(" = ")) {
+            let number = |text: &str| text.split_whitespace().next().unwrap().parse::<f64>().unwrap();
+            let found = printed.lines().find_map(|line| line.strip_prefix(&format!("{} = ", name.trim())));
+            let (found, expected) = (number(found.unwrap_or_else(|| panic!("{name}: {printed}"))), number(rest));
+            // Closed forms are met to some 1e-7, runs of the same program to the digits printed.
+            assert!((found / expected - 1.0).abs() < 1e-6, "{}: {name} {found} {expected}", own.display());
+            compared += 1;
+        }
+    }
+    // Three circuits with four values each, three checks of the capacitor with one.
+    assert_eq!(compared, 15, "{page}");
+}
+
+#[test]
+fn other_circuits_are_checked_by_options_of_their_own() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (release, topology, label) in
+        [("switch", "sharedNode", "sharedNode, switch"), ("storage", "isolated", "isolated, storage")]
+    {
+        let arguments = ["crosscheck", "--json", "--until", "1.5", "--release", release, "--topology", topology];
+        let found = json(&videg(folder.path(), &arguments, &[]), 0);
+        assert!(found["circuit"].as_str().unwrap().starts_with(label), "{}", found["circuit"]);
+        assert_eq!(found["energy"]["zener"], 0.0);
+        assert!(found["conclusion"][0].as_str().unwrap().starts_with("The solvers agree"));
+    }
+}
+
+/// The circuit has diodes that drop 0.3 V and more; a solver with ideal ones cannot give the same energies.
+#[test]
+fn real_diodes_fail_the_check_of_the_ideal_ones() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["crosscheck", "--json", "--until", "1", "--set", "diode.emissionCoefficient=1"];
+    let found = json(&videg(folder.path(), &arguments, &[]), 1);
+    assert_eq!(found["passed"], false);
+    let checks = found["checks"].as_array().unwrap();
+    let failed: Vec<_> =
+        checks.iter().map(|check| &check["agreement"]).filter(|found| found["agree"] == false).collect();
+    assert!(!failed.is_empty());
+    for agreement in failed {
+        assert!(agreement["between"].as_str().unwrap().starts_with("embedded, ideal"), "{agreement}");
+    }
+    assert!(found["conclusion"][0].as_str().unwrap().contains("do NOT agree"));
+}
+
+/// An ngspice that is given C='...', I = C dV/dt, in place of Q='...' runs through and gets everything wrong.
+#[test]
+fn a_capacitor_of_the_wrong_form_fails() {
+    let Some(program) = ngspice() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let wrong = folder.path().join("wrong-ngspice");
+    // Only in the checks of the capacitor: the circuits get stuck with it.
+    let script = format!(
+        "#!/bin/sh\nif grep -q 'check of the time-varying capacitor' harvesting.cir; then\n\
+         sed -i -e '/^Cfix/d' -e \"s/Q='(V(cl)-[^)]*)\\*1e-12\\*V(de)'/C='V(cl)*1e-12'/\" harvesting.cir\nfi\nexec '{}' \"$@\"\n",
+        program.display()
+    );
+    std::fs::write(&wrong, script).unwrap();
+    std::fs::set_permissions(&wrong, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let arguments = ["crosscheck", "--json", "--until", "0.3"];
+    let found = json(&videg(folder.path(), &arguments, &[("VIDEG_NGSPICE", &wrong)]), 1);
+    for name in ["a charged capacitor that grows", "a capacitor that grows at constant voltage"] {
+        assert_eq!(check(&found, name)["agreement"]["agree"], false, "{name}");
+    }
+}
+
+fn assert_refused(output: &Output, parts: &[&str]) {
+    let stderr = stderr(output);
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    for part in parts {
+        assert!(stderr.contains(part), "{part} is not in: {stderr}");
+    }
+}
+
+#[test]
+fn without_ngspice_one_line_says_how_to_install_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = videg(folder.path(), &["crosscheck", "--until", "1"], &[("VIDEG_NGSPICE", Path::new("/nowhere"))]);
+    assert_refused(&found, &["ngspice not found", "/nowhere", "apt install ngspice"]);
+}
+
+#[test]
+fn what_cannot_run_is_named() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, parts) in [
+        (&["--release", "spark"][..], &["--release", "spark", "storage"][..]),
+        (&["--set", "load.resistance=inf", "--until", "1"], &["load.resistance = inf"]),
+        (&["--set", "load.resistance=1\n.control\nshell touch pwned\n.endc"], &["load.resistance"]),
+        (&["--until", "1000"], &["--until = 1000 s", "300 s"]),
+    ] {
+        let output = videg(folder.path(), &[&["crosscheck"], arguments].concat(), &[]);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {}", stderr(&output));
+        for part in parts {
+            assert!(stderr(&output).contains(part), "{arguments:?}: {}", stderr(&output));
+        }
+    }
+    assert!(!folder.path().join("pwned").exists());
+}
+
+#[test]
+fn hostile_names_run_nothing_and_stay_in_the_folder() {
+    if ngspice().is_none() {
+        return;
+    }
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("inner");
+    std::fs::create_dir(&folder).unwrap();
+    let name = "../../evil\\n.control\\nshell touch pwned\\n.endc";
+    std::fs::write(folder.join("case.toml"), format!("name = \"{name}\"\nuntil = 0.3\n")).unwrap();
+    let arguments = ["crosscheck", "--json", "--case-file", "case.toml", "--export", "for\n.control"];
+    json(&videg(&folder, &arguments, &[]), 0);
+    let within = |folder: &Path| -> Vec<String> {
+        let mut names: Vec<_> =
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(within(outer.path()), ["inner"]);
+    assert_eq!(within(&folder), ["case.toml", "for\n.control", "out"]);
+    let page = std::fs::read_to_string(folder.join("for\n.control/README.txt")).unwrap();
+    assert!(!page.lines().any(|line| line.starts_with(".control") || line.starts_with("shell")), "{page}");
+    let netlist = std::fs::read_to_string(folder.join("for\n.control/circuit/harvesting.cir")).unwrap();
+    assert!(!netlist.contains("evil") && !netlist.contains("shell"), "{netlist}");
+}
+
+#[test]
+fn an_export_overwrites_its_own_files_only_and_follows_no_link() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("target");
+    let run = || videg(folder.path(), &["crosscheck", "--json", "--until", "0.3", "--export", "target"], &[]);
+    std::fs::create_dir(&target).unwrap();
+    std::fs::write(target.join("README.txt"), "mine").unwrap();
+    assert_refused(&run(), &["--export", "README.txt", "not of an earlier export"]);
+    assert_eq!(std::fs::read_to_string(target.join("README.txt")).unwrap(), "mine");
+    std::fs::remove_file(target.join("README.txt")).unwrap();
+    json(&run(), 0);
+    json(&run(), 0);
+    let precious = folder.path().join("precious");
+    std::fs::write(&precious, "mine").unwrap();
+    std::fs::remove_file(target.join("circuit/evaluate.cir")).unwrap();
+    std::os::unix::fs::symlink(&precious, target.join("circuit/evaluate.cir")).unwrap();
+    assert_refused(&run(), &["evaluate.cir", "not of an earlier export"]);
+    assert_eq!(std::fs::read_to_string(&precious).unwrap(), "mine");
+}
