@@ -74,8 +74,8 @@ fn assert_books(found: &Waveforms, expected: &Waveforms, tolerance: f64, what: &
     ] {
         assert!((a - b).abs() <= tolerance * b.abs(), "{what:?}: {name} {a:e} against {b:e}");
     }
-    // The two ways to book the mechanical energy, from the voltage and from the elements.
-    assert!(a.residual().abs() < 1e-4 * a.supply, "{what:?}: {a:?}");
+    // The two ways to book the mechanical energy, from the voltage and from the elements, are two quadratures.
+    assert!(a.residual().abs() < 2.0 * tolerance * (a.supply + a.mechanical.abs()), "{what:?}: {a:?}");
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn both_solvers_agree_on_the_paper_circuit_with_the_same_diodes_and_with_ideal_o
     let Some(ngspice) = ngspice() else { return };
     let table = table(&harvester_fmu(), "fig14", 10.0);
     for ideal in variants() {
-        let found = ngspice.simulate(&Elements::new(&ideal).unwrap(), &table, &Run::new(10.0)).unwrap();
+        let found = ngspice.simulate(&Elements::new(&ideal, &table).unwrap(), &table, &Run::new(&table)).unwrap();
         let expected = Waveforms::embedded(&exponential(ideal), &table).unwrap();
         // Both integrate with errors of their own; the embedded solver's books are good to some 1e-5 here.
         assert_books(&found, &expected, 1e-4, &(ideal.topology, ideal.release, "same diodes"));
@@ -102,7 +102,7 @@ fn both_solvers_agree_on_a_slow_transient_and_on_a_ball_that_comes_to_rest() {
     for case in ["fig15", "table3-2hz"] {
         let table = table(&fmu, case, 5.0);
         for ideal in variants() {
-            let found = ngspice.simulate(&Elements::new(&ideal).unwrap(), &table, &Run::new(5.0)).unwrap();
+            let found = ngspice.simulate(&Elements::new(&ideal, &table).unwrap(), &table, &Run::new(&table)).unwrap();
             let expected = Waveforms::embedded(&ideal, &table).unwrap();
             assert_books(&found, &expected, NEAR_IDEAL, &(case, ideal.topology, ideal.release));
         }
@@ -130,7 +130,7 @@ fn both_solvers_agree_for_loads_and_voltages_drawn_at_random() {
             zener_voltage: 2000.0 + 350.0 * random(&mut state),
             ..*case
         };
-        let found = ngspice.simulate(&Elements::new(&parameters).unwrap(), &table, &Run::new(5.0)).unwrap();
+        let found = ngspice.simulate(&Elements::new(&parameters, &table).unwrap(), &table, &Run::new(&table)).unwrap();
         let expected = Waveforms::embedded(&parameters, &table).unwrap();
         assert_books(&found, &expected, NEAR_IDEAL, &parameters);
     }
@@ -144,9 +144,9 @@ fn a_storage_takes_the_charge_that_a_zener_without_load_passes() {
         // A Zener diode into 0 ohm holds the membranes at U_z as a storage of U_z does, and burns what that stores.
         let shorted = Parameters { topology, zener_voltage: 2200.0, load_resistance: 0.0, ..Parameters::default() };
         let expected = Waveforms::embedded(&shorted, &table).unwrap().ledger();
-        let loaded = Elements::new(&Parameters { load_resistance: 1e9, ..shorted }).unwrap();
+        let loaded = Elements::new(&Parameters { load_resistance: 1e9, ..shorted }, &table).unwrap();
         let storage = Elements { branch: Branch::Storage { voltage: 2200.0 }, ..loaded }.checked().unwrap();
-        let found = ngspice.simulate(&storage, &table, &Run::new(5.0)).unwrap().ledger();
+        let found = ngspice.simulate(&storage, &table, &Run::new(&table)).unwrap().ledger();
         println!("{topology:?}: load {:+.1e}", found.load / expected.zener - 1.0);
         // The drop of 4 mV at 2.2 kV counts for what it is of the 200 V above the supply.
         assert!((found.load / expected.zener - 1.0).abs() < 1e-4, "{found:?} against {expected:?}");
@@ -162,15 +162,15 @@ fn the_capacitor_of_the_netlists_obeys_its_closed_forms() {
     let time: Vec<f64> = (0..=1000).map(|k| f64::from(k) * 1e-3).collect();
     let wave = |t: &f64| 15e-12 * (1.5 - 0.5 * (std::f64::consts::PI * 3.0 * t).cos());
     let left: Vec<f64> = time.iter().map(wave).collect();
-    let wave = CapacitanceTable::new(time, left.clone(), left).unwrap();
-    let ramp = CapacitanceTable::new(vec![0.0, 1.0], vec![15e-12, 30e-12], vec![15e-12; 2]).unwrap();
+    let wave = CapacitanceTable::new(&time, &left, &left).unwrap();
+    let ramp = CapacitanceTable::new(&[0.0, 1.0], &[15e-12, 30e-12], &[15e-12; 2]).unwrap();
     for (check, table) in [
         (Check::ChargedCapacitor, &wave),
         (Check::ConstantVoltage, &wave),
         (Check::RcDischarge { resistance: 1e10 }, &ramp),
         (Check::RcDischarge { resistance: 1e11 }, &ramp),
     ] {
-        let deviation = check.run(&ngspice, 2000.0, table, &Run::new(1.0)).unwrap();
+        let deviation = check.run(&ngspice, 2000.0, table, &Run::new(table)).unwrap();
         println!("{check:?}: {deviation:?}");
         assert!(deviation.largest < 1e-6, "{check:?}: {deviation:?}");
         assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < 1e-6);
@@ -213,17 +213,16 @@ fn a_table_is_as_close_to_the_fmu_as_it_was_asked_to_be_and_meets_every_peak() {
 #[test]
 fn tables_of_long_runs_stay_small_even_where_the_ball_chatters() {
     let fmu = harvester_fmu();
-    for (case, most) in [("fig14", 150_000), ("table3-2hz", 600_000)] {
-        let rows = table(&fmu, case, 100.0).len();
-        println!("{case}: {rows} rows for 100 s");
+    for (case, until, most) in [("fig14", 100.0, 150_000), ("table3-2hz", 20.0, 50_000)] {
+        let rows = table(&fmu, case, until).len();
+        println!("{case}: {rows} rows for {until} s");
         assert!(rows < most, "{case}: {rows} rows");
     }
 }
 
 #[test]
 fn tables_and_errors_that_make_no_sense_are_named() {
-    let table =
-        |time: &[f64], left: &[f64]| CapacitanceTable::new(time.to_vec(), left.to_vec(), vec![1e-12; time.len()]);
+    let table = |time: &[f64], left: &[f64]| CapacitanceTable::new(time, left, &vec![1e-12; time.len()]);
     for (time, left, expected) in [
         (&[0.0, 1.0][..], &[1e-12][..], "2 times, 1 left, 2 right"),
         (&[0.0], &[1e-12], "two rows at least"),
@@ -253,8 +252,8 @@ fn what_a_user_writes_never_gets_into_a_netlist() {
     assert_eq!(scenario.name, hostile);
     let fmu = harvester_fmu();
     let table = CapacitanceTable::from_harvester(&mut harvester(&fmu, &scenario), 0.5, 1e-3).unwrap();
-    let elements = Elements::new(&Parameters::default()).unwrap();
-    let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), &Run::new(0.5)).unwrap();
+    let elements = Elements::new(&Parameters::default(), &table).unwrap();
+    let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), &Run::new(&table)).unwrap();
     let mut written = Vec::new();
     table.write(&mut written).unwrap();
     let written = String::from_utf8(written).unwrap();

@@ -3,7 +3,7 @@
 use videg_circuit::{DiodeParameters, Diodes, Parameters, Release, Topology, names};
 
 use super::NgspiceError;
-use super::capacitance::PICO;
+use super::capacitance::{CapacitanceTable, PICO};
 use super::template::{FileName, Netlist, Template, Value, Values, template};
 
 /// What lets the charge out to the load.
@@ -42,12 +42,12 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// The elements of an embedded circuit. ngspice has no ideal diodes: they become the near-ideal ones of
-    /// [`DiodeParameters::default`].
+    /// The elements of an embedded circuit that is to run over `table`. ngspice has no ideal diodes: they become the
+    /// near-ideal ones of [`DiodeParameters::default`], with a drop that grows with the voltages where these are extreme.
     ///
     /// # Errors
     /// Parameters out of bounds; a load of 0 or infinite resistance.
-    pub fn new(parameters: &Parameters) -> Result<Self, NgspiceError> {
+    pub fn new(parameters: &Parameters, table: &CapacitanceTable) -> Result<Self, NgspiceError> {
         parameters.validate()?;
         let voltage = parameters.release_voltage();
         Self {
@@ -60,7 +60,7 @@ impl Elements {
                 Release::Storage => Branch::Storage { voltage },
             },
             diode: match parameters.diodes {
-                Diodes::Ideal => DiodeParameters::default(),
+                Diodes::Ideal => near_ideal(table.coarseness()),
                 Diodes::Exponential(diode) => diode,
             },
         }
@@ -171,6 +171,17 @@ impl Elements {
     }
 }
 
+/// Diodes whose drop is negligible, `coarseness` times as coarse as the default ones.
+fn near_ideal(coarseness: f64) -> DiodeParameters {
+    let fine = DiodeParameters::default();
+    DiodeParameters {
+        emission_coefficient: coarseness * fine.emission_coefficient,
+        breakdown_emission: coarseness * fine.breakdown_emission,
+        switch_band: coarseness * fine.switch_band,
+        ..fine
+    }
+}
+
 const SHARED: [&str; 6] = ["v(cl)", "v(cr)", "v(de)", "v(out)", "i(vs)", "i(vr)"];
 const ISOLATED: [&str; 9] = ["v(cl)", "v(cr)", "v(left)", "v(right)", "v(out)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)"];
 
@@ -210,15 +221,18 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run until `until`, s, with options that were found to hold for pulses of 10 ms and longer.
-    pub fn new(until: f64) -> Self {
+    /// A run over `table` with options that were found to hold: `reltol` times the voltage must stay below N Vt, over
+    /// which the current of a diode changes by e, or Newton's iteration ends at false solutions; smaller tolerances end
+    /// in "timestep too small". Where the voltage rises to many times `U_in`, charge and current rise with its square.
+    pub fn new(table: &CapacitanceTable) -> Self {
+        let coarseness = table.coarseness();
         Self {
-            until,
+            until: table.until(),
             max_step: 1e-4,
-            relative_tolerance: 1e-8,
-            current_tolerance: 1e-11,
+            relative_tolerance: 1e-8 * coarseness.sqrt(),
+            current_tolerance: 1e-11 * coarseness * coarseness,
             voltage_tolerance: 1e-6,
-            charge_tolerance: 1e-13,
+            charge_tolerance: 1e-13 * coarseness * coarseness,
             minimum_conductance: 1e-20,
         }
     }
@@ -260,23 +274,23 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ngspice::{CapacitanceTable, Ngspice, Waveforms};
+    use crate::ngspice::{Ngspice, Waveforms};
 
     /// A pulse of the left membrane by 40 %.
     fn pulse() -> CapacitanceTable {
         let time: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5e-4).collect();
         let bump = |t: f64| 1.0 + 0.4 * (std::f64::consts::PI * (t / 0.06).min(1.0)).sin();
-        let left = time.iter().map(|&t| 15e-12 * bump(t)).collect();
+        let left: Vec<_> = time.iter().map(|&t| 15e-12 * bump(t)).collect();
         let right = vec![15e-12; time.len()];
-        CapacitanceTable::new(time, left, right).unwrap()
+        CapacitanceTable::new(&time, &left, &right).unwrap()
     }
 
     /// Relative difference of the load charge of a netlist made from `whole` from that of the embedded solver.
     fn difference(ngspice: &Ngspice, whole: &Template) -> f64 {
         let (table, parameters) = (pulse(), Parameters::default());
-        let elements = Elements::new(&parameters).unwrap();
+        let elements = Elements::new(&parameters, &table).unwrap();
         // Loose, for the wrong form gets nowhere with the tight options.
-        let run = Run { relative_tolerance: 1e-5, charge_tolerance: 1e-12, ..Run::new(table.until()) };
+        let run = Run { relative_tolerance: 1e-5, charge_tolerance: 1e-12, ..Run::new(&table) };
         let values = run.values(CapacitanceSource::Table, table.initial(), elements.vectors()).unwrap();
         let netlist = elements.fill(whole, &template!("zener_shared.cir"), values).unwrap();
         let finished = ngspice.run(&netlist, &table).unwrap();
@@ -314,7 +328,7 @@ mod tests {
                     diode: DiodeParameters::default(),
                 };
                 for source in [CapacitanceSource::Table, CapacitanceSource::External] {
-                    let netlist = elements.netlist(source, [15e-12; 2], &Run::new(1.0)).unwrap();
+                    let netlist = elements.netlist(source, [15e-12; 2], &Run::new(&pulse())).unwrap();
                     let text = netlist.text();
                     assert!(!text.contains('<') && text.ends_with(".end\n"), "{text}");
                     assert_eq!(text.contains(".control"), source == CapacitanceSource::Table);
@@ -333,13 +347,13 @@ mod tests {
             (load(f64::NAN), "load.resistance = NaN"),
             (Parameters { zener_voltage: 1.0, ..load(1e9) }, "zener.voltage = 1 V"),
         ] {
-            let error = Elements::new(&parameters).unwrap_err().to_string();
+            let error = Elements::new(&parameters, &pulse()).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         }
-        let mut storage = Elements::new(&load(1e9)).unwrap();
+        let mut storage = Elements::new(&load(1e9), &pulse()).unwrap();
         storage.branch = Branch::Storage { voltage: 1999.0 };
         assert!(storage.checked().unwrap_err().to_string().contains("storage.voltage = 1999"));
-        let run = Run { max_step: f64::NAN, ..Run::new(1.0) };
+        let run = Run { max_step: f64::NAN, ..Run::new(&pulse()) };
         let error = storage.netlist(CapacitanceSource::Table, [15e-12; 2], &run).unwrap_err().to_string();
         assert!(error.contains("max_step = NaN"), "{error}");
     }

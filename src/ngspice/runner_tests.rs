@@ -6,7 +6,7 @@ use super::*;
 use videg_circuit::Parameters;
 
 fn table() -> CapacitanceTable {
-    CapacitanceTable::new(vec![0.0, 0.01], vec![15e-12, 16e-12], vec![15e-12; 2]).unwrap()
+    CapacitanceTable::new(&[0.0, 0.01], &[15e-12, 16e-12], &[15e-12; 2]).unwrap()
 }
 
 /// A shell script in the place of ngspice, in a folder with a name that a shell would trip over.
@@ -22,8 +22,8 @@ fn fake(script: &str) -> (tempfile::TempDir, Ngspice) {
 fn simulate(script: &str) -> Result<Waveforms, NgspiceError> {
     let (folder, mut ngspice) = fake(script);
     ngspice.time_limit = Duration::from_secs(20);
-    let elements = Elements::new(&Parameters::default()).unwrap();
-    let result = ngspice.simulate(&elements, &table(), &Run::new(0.01));
+    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
+    let result = ngspice.simulate(&elements, &table(), &Run::new(&table()));
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
     assert_eq!(left.len(), 1, "something was executed: {left:?}");
     result
@@ -72,8 +72,8 @@ fn half_a_result_is_a_failure_that_says_how_far_it_got() {
 fn a_program_that_hangs_is_ended_with_its_children() {
     let (_folder, mut ngspice) = fake("sleep 1000 & echo $! > \"$0.child\"; wait");
     ngspice.time_limit = Duration::from_secs(1);
-    let elements = Elements::new(&Parameters::default()).unwrap();
-    let error = ngspice.simulate(&elements, &table(), &Run::new(0.01)).unwrap_err();
+    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
+    let error = ngspice.simulate(&elements, &table(), &Run::new(&table())).unwrap_err();
     assert!(matches!(error, NgspiceError::TimeLimit { limit: 1.0, .. }), "{error}");
     let child = ngspice.program().with_file_name("ng spice;touch pwned.child");
     let id: i32 = std::fs::read_to_string(child).unwrap().trim().parse().unwrap();
@@ -98,8 +98,8 @@ fn a_flood_of_messages_is_bounded_and_harmless() {
 #[test]
 fn the_folder_of_a_run_is_removed_and_an_export_holds_two_files() {
     let Some(ngspice) = Ngspice::for_tests() else { return };
-    let elements = Elements::new(&Parameters::default()).unwrap();
-    let netlist = elements.netlist(CapacitanceSource::Table, table().initial(), &Run::new(0.01)).unwrap();
+    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
+    let netlist = elements.netlist(CapacitanceSource::Table, table().initial(), &Run::new(&table())).unwrap();
     let finished = ngspice.run(&netlist, &table()).unwrap();
     let folder = finished.folder.path().to_owned();
     assert!(finished.raw().unwrap().is_some());

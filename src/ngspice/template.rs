@@ -48,7 +48,8 @@ impl FileName {
     }
 }
 
-/// A number as ngspice reads it: digits and an exponent, no suffix letter.
+/// A number as ngspice reads it: digits and an exponent, no suffix letter. The digits are those of this very double; what
+/// ngspice makes of them may be off by two units in the last place (every third number is).
 ///
 /// # Errors
 /// A number that is not finite.
