@@ -20,7 +20,7 @@ Runs the stages named, or all of them in this order:
   lint         cargo fmt, clippy and rustdoc, with warnings as errors
   unit         the tests of all Rust packages
   fmpy         FMPy simulates the FMUs and agrees with the command line
-  conformance  other tools check and run the FMUs; writes docs/conformance.md
+  conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md
 
 Only when named:
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
@@ -154,6 +154,7 @@ stage_fmpy() {
 stage_conformance() {
     need_python
     build_fmus
+    run "$VENV/bin/python" -m pytest tests/c
     run "$VENV/bin/python" tests/conformance
 }
 
