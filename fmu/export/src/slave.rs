@@ -113,10 +113,13 @@ pub trait Slave: Clone + Send + 'static {
     }
 
     /// Partial derivative of `unknown` with respect to `known`, both Real, everything else that may be set being constant.
-    /// Called only if [`ModelInfo::directional_derivatives`] is set. Before the end of initialisation `unknown` is a
-    /// calculated parameter or a continuous output and `known` a parameter or a continuous input. Afterwards it is called
-    /// only for an output and one of the inputs that it depends on directly, as its row of the table says; of others the
-    /// derivative is zero.
+    /// Called only if [`ModelInfo::directional_derivatives`] is set. `unknown` is an output or the derivative of a
+    /// continuous state, before the end of initialisation also a calculated parameter; `known` is an input or, before
+    /// the end of initialisation, a parameter, afterwards a continuous state.
+    ///
+    /// Of an input in co-simulation it is the derivative of the outputs at the end of the last step with respect to the
+    /// input held during that step, of a state that at the communication point. In model exchange, after initialisation, it
+    /// is called only where the unknown depends on the known, as its row of the table says; else the derivative is zero.
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
         let _ = (unknown, known);
         0.0

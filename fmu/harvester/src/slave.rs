@@ -46,6 +46,13 @@ impl Harvester {
         self.model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
     }
 
+    /// The model at the start, as parameters and inputs have it.
+    pub(crate) fn at_start(&self) -> Result<Model, ModelError> {
+        let mut model = Model::new(&self.parameters, self.start_time)?;
+        model.set_external_force(self.external_force, 0.0)?;
+        Ok(model)
+    }
+
     fn check_law(&self) -> Result<(), SlaveError> {
         if self.law == ContactLaw::Compliant {
             return Err(SlaveError::error("contact.law = compliant is not part of this version; allowed: impulsive"));
@@ -98,7 +105,7 @@ impl Slave for Harvester {
     }
 
     fn update(&mut self) {
-        self.model = Model::new(&self.parameters, self.start_time);
+        self.model = self.at_start();
     }
 
     fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
@@ -160,7 +167,7 @@ impl Slave for Harvester {
     }
 
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        if self.placed { self.placed_partial(unknown, known) } else { self.partial(unknown, known) }
+        self.partial(unknown.name(), known.name())
     }
 
     fn write_state(&self, out: &mut StateWriter) {
