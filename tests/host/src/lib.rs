@@ -7,6 +7,7 @@
 mod arguments;
 mod call;
 mod functions;
+pub mod hostile;
 mod instance;
 mod log;
 mod random;

@@ -9,6 +9,7 @@ use fmi2_export::Interface;
 use fmi2_export::abi::{fmi2Component, fmi2ValueReference};
 use fmi2_host::{Fmu, Functions, Instance, run};
 use libloading::Library;
+use std::mem::ManuallyDrop;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
@@ -16,8 +17,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("usage: fmi2-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [leak | overrun]".into());
     };
     let (first, count): (u64, u64) = (first.parse()?, count.parse()?);
-    // SAFETY: the library is one of this project, whose loading runs no code of its own; it stays loaded.
-    let functions = unsafe { Functions::load(&*Box::leak(Box::new(Library::new(library)?)))? };
+    // It stays loaded to the end, so that valgrind knows the names of its functions.
+    // SAFETY: the library is one of this project, whose loading runs no code of its own.
+    let loaded = ManuallyDrop::new(unsafe { Library::new(library)? });
+    // SAFETY: it exports the functions of FMI 2.0.
+    let functions = unsafe { Functions::load(&loaded)? };
     let fmu = Fmu::new(functions, &std::fs::read_to_string(description)?)?;
     let census = run(&fmu, first..first + count)?;
     println!("{library}: {count} sequences, statuses {:?}", census.statuses);

@@ -1,6 +1,7 @@
 //! A host for the exported C functions: they are called as C symbols, through raw pointers.
 #![allow(dead_code, non_upper_case_globals)] // Each test binary uses a part; constants as in the standard.
 
+pub mod calls;
 pub mod toy;
 
 use core::ffi::{CStr, c_char, c_void};
