@@ -122,7 +122,8 @@ impl Slave for Harvester {
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
         let longest = MAX_PERIODS / self.parameters.frequency;
         if h > longest {
-            let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+            let message =
+                format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
             return Err(SlaveError::discard(t, message));
         }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));

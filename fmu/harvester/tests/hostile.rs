@@ -3,8 +3,10 @@
 use VibroImpactHarvester as _; // links its C functions
 use fmi2_host::{Fmu, hostile, linked_functions};
 
+#[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn fmu() -> Fmu {
-    Fmu::new(linked_functions!(model_exchange), include_str!("../../../modelDescription/VibroImpactHarvester.xml")).unwrap()
+    Fmu::new(linked_functions!(model_exchange), include_str!("../../../modelDescription/VibroImpactHarvester.xml"))
+        .unwrap()
 }
 
 #[test]

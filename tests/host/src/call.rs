@@ -48,14 +48,13 @@ fn state(a: &mut Arguments, instance: &Instance, foreign: &[fmi2FMUstate]) -> (f
 /// A place for a state: holding NULL or one of the instance; seldom one that it does not have.
 fn state_or_null(a: &mut Arguments, instance: &Instance, foreign: &[fmi2FMUstate]) -> fmi2FMUstate {
     if a.random.below(3) > 0 {
-        null_mut()
-    } else {
-        let (state, _) = state(a, instance, foreign);
-        if state.is_null() {
-            a.wrong = false
-        }
-        state
+        return null_mut();
     }
+    let (state, _) = state(a, instance, foreign);
+    if state.is_null() {
+        a.wrong = false;
+    }
+    state
 }
 
 /// Strings, some of which the toy of the exporter takes for an order to fail; NULL and what is no UTF-8 is wrong.
@@ -184,7 +183,7 @@ pub(crate) fn call(
             F::SetupExperiment => {
                 let (tolerance, start) = (a.random.pick(&[1e-6, 1e-3, 0.0, f64::NAN]), a.finite());
                 let (with_tolerance, with_stop) = (a.random.below(2), a.random.once_in(4));
-                a.wrong_if(with_tolerance == 1 && !(tolerance > 0.0));
+                a.wrong_if(with_tolerance == 1 && (tolerance.is_nan() || tolerance <= 0.0));
                 let stop = a.random.real();
                 a.wrong_if(with_stop && (stop.is_nan() || stop < start));
                 effect = Effect::Time(start);
@@ -270,7 +269,7 @@ pub(crate) fn call(
             F::DoStep => {
                 let t = if a.random.once_in(12) { a.finite() } else { instance.known.time };
                 let h = if a.random.once_in(12) { a.finite() } else { a.random.pick(&[1e-6, 1e-3, 0.02, 0.1, 0.3]) };
-                a.wrong_if(!(h > 0.0));
+                a.wrong_if(h.is_nan() || h <= 0.0);
                 effect = Effect::Time(t + h);
                 (f.fmi2DoStep)(c, t, h, fmi2True)
             }

@@ -4,13 +4,19 @@ use crate::{Fmu, Instance, Log};
 use core::ffi::CStr;
 use core::ptr::null;
 use fmi2_export::Interface;
-use fmi2_export::abi::*;
+use fmi2_export::abi::{
+    fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String, fmi2True,
+    fmi2Warning,
+};
 
 /// Reals that are no numbers.
 pub const NO_NUMBERS: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 /// An instance in a state that takes Reals.
 type Start = fn(&Fmu) -> Result<Instance<'_>, String>;
+
+/// A call on an instance, by name.
+type Call<'a> = (&'a str, &'a dyn Fn(fmi2Component) -> fmi2Status);
 
 fn demand(holds: bool, what: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(what()) }
@@ -112,7 +118,8 @@ fn runs_on(fmu: &Fmu, instance: &mut Instance, state: &str) -> Result<(), String
     let status = unsafe {
         let mut status = fmi2OK;
         if state == "instantiated" {
-            status = status.max((f.fmi2SetupExperiment)(c, 0, 0.0, 0.0, 0, 0.0)).max((f.fmi2EnterInitializationMode)(c));
+            status =
+                status.max((f.fmi2SetupExperiment)(c, 0, 0.0, 0.0, 0, 0.0)).max((f.fmi2EnterInitializationMode)(c));
         }
         if state != "stepComplete" {
             status = status.max((f.fmi2ExitInitializationMode)(c));
@@ -145,7 +152,7 @@ pub fn arguments(fmu: &Fmu) -> Result<(), String> {
             check(initialized, "currentCommunicationPoint", &|c| (f.fmi2DoStep)(c, bad, 0.01, 1))?;
             for reference in 0..fmu.variables {
                 check(initialized, "input derivative", &|c| {
-                    (f.fmi2SetRealInputDerivatives)(c, &raw const reference, 1, &raw const fmi2True, &raw const bad)
+                    (f.fmi2SetRealInputDerivatives)(c, &raw const reference, 1, &1, &raw const bad)
                 })?;
             }
             let Some(exchange) = f.exchange else { continue };
@@ -178,24 +185,19 @@ pub fn references(fmu: &Fmu) -> Result<(), String> {
     for bad in [fmu.variables, u32::MAX] {
         let vr = &raw const bad;
         let text = c"".as_ptr();
-        type Call<'a> = (&'a str, &'a dyn Fn(fmi2Component) -> fmi2Status);
         // SAFETY: one reference, one value each.
         let calls: [Call; 10] = unsafe {
             [
-                ("fmi2GetReal", &|c| (f.fmi2GetReal)(c, vr, 1, &raw mut 0.0_f64.clone())),
-                ("fmi2GetInteger", &|c| (f.fmi2GetInteger)(c, vr, 1, &raw mut 0_i32.clone())),
-                ("fmi2GetBoolean", &|c| (f.fmi2GetBoolean)(c, vr, 1, &raw mut 0_i32.clone())),
-                ("fmi2GetString", &|c| (f.fmi2GetString)(c, vr, 1, &raw mut null::<i8>().clone())),
-                ("fmi2SetReal", &|c| (f.fmi2SetReal)(c, vr, 1, &raw const *&0.0)),
-                ("fmi2SetInteger", &|c| (f.fmi2SetInteger)(c, vr, 1, &raw const *&0)),
-                ("fmi2SetBoolean", &|c| (f.fmi2SetBoolean)(c, vr, 1, &raw const *&0)),
+                ("fmi2GetReal", &|c| (f.fmi2GetReal)(c, vr, 1, &mut 0.0)),
+                ("fmi2GetInteger", &|c| (f.fmi2GetInteger)(c, vr, 1, &mut 0)),
+                ("fmi2GetBoolean", &|c| (f.fmi2GetBoolean)(c, vr, 1, &mut 0)),
+                ("fmi2GetString", &|c| (f.fmi2GetString)(c, vr, 1, &mut null())),
+                ("fmi2SetReal", &|c| (f.fmi2SetReal)(c, vr, 1, &0.0)),
+                ("fmi2SetInteger", &|c| (f.fmi2SetInteger)(c, vr, 1, &0)),
+                ("fmi2SetBoolean", &|c| (f.fmi2SetBoolean)(c, vr, 1, &0)),
                 ("fmi2SetString", &|c| (f.fmi2SetString)(c, vr, 1, &raw const text)),
-                ("fmi2SetRealInputDerivatives", &|c| {
-                    (f.fmi2SetRealInputDerivatives)(c, vr, 1, &raw const *&1, &raw const *&0.0)
-                }),
-                ("fmi2GetRealOutputDerivatives", &|c| {
-                    (f.fmi2GetRealOutputDerivatives)(c, vr, 1, &raw const *&1, &raw mut 0.0_f64.clone())
-                }),
+                ("fmi2SetRealInputDerivatives", &|c| (f.fmi2SetRealInputDerivatives)(c, vr, 1, &1, &0.0)),
+                ("fmi2GetRealOutputDerivatives", &|c| (f.fmi2GetRealOutputDerivatives)(c, vr, 1, &1, &mut 0.0)),
             ]
         };
         for (what, call) in calls {
@@ -212,11 +214,22 @@ pub fn references(fmu: &Fmu) -> Result<(), String> {
 /// # Errors
 /// What was refused, or did not work.
 pub fn instantiation(fmu: &Fmu) -> Result<(), String> {
-    let long = [b"file:///".as_slice(), &[b'a'; 1 << 20], b"\0"].concat();
+    let long = [b"file:///".as_slice(), &vec![b'a'; 1 << 20], b"\0"].concat();
     let long = CStr::from_bytes_with_nul(&long).map_err(|e| e.to_string())?;
     let odd = [
-        c"", c"file:", c"file:/x", c"file:///a%20b/%C3%A9", c"file:///%zz", c"file:///%FF", c"file:///%00", c"file://host/x",
-        c"http://example.org/x", c"fmi2://x", c"C:\\x", c"\xff\xfe", long,
+        c"",
+        c"file:",
+        c"file:/x",
+        c"file:///a%20b/%C3%A9",
+        c"file:///%zz",
+        c"file:///%FF",
+        c"file:///%00",
+        c"file://host/x",
+        c"http://example.org/x",
+        c"fmi2://x",
+        c"C:\\x",
+        c"\xff\xfe",
+        long,
     ];
     let none = fmi2CallbackFunctions {
         logger: None,

@@ -174,7 +174,7 @@ fn advance(instance: &mut Instance, function: Function, answer: Answer, blobs: &
         _ => {}
     }
     match answer.effect {
-        Effect::Nothing | Effect::Restored(None) => {}
+        Effect::Nothing | Effect::Restored(None) | Effect::Serialised(_, None) => {}
         Effect::Time(time) => instance.known.time = time,
         Effect::LogsAll(on) => instance.logs_all = on,
         Effect::Restored(Some(known)) => instance.known = known,
@@ -189,6 +189,5 @@ fn advance(instance: &mut Instance, function: Function, answer: Answer, blobs: &
         Effect::Serialised(bytes, Some(known)) => {
             blobs.push(Blob { bytes, known, interface: instance.interface, damaged: false });
         }
-        Effect::Serialised(_, None) => {}
     }
 }

@@ -80,20 +80,22 @@ impl<S: Slave> Instance<S> {
     /// `fmi2SetReal`: any other Set, and in continuous-time mode one of the continuous states, too.
     pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Call {
         let (mut states, mut others) = (Vec::new(), (Vec::new(), Vec::new()));
+        let between_events = self.core.state == CallState::ContinuousTimeMode;
         for (&reference, &value) in references.iter().zip(values) {
-            match state_index::<S>(reference).filter(|_| self.core.state == CallState::ContinuousTimeMode) {
-                Some(index) => states.push((index, value)),
-                None => {
-                    others.0.push(reference);
-                    others.1.push(value);
-                }
+            if let Some(index) = state_index::<S>(reference).filter(|_| between_events) {
+                states.push((index, value));
+            } else {
+                others.0.push(reference);
+                others.1.push(value);
             }
         }
         if states.is_empty() {
             return self.set::<AsReal, _>(references, values, |value| value);
         }
         let mut all = self.continuous_states(states_and_derivatives(S::variables()).count())?;
-        states.into_iter().for_each(|(index, value)| all[index] = value);
+        for (index, value) in states {
+            all[index] = value;
+        }
         check_states::<S>(&all)?;
         self.set::<AsReal, _>(&others.0, &others.1, |value| value)?;
         self.set_continuous_states(&all)
