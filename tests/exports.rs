@@ -15,10 +15,10 @@ const WITHOUT_INSTANCE: [&str; 3] = ["fmi2GetTypesPlatform", "fmi2GetVersion", "
 /// What the library of an FMU for this machine exports.
 fn exports(fmu: &std::path::Path) -> BTreeSet<String> {
     let mut archive = zip::ZipArchive::new(std::fs::File::open(fmu).unwrap()).unwrap();
-    let is_library = |name: &&str| name.starts_with("binaries/") && !name.ends_with('/');
-    let name = archive.file_names().find(is_library).unwrap().to_owned();
+    let names: Vec<_> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+    let name = names.iter().find(|name| name.starts_with("binaries/") && !name.ends_with('/')).unwrap();
     let mut bytes = Vec::new();
-    archive.by_name(&name).unwrap().read_to_end(&mut bytes).unwrap();
+    archive.by_name(name).unwrap().read_to_end(&mut bytes).unwrap();
     let library = object::File::parse(bytes.as_slice()).unwrap();
     let symbols = library.dynamic_symbols().filter(ObjectSymbol::is_definition);
     symbols.map(|symbol| symbol.name().unwrap().to_owned()).collect()

@@ -12,6 +12,7 @@ use std::ffi::CString;
 /// Sequences; few for Miri, which is a thousand times slower.
 const SEQUENCES: u64 = if cfg!(miri) { 60 } else { 100_000 };
 
+#[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn toy() -> Fmu {
     let guid = CString::new(Guid::of::<toy::Toy>().to_string()).unwrap();
     let functions = linked_functions!(model_exchange);
