@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit fmpy conformance)
+readonly STAGES=(setup lint unit valgrind fmpy conformance)
 readonly VENV=.venv
 # The second takes the first in.
 readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
@@ -21,6 +21,7 @@ Runs the stages named, or all of them in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   lint         cargo fmt, clippy and rustdoc, with warnings as errors
   unit         the tests of all Rust packages
+  valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md
 
@@ -145,6 +146,10 @@ stage_lint() {
 stage_unit() {
     run cargo test --workspace
     run cargo test -p fmi2-export --all-features
+}
+
+stage_valgrind() {
+    run tests/valgrind/run.sh
 }
 
 need_python() {

@@ -1,5 +1,6 @@
 //! The trait that a model implements to become an FMU.
 
+use crate::call_state::Function;
 use crate::error::SlaveError;
 use crate::info::ModelInfo;
 use crate::logger::Logger;
@@ -123,6 +124,13 @@ pub trait Slave: Clone + Send + 'static {
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
         let _ = (unknown, known);
         0.0
+    }
+
+    /// Called at the head of each C function that acts on the instance and is legal, but `fmi2FreeInstance`. For tests
+    /// that look at the exporter, or make it fail anywhere.
+    #[doc(hidden)]
+    fn on_call(&self, function: Function) {
+        let _ = function;
     }
 
     /// Writes everything that [`read_state`](Self::read_state) needs. Called only if

@@ -8,6 +8,10 @@ use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape
 
 use crate::variables::VARIABLES;
 
+/// Longest communication step, in periods of the excitation: some seconds of work. A step of any length would have the
+/// importer wait without end for one that it mistook.
+const MAX_PERIODS: f64 = 1e6;
+
 /// The law of the contact between ball and membrane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ContactLaw {
@@ -123,6 +127,12 @@ impl Slave for Harvester {
 
     /// The external force runs on at its rate over the step and stays where that took it, unless it is set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
+        let longest = MAX_PERIODS / self.parameters.frequency;
+        if h > longest {
+            let message =
+                format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+            return Err(SlaveError::discard(t, message));
+        }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let model = self.running()?;
         let events = log.is_enabled(LogCategory::Events);
