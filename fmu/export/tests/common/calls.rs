@@ -45,7 +45,7 @@ pub fn call(host: &Host, function: Function, mut state: fmi2FMUstate) -> fmi2Sta
     unsafe {
         match function {
             F::SetDebugLogging => fmi2SetDebugLogging(c, fmi2True, 0, null()),
-            F::FreeInstance => panic!("not here"),
+            F::FreeInstance => unreachable!("it has no status"),
             F::SetupExperiment => host.setup(0.0, None),
             F::EnterInitializationMode => fmi2EnterInitializationMode(c),
             F::ExitInitializationMode => fmi2ExitInitializationMode(c),
