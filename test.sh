@@ -10,8 +10,8 @@ readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: it installs Wine and cross compilers.
-readonly EXTRA_STAGES=(portability)
+# Not among those that run by default: one takes long to build what it runs, the other installs Wine and cross compilers.
+readonly EXTRA_STAGES=(conformance-slow portability)
 
 usage() {
     cat <<'EOF'
@@ -26,6 +26,8 @@ Runs the stages named, or all of them in this order:
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md
 
 Only when named:
+  conformance-slow
+               conformance with fmi-sim, too, which takes ten minutes to build
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
@@ -172,6 +174,11 @@ stage_conformance() {
     build_fmus
     run "$VENV/bin/python" -m pytest tests/c
     run "$VENV/bin/python" tests/conformance
+}
+
+stage_conformance-slow() {
+    run cargo install --quiet --locked --root target/tools fmi-sim --version 0.7.0
+    PATH="$PWD/target/tools/bin:$PATH" stage_conformance
 }
 
 stage_portability() {

@@ -18,7 +18,7 @@ import job
 import record
 from job import harness
 
-CHECKERS = ("xsd", "fmpy_validate", "fmutool", "fmucheck")
+CHECKERS = ("xsd", "fmpy_validate", "fmutool", "fmucheck", "fmi_sim")
 REFERENCE = "videg"
 IMPORTERS = (REFERENCE, "fmi_crate", "fmpy_master", "libcosim", "ecos")
 """The first is what the others are compared with."""

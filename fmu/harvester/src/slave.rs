@@ -8,9 +8,9 @@ use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape
 
 use crate::variables::VARIABLES;
 
-/// Longest communication step, in periods of the excitation: some seconds of work. A step of any length would have the
+/// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
 /// importer wait without end for one that it mistook.
-const MAX_PERIODS: f64 = 1e6;
+const MAX_PERIODS: f64 = 1e7;
 
 /// The law of the contact between ball and membrane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
