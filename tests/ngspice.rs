@@ -83,7 +83,9 @@ fn both_solvers_agree_on_the_paper_circuit_with_the_same_diodes_and_with_ideal_o
     let Some(ngspice) = ngspice() else { return };
     let table = table(&harvester_fmu(), "fig14", 10.0);
     for ideal in variants() {
-        let found = ngspice.simulate(&Elements::new(&ideal, &table).unwrap(), &table, &Run::new(&table)).unwrap();
+        let found = ngspice
+            .simulate(&Elements::new(&ideal, table.growth()).unwrap(), &table, &Run::new(table.until(), table.growth()))
+            .unwrap();
         let expected = Waveforms::embedded(&exponential(ideal), &table).unwrap();
         // Both integrate with errors of their own; the embedded solver's books are good to some 1e-5 here.
         assert_books(&found, &expected, 1e-4, &(ideal.topology, ideal.release, "same diodes"));
@@ -102,7 +104,13 @@ fn both_solvers_agree_on_a_slow_transient_and_on_a_ball_that_comes_to_rest() {
     for case in ["fig15", "table3-2hz"] {
         let table = table(&fmu, case, 5.0);
         for ideal in variants() {
-            let found = ngspice.simulate(&Elements::new(&ideal, &table).unwrap(), &table, &Run::new(&table)).unwrap();
+            let found = ngspice
+                .simulate(
+                    &Elements::new(&ideal, table.growth()).unwrap(),
+                    &table,
+                    &Run::new(table.until(), table.growth()),
+                )
+                .unwrap();
             let expected = Waveforms::embedded(&ideal, &table).unwrap();
             assert_books(&found, &expected, NEAR_IDEAL, &(case, ideal.topology, ideal.release));
         }
@@ -130,7 +138,13 @@ fn both_solvers_agree_for_loads_and_voltages_drawn_at_random() {
             zener_voltage: 2000.0 + 350.0 * random(&mut state),
             ..*case
         };
-        let found = ngspice.simulate(&Elements::new(&parameters, &table).unwrap(), &table, &Run::new(&table)).unwrap();
+        let found = ngspice
+            .simulate(
+                &Elements::new(&parameters, table.growth()).unwrap(),
+                &table,
+                &Run::new(table.until(), table.growth()),
+            )
+            .unwrap();
         let expected = Waveforms::embedded(&parameters, &table).unwrap();
         assert_books(&found, &expected, NEAR_IDEAL, &parameters);
     }
@@ -144,9 +158,9 @@ fn a_storage_takes_the_charge_that_a_zener_without_load_passes() {
         // A Zener diode into 0 ohm holds the membranes at U_z as a storage of U_z does, and burns what that stores.
         let shorted = Parameters { topology, zener_voltage: 2200.0, load_resistance: 0.0, ..Parameters::default() };
         let expected = Waveforms::embedded(&shorted, &table).unwrap().ledger();
-        let loaded = Elements::new(&Parameters { load_resistance: 1e9, ..shorted }, &table).unwrap();
+        let loaded = Elements::new(&Parameters { load_resistance: 1e9, ..shorted }, table.growth()).unwrap();
         let storage = Elements { branch: Branch::Storage { voltage: 2200.0 }, ..loaded }.checked().unwrap();
-        let found = ngspice.simulate(&storage, &table, &Run::new(&table)).unwrap().ledger();
+        let found = ngspice.simulate(&storage, &table, &Run::new(table.until(), table.growth())).unwrap().ledger();
         println!("{topology:?}: load {:+.1e}", found.load / expected.zener - 1.0);
         // The drop of 4 mV at 2.2 kV counts for what it is of the 200 V above the supply.
         assert!((found.load / expected.zener - 1.0).abs() < 1e-4, "{found:?} against {expected:?}");
@@ -170,7 +184,7 @@ fn the_capacitor_of_the_netlists_obeys_its_closed_forms() {
         (Check::RcDischarge { resistance: 1e10 }, &ramp),
         (Check::RcDischarge { resistance: 1e11 }, &ramp),
     ] {
-        let deviation = check.run(&ngspice, 2000.0, table, &Run::new(table)).unwrap();
+        let deviation = check.run(&ngspice, 2000.0, table, &Run::new(table.until(), table.growth())).unwrap();
         println!("{check:?}: {deviation:?}");
         assert!(deviation.largest < 1e-6, "{check:?}: {deviation:?}");
         assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < 1e-6);
@@ -252,8 +266,9 @@ fn what_a_user_writes_never_gets_into_a_netlist() {
     assert_eq!(scenario.name, hostile);
     let fmu = harvester_fmu();
     let table = CapacitanceTable::from_harvester(&mut harvester(&fmu, &scenario), 0.5, 1e-3).unwrap();
-    let elements = Elements::new(&Parameters::default(), &table).unwrap();
-    let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), &Run::new(&table)).unwrap();
+    let elements = Elements::new(&Parameters::default(), table.growth()).unwrap();
+    let netlist =
+        elements.netlist(CapacitanceSource::Table, table.initial(), &Run::new(table.until(), table.growth())).unwrap();
     let mut written = Vec::new();
     table.write(&mut written).unwrap();
     let written = String::from_utf8(written).unwrap();

@@ -1,6 +1,7 @@
 //! ngspice's shared library in its worker process: the same energies as the embedded solver on the same C(t), and what
 //! happens when the worker or the library fails.
 #![cfg(unix)]
+#![allow(clippy::unwrap_used)] // Helpers outside of #[test] functions fail a test, too.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,7 +13,10 @@ use videg::ngspice::{Elements, Run};
 use videg_circuit::{Release, Settings, Topology};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_videg");
-const UNTIL: f64 = 2.0;
+const STEP: f64 = 1e-3;
+const STEPS: u32 = 2000;
+/// Largest capacitance relative to that at rest.
+const GROWTH: f64 = 20.0 / 15.0;
 
 /// Capacitances of two membranes that are pressed in by turns, 30 ms every 250 ms, F.
 fn capacitance(time: f64) -> [f64; 2] {
@@ -24,18 +28,24 @@ fn capacitance(time: f64) -> [f64; 2] {
 }
 
 /// Steps a circuit through the pulses.
-fn run(circuit: &mut dyn CircuitSlave, step: f64) -> CircuitSample {
-    let steps = (UNTIL / step).round() as u32;
-    for k in 0..steps {
-        let time = f64::from(k) * step;
-        circuit.step(time, step, capacitance(time), capacitance(time + step)).unwrap();
+fn run(circuit: &mut dyn CircuitSlave) -> CircuitSample {
+    for k in 0..STEPS {
+        let time = f64::from(k) * STEP;
+        circuit.step(time, STEP, capacitance(time), capacitance(time + STEP)).unwrap();
     }
     circuit.sample().unwrap()
 }
 
 fn ngspice(settings: &Settings) -> NgspiceCircuit {
-    let elements = Elements::new(&settings.parameters()).unwrap();
-    NgspiceCircuit::new("test", Path::new(PROGRAM), &elements, capacitance(0.0), &Run::new(UNTIL)).unwrap()
+    let elements = Elements::new(&settings.parameters(), GROWTH).unwrap();
+    NgspiceCircuit::new(
+        "test",
+        Path::new(PROGRAM),
+        &elements,
+        capacitance(0.0),
+        &Run::new(f64::from(STEPS) * STEP, GROWTH),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -49,8 +59,8 @@ fn ngspice_step_by_step_gives_the_energies_of_the_embedded_solver() {
             settings.circuit.release = release;
             settings.circuit.zener_voltage = voltage;
             settings.circuit.storage_voltage = voltage;
-            let here = run(&mut EmbeddedCircuit::new("test", &settings, capacitance(0.0)).unwrap(), 1e-3);
-            let there = run(&mut ngspice(&settings), 1e-3);
+            let here = run(&mut EmbeddedCircuit::new("test", &settings, capacitance(0.0)).unwrap());
+            let there = run(&mut ngspice(&settings));
             let scale = here.ledger.supply.abs();
             assert!(scale > 1e-6, "{scale}");
             // ngspice sees a switch close up to one of its steps late, 1e-4 s of a pulse of 30 ms.
@@ -69,15 +79,14 @@ fn ngspice_step_by_step_gives_the_energies_of_the_embedded_solver() {
 #[test]
 fn more_communication_points_on_the_same_ramps_do_not_cost_accuracy() {
     let settings = Settings { exponential: true, ..Settings::default() };
-    let whole = run(&mut ngspice(&settings), 1e-3).ledger;
+    let whole = run(&mut ngspice(&settings)).ledger;
     let mut circuit = ngspice(&settings);
-    let steps = (UNTIL / 1e-3).round() as u32;
-    for k in 0..steps {
-        let time = f64::from(k) * 1e-3;
-        let [start, end] = [capacitance(time), capacitance(time + 1e-3)];
+    for k in 0..STEPS {
+        let time = f64::from(k) * STEP;
+        let [start, end] = [capacitance(time), capacitance(time + STEP)];
         let middle = [0, 1].map(|j| 0.5 * (start[j] + end[j]));
-        circuit.step(time, 0.5e-3, start, middle).unwrap();
-        circuit.step(time + 0.5e-3, 0.5e-3, middle, end).unwrap();
+        circuit.step(time, 0.5 * STEP, start, middle).unwrap();
+        circuit.step(time + 0.5 * STEP, 0.5 * STEP, middle, end).unwrap();
     }
     let halved = circuit.sample().unwrap().ledger;
     // With breakpoints, steps of 1 ms cost 6e-3 of the load energy.

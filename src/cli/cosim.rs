@@ -174,9 +174,9 @@ fn circuits(
     let first: Box<dyn CircuitSlave> = match backend {
         Backend::Embedded => Box::new(EmbeddedCircuit::new(&label(settings), settings, capacitance)?),
         Backend::Ngspice => {
-            let elements = Elements::new(&settings.parameters())?;
+            let elements = Elements::new(&settings.parameters(), ratio)?;
             let program = std::env::current_exe().context("cannot find this program's own file")?;
-            let run = ngspice::Run::new(scenario.until);
+            let run = ngspice::Run::new(scenario.until, ratio);
             Box::new(NgspiceCircuit::new(&label(settings), &program, &elements, capacitance, &run)?)
         }
         Backend::Fmu => {

@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let case = Case::new(&fmu, &scenario, &mechanical, &mut bar)?;
     bar.finish();
     let circuit = circuit_settings(&electrical, case.bias_voltage, case.best_ratio())?;
-    Elements::new(&Settings { exponential: true, ..circuit }.parameters())?;
+    Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth())?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
     let finished = solve(scenario, case, circuit, &ngspice, arguments.sweep)?;
     let mut written = files::write(&folder, &finished)?;
@@ -312,7 +312,7 @@ fn capacitor_check(ngspice: &Ngspice, voltage: f64, case: &Case, index: usize) -
     let [c2, c3] = capacitances(case);
     let form = &export::closed_forms(voltage, c2, c3)[index];
     let table = export::growing_capacitor(c2, c3)?;
-    let found = form.check.run(ngspice, voltage, &table, &Run::new(table.until()))?;
+    let found = form.check.run(ngspice, voltage, &table, &Run::new(table.until(), table.growth()))?;
     let between = format!("closed form and {}", Solver::Batch.name());
     Ok(Check {
         name: form.about.to_owned(),

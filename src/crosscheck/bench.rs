@@ -68,16 +68,16 @@ impl Bench<'_> {
         match solver {
             Solver::Ideal | Solver::Exponential => Waveforms::embedded(&parameters, self.table),
             Solver::Batch => {
-                let run = Run::new(self.table.until());
-                self.ngspice.simulate(&Elements::new(&parameters)?, self.table, &run)
+                let run = Run::new(self.table.until(), self.table.growth());
+                self.ngspice.simulate(&Elements::new(&parameters, self.table.growth())?, self.table, &run)
             }
-            Solver::Live => self.live(&Elements::new(&parameters)?),
+            Solver::Live => self.live(&Elements::new(&parameters, self.table.growth())?),
         }
     }
 
     /// Steps the shared library from row to row of the table.
     fn live(&self, elements: &Elements) -> Result<Waveforms, NgspiceError> {
-        let run = Run::new(self.table.until());
+        let run = Run::new(self.table.until(), self.table.growth());
         let name = Solver::Live.name();
         let mut circuit = NgspiceCircuit::new(name, self.program, elements, self.table.initial(), &run)?;
         let mut samples = vec![circuit.sample()?];

@@ -91,7 +91,7 @@ fn refined(table: &CapacitanceTable, spacing: f64) -> Result<CapacitanceTable, N
         }
         push(end, b);
     }
-    CapacitanceTable::new(time, left, right)
+    CapacitanceTable::new(&time, &left, &right)
 }
 
 /// Finds the impacts from the running sum of their gains. Impacts within one communication step count as one.

@@ -279,7 +279,7 @@ mod tests {
     fn case() -> Case {
         let time: Vec<f64> = (0..=450).map(|k| f64::from(k) * 1e-3).collect();
         let bump = |t: f64| 1.0 + 0.4 * (std::f64::consts::PI * (t / 0.06).clamp(0.0, 1.0)).sin();
-        let left = time.iter().map(|&t| 15e-12 * bump(t).max(bump(t - 0.4))).collect();
+        let left: Vec<f64> = time.iter().map(|&t| 15e-12 * bump(t).max(bump(t - 0.4))).collect();
         let right = vec![15e-12; time.len()];
         let impact = |time| Impact { time, side: 0, ratio: 1.4 };
         let mechanics = MechanicsSummary {
@@ -291,7 +291,7 @@ mod tests {
             energy_eq13: 0.0,
         };
         Case {
-            table: CapacitanceTable::new(time, left, right).unwrap(),
+            table: CapacitanceTable::new(&time, &left, &right).unwrap(),
             mechanics,
             impacts: vec![impact(0.0), impact(0.4)],
             rest: [15e-12; 2],

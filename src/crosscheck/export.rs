@@ -72,8 +72,8 @@ impl Item {
         table: &CapacitanceTable,
         expected: Vec<Expected>,
     ) -> Result<Self, NgspiceError> {
-        let elements = Elements::new(&Settings { exponential: true, ..*settings }.parameters())?;
-        let run = Run::new(table.until());
+        let elements = Elements::new(&Settings { exponential: true, ..*settings }.parameters(), table.growth())?;
+        let run = Run::new(table.until(), table.growth());
         let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), &run)?;
         Ok(Self { folder, about, netlist, table: table.clone(), script: circuit_script(settings), expected })
     }
@@ -84,7 +84,7 @@ impl Item {
     /// Numbers that make no table or netlist.
     pub fn capacitors(voltage: f64, c2: f64, c3: f64) -> Result<Vec<Self>, NgspiceError> {
         let table = growing_capacitor(c2, c3)?;
-        let run = Run::new(table.until());
+        let run = Run::new(table.until(), table.growth());
         let forms = closed_forms(voltage, c2, c3).into_iter();
         forms
             .map(|form| {
@@ -110,7 +110,7 @@ const RESISTANCE: f64 = 2e10;
 /// # Errors
 /// Capacitances that make no table.
 pub fn growing_capacitor(c2: f64, c3: f64) -> Result<CapacitanceTable, NgspiceError> {
-    CapacitanceTable::new(vec![0.0, GROWTH], vec![c2, c3], vec![c2, c2])
+    CapacitanceTable::new(&[0.0, GROWTH], &[c2, c3], &[c2, c2])
 }
 
 /// A check with what it comes to.

@@ -79,7 +79,7 @@ impl Pulses {
         }
         starts.push(time.len());
         let order = pieces.into_iter().map(|(index, _)| index).collect();
-        Ok(Some(Self { table: CapacitanceTable::new(time, left, right)?, order, starts }))
+        Ok(Some(Self { table: CapacitanceTable::new(&time, &left, &right)?, order, starts }))
     }
 
     /// First and last row of a pulse between the rows of two impacts, if both membranes are at rest there.

@@ -102,12 +102,6 @@ impl CapacitanceTable {
         self.rows().map(|(_, c)| (c[0] / left).max(c[1] / right)).fold(1.0, f64::max)
     }
 
-    /// By how much diodes and tolerances have to be coarser than for the pulses of the paper's Fig. 9 to 15, which
-    /// raise the voltage by less than a factor of 5: doubles resolve a voltage of 300 kV to 60 pV only.
-    pub(super) fn coarseness(&self) -> f64 {
-        (self.growth() / 5.0).max(1.0)
-    }
-
     /// Last time, s.
     pub fn until(&self) -> f64 {
         self.time.last().copied().unwrap_or_default()

@@ -8,8 +8,8 @@
 //! let table = CapacitanceTable::from_harvester(harvester, 10.0, 1e-4)?;    // C(t), linear between its rows
 //! let parameters = videg_circuit::Parameters::default();
 //! let embedded = Waveforms::embedded(&parameters, &table)?;
-//! let elements = Elements::new(&parameters, &table)?;
-//! let ngspice = Ngspice::find(None)?.simulate(&elements, &table, &Run::new(&table))?;
+//! let elements = Elements::new(&parameters, table.growth())?;
+//! let ngspice = Ngspice::find(None)?.simulate(&elements, &table, &Run::new(table.until(), table.growth()))?;
 //! assert!((ngspice.ledger().load / embedded.ledger().load - 1.0).abs() < 1e-3);
 //! # Ok(())
 //! # }

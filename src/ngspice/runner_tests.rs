@@ -22,8 +22,8 @@ fn fake(script: &str) -> (tempfile::TempDir, Ngspice) {
 fn simulate(script: &str) -> Result<Waveforms, NgspiceError> {
     let (folder, mut ngspice) = fake(script);
     ngspice.time_limit = Duration::from_secs(20);
-    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
-    let result = ngspice.simulate(&elements, &table(), &Run::new(&table()));
+    let elements = Elements::new(&Parameters::default(), table().growth()).unwrap();
+    let result = ngspice.simulate(&elements, &table(), &Run::new(table().until(), table().growth()));
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
     assert_eq!(left.len(), 1, "something was executed: {left:?}");
     result
@@ -72,8 +72,8 @@ fn half_a_result_is_a_failure_that_says_how_far_it_got() {
 fn a_program_that_hangs_is_ended_with_its_children() {
     let (_folder, mut ngspice) = fake("sleep 1000 & echo $! > \"$0.child\"; wait");
     ngspice.time_limit = Duration::from_secs(1);
-    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
-    let error = ngspice.simulate(&elements, &table(), &Run::new(&table())).unwrap_err();
+    let elements = Elements::new(&Parameters::default(), table().growth()).unwrap();
+    let error = ngspice.simulate(&elements, &table(), &Run::new(table().until(), table().growth())).unwrap_err();
     assert!(matches!(error, NgspiceError::TimeLimit { limit: 1.0, .. }), "{error}");
     let child = ngspice.program().with_file_name("ng spice;touch pwned.child");
     let id: i32 = std::fs::read_to_string(child).unwrap().trim().parse().unwrap();
@@ -98,8 +98,10 @@ fn a_flood_of_messages_is_bounded_and_harmless() {
 #[test]
 fn the_folder_of_a_run_is_removed_and_an_export_holds_two_files() {
     let Some(ngspice) = Ngspice::for_tests() else { return };
-    let elements = Elements::new(&Parameters::default(), &table()).unwrap();
-    let netlist = elements.netlist(CapacitanceSource::Table, table().initial(), &Run::new(&table())).unwrap();
+    let elements = Elements::new(&Parameters::default(), table().growth()).unwrap();
+    let netlist = elements
+        .netlist(CapacitanceSource::Table, table().initial(), &Run::new(table().until(), table().growth()))
+        .unwrap();
     let finished = ngspice.run(&netlist, &table()).unwrap();
     let folder = finished.folder.path().to_owned();
     assert!(finished.raw().unwrap().is_some());
