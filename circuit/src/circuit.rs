@@ -134,6 +134,7 @@ impl Circuit {
             devices: &devices,
             solver: &diode.solver,
             count: network.count,
+            charge: network.nodes.map(|node| node.charge),
             capacitance: start,
             rate,
             time: self.state.time,

@@ -21,13 +21,17 @@ use crate::parameters::{DiodeParameters, Parameters, Release};
 /// `k/q` (V/K), CODATA 2018 (both constants are exact in the SI).
 const BOLTZMANN_OVER_CHARGE: f64 = 1.380_649e-23 / 1.602_176_634e-19;
 
-/// Largest exponent: keeps trial currents finite far from the solution, and is never reached at one.
+/// Largest exponent: keeps trial currents finite far from the solution, and is never reached at one. Of a blocking diode
+/// it saves the exponential the detour of an underflow.
 const EXPONENT: f64 = 600.0;
 
 /// Largest conductance of a load behind a smooth switch (S). A switch is lossless: below 1 kohm, only the
 /// nanoseconds in which a node falls to `U_z` depend on the load, while the band would shrink below the last bit of
 /// the voltage.
 const SWITCH_CONDUCTANCE: f64 = 1e-3;
+
+/// Part of the band over which one node takes precedence over the other.
+const PRECEDENCE: f64 = 0.25;
 
 /// The elements around the nodes.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +83,12 @@ impl Devices {
 
     /// A voltage over which currents change by a factor, to start searches with (V).
     pub fn reach(&self) -> f64 {
-        8.0 * self.forward.min(self.reverse)
+        8.0 * self.steepest()
+    }
+
+    /// Shortest voltage over which a current changes by a factor (V).
+    pub fn steepest(&self) -> f64 {
+        self.forward.min(self.reverse).min(PRECEDENCE * self.band)
     }
 
     /// Current of a charging diode (A) and its conductance (S) at a node voltage.
@@ -92,10 +101,20 @@ impl Devices {
         self.diode(voltage - self.threshold)
     }
 
+    /// Current of the release element to a constant voltage (A) and its slope (S): that of the switch or into the storage.
+    /// A Zener diode has the load behind it.
+    pub fn holding(&self, voltage: f64) -> (f64, f64) {
+        match self.release {
+            Release::Zener => (0.0, 0.0),
+            Release::Switch => self.switch(voltage),
+            Release::Storage => self.storing(voltage),
+        }
+    }
+
     /// Current of a diode without breakdown (A) and its conductance (S), from anode to cathode.
     fn diode(&self, across: f64) -> (f64, f64) {
-        let x = (across / self.forward).min(EXPONENT);
-        (self.saturation * x.exp_m1(), self.saturation * x.exp() / self.forward)
+        let grown = (across / self.forward).clamp(-EXPONENT, EXPONENT).exp_m1();
+        (self.saturation * grown, self.saturation * (1.0 + grown) / self.forward)
     }
 
     /// Current of a Zener diode from node to load (A) and its conductance (S), at `V_de - V_out`.
@@ -105,8 +124,8 @@ impl Devices {
             let current = self.saturation * x.exp();
             (current, current / self.reverse)
         } else {
-            let x = -across.abs() / self.forward;
-            (-self.saturation * x.exp_m1() * across.signum(), self.saturation * x.exp() / self.forward)
+            let (current, slope) = self.diode(-across.abs());
+            (-current * across.signum(), slope)
         }
     }
 
@@ -125,9 +144,9 @@ impl Devices {
     }
 
     /// Part of its switch current that a node may have beside another node, and its slope (1/V): the higher
-    /// node takes the load, as with ideal switches, smoothed over a quarter of the band.
+    /// node takes the load, as with ideal switches, smoothed over [`PRECEDENCE`] of the band.
     pub fn precedence(&self, voltage: f64, other: f64) -> (f64, f64) {
-        let scale = 0.25 * self.band;
+        let scale = PRECEDENCE * self.band;
         let part = 1.0 / (1.0 + ((other - voltage) / scale).min(EXPONENT).exp());
         (part, part * (1.0 - part) / scale)
     }

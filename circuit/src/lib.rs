@@ -23,6 +23,7 @@ mod roots;
 mod settings;
 mod stage;
 mod state;
+mod step;
 
 pub use circuit::Circuit;
 pub use error::{Error, Failure};

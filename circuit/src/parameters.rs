@@ -121,8 +121,12 @@ impl Default for DiodeParameters {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solver {
     /// `solver.relativeTolerance` (1), above 0, default 1e-9: largest error of an internal step, charges
-    /// relative to `C U_in` and energies to `C U_in^2`. With `N` much below 0.01 the last bit of a voltage of 2 kV is
-    /// too coarse for so small a tolerance.
+    /// relative to `C U_in` or the charge that is there, energies to that charge at its voltage, and the energy of a load
+    /// behind a Zener diode to that charge at the voltage of the load. Below some 1e-13 it asks for more than the last
+    /// bits of a charge hold.
+    ///
+    /// Where `N Vt` comes near the last bit of a voltage (6e-11 V at 300 kV, against `N Vt` = 2.6e-4 V by default), currents
+    /// are taken from the balance of charge instead of the exponential, and keep this accuracy.
     pub relative_tolerance: f64,
     /// `solver.maximumSteps`, default 100 000: internal steps, rejected ones included, in one call.
     pub maximum_steps: usize,

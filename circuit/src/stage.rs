@@ -8,6 +8,9 @@ use crate::devices::Devices;
 use crate::parameters::Release;
 use crate::roots::{NEWTON, increasing, newton};
 
+/// Part of the shortest voltage over which a current changes by a factor, whose square is below rounding.
+const SQUARED_IS_NOTHING: f64 = 1e-8;
+
 /// Voltages and currents that solve the node equations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Point {
@@ -55,13 +58,21 @@ impl Stage<'_> {
                 self.capacitance[j] + self.span * (supply_slope + release_slope),
             )
         };
-        newton(balance, guess).or_else(|| increasing(balance, guess, self.devices.reach()))
+        newton(balance, guess, self.resolved([guess; 2])).or_else(|| increasing(balance, guess, self.devices.reach()))
+    }
+
+    /// A step of Newton's method after which there is nothing left to gain (V): the next would be shorter than the last
+    /// bit of the voltages, or by its square than that of the currents.
+    fn resolved(&self, guess: [f64; 2]) -> f64 {
+        let highest = guess.into_iter().fold(self.devices.supply, f64::max);
+        (2.0 * f64::EPSILON * highest).max(SQUARED_IS_NOTHING * self.devices.steepest())
     }
 
     /// Nodes behind Zener diodes, all at once, by Newton's method; `None` where it does not settle.
     fn zeners_at_once(&self, guess: &Point) -> Option<Point> {
         let g = self.devices.conductance;
         let mut point = *guess;
+        let resolved = self.resolved(guess.voltage);
         for _ in 0..NEWTON {
             // Of the load: what its voltage lacks of taking the Zener currents, and the slope of that, in terms of the
             // node voltages. Of the nodes: their Newton steps at constant load voltage, and how they follow that of the load.
@@ -80,8 +91,8 @@ impl Stage<'_> {
             }
             let rise = if g == f64::INFINITY { -point.load_voltage } else { lacking / slope };
             point.load_voltage += rise;
-            // The currents depend on differences of voltages that have no more bits than the supply. NaN never settles.
-            let settles = |step: f64| step.abs() <= 2.0 * f64::EPSILON * self.devices.supply;
+            // NaN never settles.
+            let settles = |step: f64| step.abs() <= resolved;
             let mut settled = settles(rise);
             for j in 0..self.count {
                 let moved = step[j] + following[j] * rise;
@@ -187,20 +198,55 @@ impl Stage<'_> {
         release / (self.capacitance[j] + self.span * self.devices.charging(v).1 + release)
     }
 
-    /// Nodes behind switches: node 1 solved for a trial voltage of node 0.
+    /// Nodes behind switches.
     fn switches(&self, guess: &Point) -> Option<Point> {
         let mut point = *guess;
         if self.count == 1 {
             point.voltage[0] = self.node(0, guess.voltage[0], |v| self.devices.switch(v))?;
         } else {
-            let mut second = guess.voltage[1];
-            let balance = |first: f64| self.beside_switch(first, &mut second).unwrap_or((f64::NAN, f64::NAN));
-            let first = increasing(balance, guess.voltage[0], self.devices.reach())?;
-            self.beside_switch(first, &mut second)?;
-            point.voltage = [first, second];
+            point.voltage = self.switches_at_once(guess).or_else(|| self.switches_nested(guess))?;
         }
         self.switch_currents(&mut point);
         Some(point)
+    }
+
+    /// Voltages of two nodes behind switches by Newton's method; `None` where it does not settle.
+    fn switches_at_once(&self, guess: &Point) -> Option<[f64; 2]> {
+        let resolved = self.resolved(guess.voltage);
+        let mut voltage = guess.voltage;
+        for _ in 0..NEWTON {
+            // Of each node: what it lacks of its charge, and the slopes of that in its own and the other voltage.
+            let [(lacking_0, own_0, cross_0), (lacking_1, own_1, cross_1)] = [0, 1].map(|j| {
+                let (supplied, supply_slope) = self.devices.charging(voltage[j]);
+                let (released, own, cross) = self.switch_beside(voltage[j], voltage[1 - j]);
+                let lacking = self.charge[j] + self.span * (supplied - released) - self.capacitance[j] * voltage[j];
+                (lacking, self.capacitance[j] + self.span * (supply_slope + own), self.span * cross)
+            });
+            // Cramer's rule, both equations scaled.
+            let (apart_0, apart_1) = (cross_0 / own_0, cross_1 / own_1);
+            let determinant = 1.0 - apart_0 * apart_1;
+            let step = [
+                (lacking_0 / own_0 - apart_0 * (lacking_1 / own_1)) / determinant,
+                (lacking_1 / own_1 - apart_1 * (lacking_0 / own_0)) / determinant,
+            ];
+            for j in 0..2 {
+                voltage[j] += step[j];
+            }
+            // NaN never is.
+            if step.iter().all(|step| step.abs() <= resolved) {
+                return Some(voltage);
+            }
+        }
+        None
+    }
+
+    /// Voltages of two nodes behind switches: node 1 solved for a trial voltage of node 0.
+    fn switches_nested(&self, guess: &Point) -> Option<[f64; 2]> {
+        let mut second = guess.voltage[1];
+        let balance = |first: f64| self.beside_switch(first, &mut second).unwrap_or((f64::NAN, f64::NAN));
+        let first = increasing(balance, guess.voltage[0], self.devices.reach())?;
+        self.beside_switch(first, &mut second)?;
+        Some([first, second])
     }
 
     /// Balance of node 0 and its slope, node 1 being solved for the voltage of node 0.

@@ -72,7 +72,10 @@ fn overlapping_pulses_of_isolated_membranes_agree_with_ideal_elements() {
 fn an_idle_node_leaks_the_geometric_mean_of_is_and_ibv() {
     let parameters = with(DiodeParameters::default(), Parameters::default());
     let mut circuit = Circuit::new(parameters, REST).unwrap();
-    circuit.advance(100.0, REST).unwrap();
+    // A step of 2500 time constants leaves half a percent of the transient, the next one half a percent of that.
+    for _ in 0..3 {
+        circuit.advance(100.0, REST).unwrap();
+    }
     assert_relative_eq!(circuit.supply_current(), 1e-13, max_relative = 1e-6);
     assert_relative_eq!(circuit.load_current(), 1e-13, max_relative = 1e-6);
     assert_relative_eq!(circuit.load_voltage(), 1e-4, max_relative = 1e-6);
@@ -100,7 +103,11 @@ fn loads_of_zero_and_infinite_resistance_are_integrated_too() {
             let ideal = Parameters { load_resistance, ..ideal };
             let mut circuit = Circuit::new(with(DiodeParameters::default(), ideal), REST).unwrap();
             run(&mut circuit, &pulse(REST, 12e-12, 0.03, 0.25, 20));
-            assert!(circuit.ledger().residual().abs() < 1e-9 * moved(&circuit.ledger()));
+            assert!(
+                circuit.ledger().residual().abs() < 1e-9 * moved(&circuit.ledger()),
+                "{ideal:?} {:?}",
+                circuit.ledger()
+            );
         }
     }
 }
@@ -139,7 +146,7 @@ fn an_exhausted_integrator_says_so_and_leaves_the_circuit_alone() {
         DiodeParameters { solver: Solver { maximum_steps: 3, ..Solver::default() }, ..DiodeParameters::default() };
     let mut circuit = Circuit::new(with(diode, Parameters::default()), REST).unwrap();
     let before = circuit.clone();
-    let error = circuit.advance(0.1, [30e-12, 15e-12]).unwrap_err();
+    let error = circuit.advance(0.1, [10e-12, 15e-12]).unwrap_err();
     assert!(matches!(error, Error::Integration { failure: Failure::Steps(3), .. }), "{error}");
     assert!(error.to_string().contains("solver.maximumSteps = 3"));
     assert_eq!(circuit, before);
