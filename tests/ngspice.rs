@@ -11,9 +11,12 @@ use videg::fmi::Fmu;
 use videg::ngspice::{Branch, CapacitanceSource, CapacitanceTable, Check, Elements, Ngspice, Run, Waveforms};
 use videg::package::{Options, build_all};
 use videg::scenario::{CaseFile, Request, Scenario};
-use videg_circuit::{DiodeParameters, Diodes, Parameters, Release, Topology};
+use videg_circuit::{Diodes, Parameters, Release, Topology};
 
 const TOPOLOGIES: [Topology; 2] = [Topology::SharedNode, Topology::Isolated];
+
+/// What two integrators of the same equations may differ by.
+const SAME_DIODES: f64 = 1e-4;
 
 /// What ngspice's diodes cost against ideal ones: they drop N Vt ln(I / IS), 4 mV at 1 uA, of the 30 V and more that a
 /// load of 100 Mohm and more sees, in energies twice that.
@@ -49,10 +52,6 @@ fn variants() -> impl Iterator<Item = Parameters> {
     })
 }
 
-fn exponential(parameters: Parameters) -> Parameters {
-    Parameters { diodes: Diodes::Exponential(DiodeParameters::default()), ..parameters }
-}
-
 /// Holds the books of `found` against those of `expected`.
 fn assert_books(found: &Waveforms, expected: &Waveforms, tolerance: f64, what: &dyn Debug) {
     let (a, b) = (found.ledger(), expected.ledger());
@@ -78,20 +77,25 @@ fn assert_books(found: &Waveforms, expected: &Waveforms, tolerance: f64, what: &
     assert!(a.residual().abs() < 2.0 * tolerance * (a.supply + a.mechanical.abs()), "{what:?}: {a:?}");
 }
 
+/// Runs the circuit in ngspice and holds it against the embedded solver with the diodes that ngspice has, and with
+/// ideal ones. Both integrate with errors of their own; the embedded solver's books are good to some 1e-5.
+fn compare(ngspice: &Ngspice, table: &CapacitanceTable, ideal: &Parameters, what: &dyn Debug) -> [f64; 2] {
+    let (until, growth) = (table.until(), table.growth());
+    let elements = Elements::new(ideal, growth).unwrap();
+    let found = ngspice.simulate(&elements, table, &Run::new(until, growth)).unwrap();
+    let same = Parameters { diodes: Diodes::Exponential(elements.diode), ..*ideal };
+    let expected = Waveforms::embedded(&same, table).unwrap();
+    assert_books(&found, &expected, SAME_DIODES, &(what, "same diodes"));
+    assert_books(&found, &Waveforms::embedded(ideal, table).unwrap(), NEAR_IDEAL, &(what, "ideal diodes"));
+    found.voltage_difference(&expected).unwrap()
+}
+
 #[test]
-fn both_solvers_agree_on_the_paper_circuit_with_the_same_diodes_and_with_ideal_ones() {
+fn both_solvers_agree_on_the_paper_circuit() {
     let Some(ngspice) = ngspice() else { return };
     let table = table(&harvester_fmu(), "fig14", 10.0);
     for ideal in variants() {
-        let found = ngspice
-            .simulate(&Elements::new(&ideal, table.growth()).unwrap(), &table, &Run::new(table.until(), table.growth()))
-            .unwrap();
-        let expected = Waveforms::embedded(&exponential(ideal), &table).unwrap();
-        // Both integrate with errors of their own; the embedded solver's books are good to some 1e-5 here.
-        assert_books(&found, &expected, 1e-4, &(ideal.topology, ideal.release, "same diodes"));
-        let ideally = Waveforms::embedded(&ideal, &table).unwrap();
-        assert_books(&found, &ideally, NEAR_IDEAL, &(ideal.topology, ideal.release, "ideal diodes"));
-        for difference in found.voltage_difference(&expected).unwrap() {
+        for difference in compare(&ngspice, &table, &ideal, &(ideal.topology, ideal.release)) {
             assert!(difference < 0.1, "{difference} V RMS");
         }
     }
@@ -104,15 +108,7 @@ fn both_solvers_agree_on_a_slow_transient_and_on_a_ball_that_comes_to_rest() {
     for case in ["fig15", "table3-2hz"] {
         let table = table(&fmu, case, 5.0);
         for ideal in variants() {
-            let found = ngspice
-                .simulate(
-                    &Elements::new(&ideal, table.growth()).unwrap(),
-                    &table,
-                    &Run::new(table.until(), table.growth()),
-                )
-                .unwrap();
-            let expected = Waveforms::embedded(&ideal, &table).unwrap();
-            assert_books(&found, &expected, NEAR_IDEAL, &(case, ideal.topology, ideal.release));
+            compare(&ngspice, &table, &ideal, &(case, ideal.topology, ideal.release));
         }
     }
 }
@@ -138,15 +134,7 @@ fn both_solvers_agree_for_loads_and_voltages_drawn_at_random() {
             zener_voltage: 2000.0 + 350.0 * random(&mut state),
             ..*case
         };
-        let found = ngspice
-            .simulate(
-                &Elements::new(&parameters, table.growth()).unwrap(),
-                &table,
-                &Run::new(table.until(), table.growth()),
-            )
-            .unwrap();
-        let expected = Waveforms::embedded(&parameters, &table).unwrap();
-        assert_books(&found, &expected, NEAR_IDEAL, &parameters);
+        compare(&ngspice, &table, &parameters, &parameters);
     }
 }
 
