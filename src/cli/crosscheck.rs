@@ -307,8 +307,8 @@ fn compared(
 
 /// ngspice's own capacitor against a closed form.
 fn capacitor_check(ngspice: &Ngspice, voltage: f64, case: &Case, index: usize) -> Result<Check, NgspiceError> {
-    /// Both sides are good to some 1e-7; a capacitor that loses V dC/dt is off by tens of percent.
-    const TOLERANCE: f64 = 1e-5;
+    /// Both sides are good to some 1e-8; a capacitor that loses V dC/dt is off by tens of percent.
+    const TOLERANCE: f64 = 1e-6;
     let [c2, c3] = capacitances(case);
     let form = &export::closed_forms(voltage, c2, c3)[index];
     let table = export::growing_capacitor(c2, c3)?;
@@ -360,6 +360,8 @@ fn text(finished: &Finished, files: &[PathBuf]) -> String {
     let mut parts = vec![
         format!("{}\ncircuit: {}", heading("crosscheck", &finished.scenario), finished.label),
         page::check_table(finished),
+        page::pair_table(finished),
+        page::claim_table(finished),
         page::comparison_table(finished),
     ];
     parts.extend(page::sweep_table(finished));

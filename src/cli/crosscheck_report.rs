@@ -52,17 +52,55 @@ fn cells(check: &Check) -> Vec<String> {
     row
 }
 
-/// The table of the checks as text. The claim stands on a line of its own below its row: a terminal is not wide enough.
+/// The quantities that every solver was asked for, as text. Claims have a table of their own: a terminal is not wide
+/// enough for both.
 pub fn check_table(finished: &Finished) -> String {
     let headings: Vec<_> = HEADINGS.iter().map(|heading| heading.replace(' ', "\n")).collect();
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
     let mut table = format::table(&headings[..headings.len() - 1]);
+    for check in finished.checks.iter().filter(|check| check.agreement.is_some() && by_all(check)) {
+        let row = cells(check);
+        table.add_row(format::row(&row[..row.len() - 1]));
+    }
+    table.to_string()
+}
+
+/// Whether more was asked than ngspice and one other.
+fn by_all(check: &Check) -> bool {
+    check.values.embedded_ideal.is_some()
+}
+
+/// The quantities by ngspice and one other, closed form or embedded solver, as text.
+pub fn pair_table(finished: &Finished) -> String {
+    let mut table =
+        format::table(&["ngspice against closed form or embedded solver", "unit", "other", "ngspice", "solvers"]);
+    for check in finished.checks.iter().filter(|check| !by_all(check)) {
+        let (unit, factor) = scaled(check.unit);
+        let value = |value: Option<f64>| value.map(|v| format::significant(factor * v, DIGITS)).unwrap_or_default();
+        let other = value(check.values.embedded_exponential.or(check.analytic));
+        let verdict = check.agreement.as_ref().map(solvers).unwrap_or_default();
+        let row = [check.name.clone(), unit.to_owned(), other, value(check.values.ngspice_batch), verdict];
+        table.add_row(format::row(&row));
+    }
+    table.to_string()
+}
+
+/// What the paper and the closed forms say, and whether it holds, as text.
+pub fn claim_table(finished: &Finished) -> String {
+    let mut table = format::table(&["claim", "unit", "closed form", "ngspice", "deviation", "verdict"]);
     for check in &finished.checks {
-        let mut row = cells(check);
-        let claim = row.pop().filter(|claim| !claim.is_empty());
-        if let Some(claim) = claim {
-            row[0] = format!("{}\n  {claim}", row[0]);
-        }
+        let Some(claim) = &check.claim else { continue };
+        let (unit, factor) = scaled(check.unit);
+        let value = |value: Option<f64>| value.map(|v| format::significant(factor * v, DIGITS)).unwrap_or_default();
+        let verdict = if claim.holds { "holds" } else { "does not hold" };
+        let row = [
+            claim.says.clone(),
+            unit.to_owned(),
+            value(check.analytic),
+            value(check.values.ngspice_batch),
+            format!("{:+.2} %", 100.0 * claim.deviation),
+            verdict.to_owned(),
+        ];
         table.add_row(format::row(&row));
     }
     table.to_string()

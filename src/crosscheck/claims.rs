@@ -120,7 +120,7 @@ impl Findings<'_> {
         };
         let pairs = [pair(Solver::Exponential, 3e-4), pair(Solver::Ideal, 1e-3)];
         let agreement = Agreement::worst(pairs.into_iter().flatten());
-        let own = format!("U_DE4 after pulses of different height, mean of {}", pulses.order.len());
+        let own = format!("U_DE4, mean of {} pulses", pulses.order.len());
         if self.topology() == Topology::Isolated {
             return vec![row(&own, "Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
         }
@@ -152,7 +152,7 @@ impl Findings<'_> {
             let values = Values::of(|solver| found(solver).as_deref().map(mean));
             let deviation = found(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(&found, expected));
             rows.push(Check {
-                name: "dQ from the supply, mean of the impacts".to_owned(),
+                name: "dQ, mean of the impacts".to_owned(),
                 unit: "C",
                 analytic: Some(mean(expected)),
                 values,
@@ -240,7 +240,7 @@ impl Findings<'_> {
         };
         let values = Values::of(|solver| if solver == Solver::Batch { None } else { difference(solver) });
         Check {
-            name: "V(de), RMS difference from ngspice batch".to_owned(),
+            name: "V(de), RMS from ngspice batch".to_owned(),
             unit: "V",
             analytic: None,
             values,
@@ -258,7 +258,7 @@ impl Findings<'_> {
             Some(Agreement::new(format!("two ways to book in {}", solver.name()), residual / scale, BOOKS))
         };
         Check {
-            name: "converted - work on the membranes".to_owned(),
+            name: "converted - work, two books".to_owned(),
             unit: "J",
             analytic: Some(0.0),
             values,
@@ -326,7 +326,7 @@ mod tests {
         assert_eq!(failures(None), Vec::<String>::new());
         for solver in Solver::ALL {
             let failed = failures(Some(solver));
-            for name in ["supply energy", "load energy", "V(de), RMS difference from ngspice batch"] {
+            for name in ["supply energy", "load energy", "V(de), RMS from ngspice batch"] {
                 assert!(failed.iter().any(|other| other == name), "{solver:?}: {name} is not among {failed:?}");
             }
         }
