@@ -3,13 +3,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit fmpy conformance)
+readonly STAGES=(setup lint unit valgrind fmpy conformance)
 readonly VENV=.venv
 # The second takes the first in.
 readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
+# A workspace of its own, see its Cargo.toml.
+readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: it installs Wine and cross compilers.
-readonly EXTRA_STAGES=(portability)
+# Not among those that run by default: one takes long to build what it runs, the other installs Wine and cross compilers.
+readonly EXTRA_STAGES=(conformance-slow portability)
 
 usage() {
     cat <<'EOF'
@@ -19,10 +21,13 @@ Runs the stages named, or all of them in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   lint         cargo fmt, clippy and rustdoc, with warnings as errors
   unit         the tests of all Rust packages
+  valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line
-  conformance  other tools check and run the FMUs; writes docs/conformance.md
+  conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md
 
 Only when named:
+  conformance-slow
+               conformance with fmi-sim, too, which takes ten minutes to build
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
@@ -45,6 +50,12 @@ has_library() {
     PATH="$PATH:/usr/sbin:/sbin" ldconfig -p | grep --fixed-strings "$1" >/dev/null
 }
 
+# libclang, and the headers that belong to it.
+has_libclang() {
+    compgen -G '/usr/lib/llvm-*/lib/libclang.so*' >/dev/null &&
+        compgen -G '/usr/lib/llvm-*/lib/clang/*/include/stddef.h' >/dev/null
+}
+
 has_venv() {
     python3 -c 'import ensurepip, venv' 2>/dev/null
 }
@@ -56,6 +67,7 @@ missing_packages() {
     has_venv || echo python3-venv
     has_command xmllint || echo libxml2-utils
     has_library libtbb.so.12 || echo libtbb12
+    has_libclang || echo libclang-dev
     has_command valgrind || echo valgrind
     has_command ngspice || echo ngspice
     has_library libngspice.so.0 || echo libngspice0
@@ -119,12 +131,14 @@ skip() {
 stage_lint() {
     if cargo fmt --version >/dev/null 2>&1; then
         run cargo fmt --all --check
+        run cargo fmt --manifest-path "$FMI_CRATE" --check
     else
         skip "cargo fmt is not installed"
     fi
     if cargo clippy --version >/dev/null 2>&1; then
         run cargo clippy --quiet --workspace --all-targets -- -D warnings
         run cargo clippy --quiet -p fmi2-export --all-targets --all-features -- -D warnings
+        run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     else
         skip "cargo clippy is not installed"
     fi
@@ -134,6 +148,10 @@ stage_lint() {
 stage_unit() {
     run cargo test --workspace
     run cargo test -p fmi2-export --all-features
+}
+
+stage_valgrind() {
+    run tests/valgrind/run.sh
 }
 
 need_python() {
@@ -154,7 +172,13 @@ stage_fmpy() {
 stage_conformance() {
     need_python
     build_fmus
+    run "$VENV/bin/python" -m pytest tests/c
     run "$VENV/bin/python" tests/conformance
+}
+
+stage_conformance-slow() {
+    run cargo install --quiet --locked --root target/tools fmi-sim --version 0.7.0
+    PATH="$PWD/target/tools/bin:$PATH" stage_conformance
 }
 
 stage_portability() {

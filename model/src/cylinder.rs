@@ -35,6 +35,24 @@ impl Drive {
     }
 }
 
+/// Changes of a harmonic force.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DriveChange {
+    /// Of A / M, m/s^2.
+    pub amplitude: f64,
+    /// Of `f_0`, Hz.
+    pub frequency: f64,
+    /// Of the phase, rad.
+    pub phase: f64,
+}
+
+impl DriveChange {
+    /// Of 2 pi `f_0` t + phase at `time` t, s.
+    fn angle(&self, time: f64) -> f64 {
+        TAU * self.frequency * time + self.phase
+    }
+}
+
 /// Motion of the cylinder from one change of the force to the next: position and velocity at `start` and the force
 /// since then. Values are evaluated from the start, never accumulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,6 +104,28 @@ impl CylinderMotion {
         let drift = self.velocity - swing * omega * self.sin_start;
         let external = 0.5 * self.drive.external + elapsed * self.drive.external_rate / 6.0;
         self.position + swing * (self.cos_start - self.drive.angle(time).cos()) + elapsed * (drift + elapsed * external)
+    }
+
+    /// First-order changes of position, m, and velocity, m/s, at `time`, s, with the harmonic force; the values at the start
+    /// stay.
+    pub fn change(&self, time: f64, drive: &DriveChange) -> [f64; 2] {
+        let (elapsed, omega) = (time - self.start, self.drive.omega());
+        let stiffer = TAU * drive.frequency / omega;
+        let speed = self.drive.amplitude / omega;
+        let speed_change = drive.amplitude / omega - speed * stiffer;
+        let swing_change = (speed_change - speed * stiffer) / omega;
+        let (sin, cos) = self.drive.angle(time).sin_cos();
+        let [from, to] = [self.start, time].map(|time| drive.angle(time));
+        let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
+        let drift = speed_change * self.sin_start + speed * self.cos_start * from;
+        let velocity = speed_change * (sin - self.sin_start) + speed * (cos * to - self.cos_start * from);
+        [position - elapsed * drift, velocity]
+    }
+
+    /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
+    pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
+        let (sin, cos) = self.drive.angle(time).sin_cos();
+        drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
     }
 
     /// The same motion described from `time`, s, on, under another drive.

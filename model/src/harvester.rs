@@ -3,17 +3,20 @@
 mod events;
 mod exchange;
 mod snapshot;
+mod tangent;
 
 pub use self::snapshot::Snapshot;
+pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
 
 use self::events::{Event, Search};
+use self::tangent::Tangent;
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::membrane::Membrane;
 use crate::noise;
 use crate::parameters::{NoiseModel, OutsideGap, Parameters};
-use crate::pulse::{Deflection, PulseShape, Pulses};
+use crate::pulse::{Deflection, Knot, PulseShape, Pulses};
 
 /// Farthest start from t = 0, s: times have digits below a microsecond up to there.
 const MAX_START: f64 = 1e9;
@@ -85,6 +88,7 @@ pub struct Harvester {
     search: Search,
     pulses: [Pulses; 2],
     totals: Totals,
+    tangent: Tangent,
     /// Its states are placed by an integrator.
     placed: bool,
     /// Second in which events are being counted, and their number: the budget.
@@ -99,6 +103,30 @@ impl Harvester {
     /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
     /// phase noise, beyond 2^52 hold intervals.
     pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
+        let mut harvester = Self::before_events(parameters, start)?;
+        harvester.rest_if_started_at_rest();
+        harvester.advance(start)?;
+        Ok(harvester)
+    }
+
+    /// The harvester at `start`, s, under the external `force`, N, whose [`Harvester::sensitivities`] are those to first
+    /// order along `direction`.
+    ///
+    /// # Errors
+    /// As [`Harvester::new`]; a force that is not finite.
+    pub fn along(parameters: &Parameters, start: f64, force: f64, direction: &Direction) -> Result<Self, ModelError> {
+        finite("externalForce", force)?;
+        let mut harvester = Self::before_events(parameters, start)?;
+        let xi = xi(parameters, &harvester.noise);
+        harvester.tangent = Tangent::along(&harvester, force, direction, xi);
+        harvester.rest_if_started_at_rest();
+        harvester.advance(start)?;
+        harvester.push(force, 0.0);
+        Ok(harvester)
+    }
+
+    /// The harvester at `start`, s; what happens there is still ahead.
+    fn before_events(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
         parameters.validate()?;
         let p = *parameters;
         let noise = Noise { sample: first_sample(&p, start)?, walk: 0.0 };
@@ -117,7 +145,7 @@ impl Harvester {
         };
         let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
         let flight = Flight::new(&cylinder, start, p.cylinder_position - position, p.ball_velocity, half);
-        let mut harvester = Self {
+        Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
             shape: PulseShape::new(p.stiffness_exponent, p.restitution),
@@ -128,13 +156,18 @@ impl Harvester {
             search: Search::new(flight),
             pulses: [Pulses::default(), Pulses::default()],
             totals: Totals::default(),
+            tangent: Tangent::of_force(start, p.cylinder_mass),
             placed: false,
             second: 0.0,
             second_events: 0,
-        };
-        harvester.rest_if_started_at_rest();
-        harvester.advance(start)?;
-        Ok(harvester)
+        })
+    }
+
+    /// The membrane that a ball that starts beyond it is put on.
+    fn projected_side(&self) -> Option<Side> {
+        let dz = self.parameters.cylinder_position - self.parameters.ball_position;
+        let is_put = self.parameters.outside_gap == OutsideGap::Project && dz.abs() >= self.half_travel();
+        is_put.then_some(if dz > 0.0 { Side::Left } else { Side::Right })
     }
 
     /// Moves on to `time`, s, through every event up to and including it. How a run is split into calls changes nothing.
@@ -167,13 +200,20 @@ impl Harvester {
     }
 
     /// Sets the external force on the cylinder from now on: `force`, N, growing by `rate`, N/s. Setting the
-    /// constant force again that acts already changes nothing, to the last bit.
+    /// constant force again that acts already changes nothing in the motion, to the last bit.
+    /// [`Harvester::sensitivities`] are counted from here.
     ///
     /// # Errors
     /// A force or rate that is not finite.
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         finite("externalForce", force)?;
         finite("derivative of externalForce", rate)?;
+        self.forget_changes();
+        self.push(force, rate);
+        Ok(())
+    }
+
+    fn push(&mut self, force: f64, rate: f64) {
         let mass = self.parameters.cylinder_mass;
         let drive = self.cylinder.drive;
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
@@ -181,7 +221,6 @@ impl Harvester {
             self.restart(self.time, Drive { external: force / mass, external_rate: rate / mass, ..drive });
             self.next_event(self.time + 1.0 / self.parameters.frequency);
         }
-        Ok(())
     }
 
     fn half_travel(&self) -> f64 {
@@ -293,8 +332,12 @@ impl Harvester {
 
     /// The next time, s, at which a capacitance has a kink or an extremum: the peak or the end of a pulse, or an impact.
     pub fn next_knot(&self) -> Option<f64> {
-        let pulses = self.pulses.iter().filter_map(|pulses| pulses.next_knot(&self.shape, self.time));
-        pulses.chain(self.next_impact()).min_by(f64::total_cmp)
+        self.pulse_knots().map(|knot| knot.time).chain(self.next_impact()).min_by(f64::total_cmp)
+    }
+
+    /// The next peak or end of a pulse on each membrane.
+    fn pulse_knots(&self) -> impl Iterator<Item = Knot<'_>> {
+        self.pulses.iter().filter_map(|pulses| pulses.next_knot(&self.shape, self.time))
     }
 }
 
@@ -321,11 +364,15 @@ fn phase(parameters: &Parameters, noise: &Noise) -> f64 {
     if parameters.phase_noise == 0.0 {
         return parameters.phase;
     }
-    let xi = match parameters.noise_model {
+    parameters.phase + parameters.phase_noise * xi(parameters, noise)
+}
+
+/// The factor of the intensity of the phase noise.
+fn xi(parameters: &Parameters, noise: &Noise) -> f64 {
+    match parameters.noise_model {
         NoiseModel::Held => noise::normal(parameters.seed, noise.sample),
         NoiseModel::Wiener => noise.walk,
-    };
-    parameters.phase + parameters.phase_noise * xi
+    }
 }
 
 fn finite(name: &'static str, value: f64) -> Result<(), ModelError> {

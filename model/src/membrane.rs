@@ -1,5 +1,9 @@
 //! The membrane as a variable capacitor: geometry under the ball, Eqs. (3) to (6), and capacitance, Eq. (1).
 
+mod change;
+
+pub(crate) use self::change::MembraneChange;
+
 use core::f64::consts::PI;
 
 use crate::parameters::{Parameters, VACUUM_PERMITTIVITY};
@@ -116,12 +120,19 @@ impl Membrane {
 
     /// dC/dx, F/m, at `deflection` x, m: the derivative of [`Membrane::capacitance`].
     pub fn capacitance_slope(&self, deflection: f64) -> f64 {
-        let Tangent { cos, versine, cos_slope } = self.tangent(deflection);
+        2.0 * self.rest_capacitance * self.area_ratio(deflection) * self.area_slope(deflection)
+    }
+
+    /// Derivative of `A_3` / `A_2`, 1/m, at `deflection`, m.
+    fn area_slope(&self, deflection: f64) -> f64 {
+        let Tangent { cos, cos_slope, .. } = self.tangent(deflection);
+        self.area_slope_by_cos(cos) * cos_slope
+    }
+
+    /// d(`A_3` / `A_2`) / d cos(alpha). The versine is 1 - cos: the two terms of the product rule, collected.
+    fn area_slope_by_cos(&self, cos: f64) -> f64 {
         let (r2, rb) = (self.radius * self.radius, self.ball_radius * self.ball_radius);
-        let excess = versine * (rb + (r2 - rb) / cos) / r2;
-        // versine = 1 - cos: d(excess)/d(cos), the two terms of the product rule collected.
-        let by_cos = -(rb + (r2 - rb) / (cos * cos)) / r2;
-        2.0 * self.rest_capacitance * (1.0 + excess) * by_cos * cos_slope
+        -(rb + (r2 - rb) / (cos * cos)) / r2
     }
 
     /// `U_DE4`, V, after an impact that pressed the membrane to `deflection`, m, at `bias` `U_in`, V: Eq. (12).
@@ -139,21 +150,29 @@ impl Membrane {
     /// Terms are added one by one until the deflection is so small that the excess is a power of the speed: with
     /// `A_3` / `A_2` - 1 -> (delta / `R_2`)^2 / 2 it goes as speed^(4 / (n + 1)), and the rest is a geometric series.
     pub fn excess_of_chatter(&self, speed: f64, restitution: f64) -> f64 {
+        let mut sum = 0.0;
+        let (_, excess) = self.bounces(speed, restitution, |_, excess| sum += excess);
+        // 1 - r^(4 / (n + 1)), with its digits for r near 1.
+        let complement = -(4.0 / (self.exponent + 1.0) * restitution.ln()).exp_m1();
+        sum + excess / complement
+    }
+
+    /// Shows speed and excess of each of these impacts to `term`, as long as the excess is no power of the speed. Returns
+    /// speed and excess of the first that is.
+    fn bounces(&self, speed: f64, restitution: f64, mut term: impl FnMut(f64, f64)) -> (f64, f64) {
         const POWER_LAW_BELOW: f64 = 1e-12;
         const MAX_TERMS: u32 = 1000;
-        let (mut sum, mut speed) = (0.0, speed);
+        let mut speed = speed;
         let mut excess = self.capacitance_excess(self.deflection(speed));
         for _ in 0..MAX_TERMS {
             if excess < POWER_LAW_BELOW {
                 break;
             }
-            sum += excess;
+            term(speed, excess);
             speed *= restitution;
             excess = self.capacitance_excess(self.deflection(speed));
         }
-        // 1 - r^(4 / (n + 1)), with its digits for r near 1.
-        let complement = -(4.0 / (self.exponent + 1.0) * restitution.ln()).exp_m1();
-        sum + excess / complement
+        (speed, excess)
     }
 
     /// Exponent n of the force law, Eq. (2).

@@ -111,6 +111,15 @@ pub enum OutsideGap {
 }
 
 impl Parameters {
+    /// All real parameters zero: no change of any.
+    pub(crate) fn none() -> Self {
+        let mut parameters = Self::default();
+        for quantity in Self::TABLE {
+            (quantity.set)(&mut parameters, 0.0);
+        }
+        parameters
+    }
+
     /// Checks each parameter against its bounds, and those that depend on each other.
     ///
     /// # Errors

@@ -4,6 +4,11 @@
 //! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
 //! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
 
+mod change;
+
+pub use self::change::PulseChange;
+pub(crate) use self::change::{Knot, ShapeChange};
+
 /// One pulse: an impact and what it does to the membrane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
@@ -13,6 +18,8 @@ pub struct Pulse {
     pub speed: f64,
     /// Largest deflection delta, m, Eq. (10).
     pub peak: f64,
+    /// First-order changes, as [`Harvester::sensitivities`](crate::Harvester::sensitivities) has them.
+    pub change: PulseChange,
 }
 
 /// Deflection and its rate at one time.
@@ -180,23 +187,23 @@ impl Pulses {
 
     /// Deflection of the membrane at `time`, s.
     pub fn at(&self, shape: &PulseShape, time: f64) -> Deflection {
-        let mut largest = Deflection::default();
+        self.largest(shape, time).map_or(Deflection::default(), |(_, deflection)| deflection)
+    }
+
+    /// The pulse with the largest deflection at `time`, s; none if the membrane is flat.
+    fn largest(&self, shape: &PulseShape, time: f64) -> Option<(&Pulse, Deflection)> {
+        let mut largest: Option<(&Pulse, Deflection)> = None;
         for pulse in &self.under_way {
-            if pulse.peak <= largest.value {
+            let value = largest.map_or(0.0, |(_, deflection)| deflection.value);
+            if pulse.peak <= value {
                 break;
             }
             let deflection = shape.at(pulse, time);
-            if deflection.value > largest.value {
-                largest = deflection;
+            if deflection.value > value {
+                largest = Some((pulse, deflection));
             }
         }
         largest
-    }
-
-    /// The first time after `time`, s, at which a pulse peaks or ends; none when the membrane is flat.
-    pub fn next_knot(&self, shape: &PulseShape, time: f64) -> Option<f64> {
-        let knots = self.under_way.iter().flat_map(|pulse| [shape.peak_time(pulse), shape.end_time(pulse)]);
-        knots.filter(|&knot| knot > time).min_by(f64::total_cmp)
     }
 }
 
@@ -211,7 +218,7 @@ mod tests {
     #[test]
     fn a_linear_spring_gives_a_half_sine() {
         let shape = PulseShape::new(1.0, 1.0);
-        let pulse = Pulse { start: 1.0, speed: 2.0, peak: 0.003 };
+        let pulse = Pulse { start: 1.0, speed: 2.0, peak: 0.003, change: PulseChange::default() };
         let quarter = LINEAR_LOADING * pulse.peak / pulse.speed;
         assert_relative_eq!(shape.loading_time(&pulse), quarter, max_relative = 1e-14);
         for k in 0..=200 {
@@ -228,7 +235,7 @@ mod tests {
     #[test]
     fn loading_obeys_the_energy_balance_and_newtons_law_for_the_papers_exponent() {
         let shape = PulseShape::new(2.6, 0.6);
-        let pulse = Pulse { start: 0.0, speed: 0.4, peak: 0.0026 };
+        let pulse = Pulse { start: 0.0, speed: 0.4, peak: 0.0026, change: PulseChange::default() };
         let time = shape.loading_time(&pulse);
         for k in 1..100 {
             let t = time * f64::from(k) / 100.0;
@@ -255,7 +262,7 @@ mod tests {
     #[test]
     fn unloading_is_the_mirror_image_stretched_by_the_restitution() {
         let shape = PulseShape::new(2.6, 0.5);
-        let pulse = Pulse { start: 0.0, speed: 1.0, peak: 0.004 };
+        let pulse = Pulse { start: 0.0, speed: 1.0, peak: 0.004, change: PulseChange::default() };
         let time = shape.loading_time(&pulse);
         let (rise, fall) = (shape.at(&pulse, time * 0.75), shape.at(&pulse, time * 1.5));
         assert_relative_eq!(rise.value, fall.value, max_relative = 1e-14);
@@ -266,8 +273,10 @@ mod tests {
     #[test]
     fn the_larger_of_two_overlapping_pulses_wins() {
         let shape = PulseShape::new(2.6, 0.5);
-        let (big, small) =
-            (Pulse { start: 0.0, speed: 1.0, peak: 0.004 }, Pulse { start: 0.001, speed: 0.1, peak: 0.001 });
+        let (big, small) = (
+            Pulse { start: 0.0, speed: 1.0, peak: 0.004, change: PulseChange::default() },
+            Pulse { start: 0.001, speed: 0.1, peak: 0.001, change: PulseChange::default() },
+        );
         let mut pulses = Pulses::default();
         pulses.push(&shape, big);
         pulses.push(&shape, small);

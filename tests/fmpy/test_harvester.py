@@ -88,3 +88,34 @@ def test_a_value_out_of_range_is_an_error(slave):
     harvester.instantiate()
     with pytest.raises(FMICallException):
         harvester.set({"membrane.restitution": 1.5})
+
+
+def test_directional_derivatives_are_those_through_the_step(slave):
+    harvester = slave(HARVESTER)
+    harvester.start(harness.fig14())
+    unknown = harvester.references(["cylinder.position", "ball.position", "relativeDisplacement"])
+    known, count = harvester.references(["externalForce"]), harvester.references(["impact.count"])
+    force, width, size = 0.1, 1e-4, 0.1
+    with_impact, without = 0, 0
+    for index in range(60):
+        before, impacts = harvester.getFMUstate(), harvester.getInteger(count)[0]
+
+        def end(shift):
+            harvester.setFMUstate(before)
+            harvester.set({"externalForce": force + shift})
+            harvester.doStep(index * size, size)
+            return np.array(harvester.getReal(unknown)), harvester.getInteger(count)[0]
+
+        (far, near, back, far_back), counts = zip(*(end(shift * width) for shift in (2, 1, -1, -2)))
+        counts = set(counts) | {end(0)[1]}
+        harvester.freeFMUstate(before)
+        if len(counts) > 1:
+            continue  # an impact falls on the end of the step
+        difference = (8 * (near - back) - (far - far_back)) / (12 * width)
+        derivative = np.array(harvester.getDirectionalDerivative(unknown, known, [1.0]))
+        # 1e-6 of the natural size, 1 cm by 0.5 N.
+        np.testing.assert_allclose(derivative, difference, rtol=1e-6, atol=2e-8)
+        with_impact += counts != {impacts}
+        without += counts == {impacts}
+    assert with_impact > 15
+    assert without > 15

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The win64 library of the harvester FMU, run under Wine: it must load, give the results of the Linux library, and turn
-# a panic into fmi2Error instead of ending the host. Installs what is missing (Debian, Ubuntu): mingw-w64, Wine, the
-# Rust target.
+# The win64 library of the harvester FMU, run under Wine: it must load, give the results of the Linux library (as a slave
+# and as differential equations), and turn a panic into fmi2Error instead of ending the host. Installs what is missing
+# (Debian, Ubuntu): mingw-w64, Wine, the Rust target.
 #
 # Environment: TOLERANCE, the largest relative difference of a result that passes (default 1e-12).
 set -eu
@@ -48,7 +48,7 @@ for system in ("linux", "windows"):
     archive.extractall(f"{sys.argv[1]}/{system}/unpacked")
 END
 
-echo "running Fig. 14 for 10 s in steps of 1 ms: here, and under $("$wine" --version)"
+echo "running Fig. 14 for 10 s in steps of 1 ms, and evaluating it as differential equations: here, and under $("$wine" --version)"
 name=VibroImpactHarvester
 "$built/release/videg-fmu-client" "$work/linux/unpacked/binaries/linux64/$name.so" \
     "$work/linux/unpacked/modelDescription.xml" >"$work/linux.txt"
@@ -60,7 +60,7 @@ tr -d '\r' <"$work/windows.txt" | paste -d ' ' "$work/linux.txt" - | awk -v tole
         difference = $2 - $4; if (difference < 0) difference = -difference
         size = $2 < 0 ? -$2 : $2
         relative = difference == 0 ? 0 : size == 0 ? 1 : difference / size
-        printf "%-24s linux64 %-24s win64 %-24s relative difference %.2g\n", $1, $2, $4, relative
+        printf "%-26s linux64 %-24s win64 %-24s relative difference %.2g\n", $1, $2, $4, relative
         if (relative > tolerance) failed = 1
         if (relative > largest) largest = relative
     }

@@ -1,7 +1,7 @@
 //! The slave: what the importer sets, and the circuit that it drives.
 
 use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
-use videg_circuit::{Circuit, Error, Release, Settings, names};
+use videg_circuit::{Circuit, Error, Settings};
 
 use crate::variables::VARIABLES;
 
@@ -36,6 +36,8 @@ impl Harvesting {
     }
 }
 
+/// There are no directional derivatives: those that FMI 2.0 means in co-simulation, of the voltages and energies at the end
+/// of a step with respect to the capacitances given for it, would have to be carried through each switching of the diodes.
 impl Slave for Harvesting {
     const INFO: ModelInfo = ModelInfo::new("HarvestingCircuit")
         .description(
@@ -47,8 +49,7 @@ impl Slave for Harvesting {
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
         .default_experiment(0.0, 100.0, 1e-3)
-        .can_serialize()
-        .directional_derivatives();
+        .can_serialize();
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -79,18 +80,6 @@ impl Slave for Harvesting {
         stepped.map_err(|error| SlaveError::error(error.to_string()))?;
         self.capacitance = end;
         Ok(())
-    }
-
-    /// At the start both membranes are charged to the supply and nothing flows yet; a storage stays at its voltage.
-    /// Afterwards the membranes hold charge: no output depends on an input of the same communication point.
-    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        match unknown.name() {
-            names::LEFT_VOLTAGE | names::RIGHT_VOLTAGE => f64::from(known.name() == names::SUPPLY_VOLTAGE),
-            "load.voltage" if self.settings.circuit.release == Release::Storage => {
-                f64::from(known.name() == names::STORAGE_VOLTAGE)
-            }
-            _ => 0.0,
-        }
     }
 
     fn write_state(&self, out: &mut StateWriter) {

@@ -1,8 +1,28 @@
-//! Which function is legal in which state: one table, after the state machines of FMI 2.0.4 for model exchange (section
-//! 3.2.3) and co-simulation (section 4.2.4). An instance is of one kind and never gets into a state of the other.
+//! Which function is legal in which state: one table, after those of FMI 2.0 for model exchange (section 3.2.3) and
+//! co-simulation (section 4.2.4). Which variables a legal Get or Set may name, their footnotes, is in `access.rs`.
+//!
+//! One rule of section 4.2.4 is left to the importer: that no Get follows a Set before the next step. Importers do it at
+//! every communication point, and what they read is well defined: outputs of the last step, inputs as set.
 
-use crate::variable::{Causality, Variability};
 use core::fmt;
+
+/// The interface that an instance was made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interface {
+    /// Model exchange.
+    ModelExchange,
+    /// Co-simulation.
+    CoSimulation,
+}
+
+impl fmt::Display for Interface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ModelExchange => "model-exchange",
+            Self::CoSimulation => "co-simulation",
+        })
+    }
+}
 
 /// State of an instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,13 +125,16 @@ const FATAL: u16 = CallState::Fatal.bit();
 const EVENT: u16 = CallState::EventMode.bit();
 const CONT: u16 = CallState::ContinuousTimeMode.bit();
 const NONE: u16 = 0;
+const BOTH: Option<Interface> = None;
+const ME: Option<Interface> = Some(Interface::ModelExchange);
+const CS: Option<Interface> = Some(Interface::CoSimulation);
 // Sets of states that several rows share.
 const AT_REST: u16 = INST | INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
 const READABLE: u16 = INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
 const EXCHANGED: u16 = INIT | TERM | ERR | EVENT | CONT;
 
 macro_rules! call_table {
-    ($($function:ident $name:literal $legal:expr, $tolerated:expr;)*) => {
+    ($($function:ident $name:literal $interface:expr, $legal:expr, $tolerated:expr;)*) => {
         /// A function of the C interface that acts on an instance.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Function {
@@ -127,6 +150,11 @@ macro_rules! call_table {
                 match self { $(Self::$function => $name,)* }
             }
 
+            /// The interface that it belongs to; `None` if to both.
+            pub const fn interface(self) -> Option<Interface> {
+                match self { $(Self::$function => $interface,)* }
+            }
+
             /// The states in which it is legal and in which it is tolerated, as bits.
             const fn states(self) -> (u16, u16) {
                 match self { $(Self::$function => ($legal, $tolerated),)* }
@@ -136,55 +164,61 @@ macro_rules! call_table {
 }
 
 call_table! {
-    // function                C name                            legal                      tolerated
-    SetDebugLogging         "fmi2SetDebugLogging"         AT_REST | BUSY,            NONE;
-    FreeInstance            "fmi2FreeInstance"            AT_REST,                   FATAL;
-    SetupExperiment         "fmi2SetupExperiment"         INST,                      NONE;
-    EnterInitializationMode "fmi2EnterInitializationMode" INST,                      NONE;
-    ExitInitializationMode  "fmi2ExitInitializationMode"  INIT,                      NONE;
-    Terminate               "fmi2Terminate"               DONE | FAIL | EVENT | CONT, NONE;
-    Reset                   "fmi2Reset"                   AT_REST,                   NONE;
-    GetReal                 "fmi2GetReal"                 READABLE,                  INST;
-    GetInteger              "fmi2GetInteger"              READABLE,                  INST;
-    GetBoolean              "fmi2GetBoolean"              READABLE,                  INST;
-    GetString               "fmi2GetString"               READABLE,                  INST;
-    SetReal                 "fmi2SetReal"                 INST | INIT | DONE | EVENT | CONT, NONE;
-    SetInteger              "fmi2SetInteger"              INST | INIT | DONE | EVENT, NONE;
-    SetBoolean              "fmi2SetBoolean"              INST | INIT | DONE | EVENT, NONE;
-    SetString               "fmi2SetString"               INST | INIT | DONE | EVENT, NONE;
-    GetFmuState             "fmi2GetFMUstate"             AT_REST,                   NONE;
-    SetFmuState             "fmi2SetFMUstate"             AT_REST,                   NONE;
-    FreeFmuState            "fmi2FreeFMUstate"            AT_REST,                   FATAL;
-    SerializedFmuStateSize  "fmi2SerializedFMUstateSize"  AT_REST,                   NONE;
-    SerializeFmuState       "fmi2SerializeFMUstate"       AT_REST,                   NONE;
-    DeSerializeFmuState     "fmi2DeSerializeFMUstate"     AT_REST,                   NONE;
-    GetDirectionalDerivative "fmi2GetDirectionalDerivative" READABLE,                NONE;
-    SetRealInputDerivatives "fmi2SetRealInputDerivatives" INST | INIT | DONE,        NONE;
-    GetRealOutputDerivatives "fmi2GetRealOutputDerivatives" DONE | FAIL | CANC | TERM | ERR, NONE;
-    DoStep                  "fmi2DoStep"                  DONE,                      NONE;
-    CancelStep              "fmi2CancelStep"              BUSY,                      NONE;
-    GetStatus               "fmi2GetStatus"               DONE | BUSY | FAIL | TERM, NONE;
-    GetRealStatus           "fmi2GetRealStatus"           DONE | BUSY | FAIL | TERM, NONE;
-    GetIntegerStatus        "fmi2GetIntegerStatus"        DONE | BUSY | FAIL | TERM, NONE;
-    GetBooleanStatus        "fmi2GetBooleanStatus"        DONE | BUSY | FAIL | TERM, NONE;
-    GetStringStatus         "fmi2GetStringStatus"         DONE | BUSY | FAIL | TERM, NONE;
-    EnterEventMode          "fmi2EnterEventMode"          CONT,                      EVENT;
-    NewDiscreteStates       "fmi2NewDiscreteStates"       EVENT,                     NONE;
-    EnterContinuousTimeMode "fmi2EnterContinuousTimeMode" EVENT,                     NONE;
-    CompletedIntegratorStep "fmi2CompletedIntegratorStep" CONT,                      NONE;
-    SetTime                 "fmi2SetTime"                 EVENT | CONT,              NONE;
-    SetContinuousStates     "fmi2SetContinuousStates"     CONT,                      NONE;
-    GetDerivatives          "fmi2GetDerivatives"          EXCHANGED,                 NONE;
-    GetEventIndicators      "fmi2GetEventIndicators"      EXCHANGED,                 NONE;
-    GetContinuousStates     "fmi2GetContinuousStates"     EXCHANGED,                 NONE;
-    GetNominals             "fmi2GetNominalsOfContinuousStates" INST | EXCHANGED,    NONE;
+    // function                C name                                interface legal               tolerated
+    SetDebugLogging          "fmi2SetDebugLogging"                 BOTH, AT_REST | BUSY,                 NONE;
+    FreeInstance             "fmi2FreeInstance"                    BOTH, AT_REST,                        FATAL;
+    SetupExperiment          "fmi2SetupExperiment"                 BOTH, INST,                           NONE;
+    EnterInitializationMode  "fmi2EnterInitializationMode"         BOTH, INST,                           NONE;
+    ExitInitializationMode   "fmi2ExitInitializationMode"          BOTH, INIT,                           NONE;
+    Terminate                "fmi2Terminate"                       BOTH, DONE | FAIL | EVENT | CONT,     NONE;
+    Reset                    "fmi2Reset"                           BOTH, AT_REST,                        NONE;
+    GetReal                  "fmi2GetReal"                         BOTH, READABLE,                       INST;
+    GetInteger               "fmi2GetInteger"                      BOTH, READABLE,                       INST;
+    GetBoolean               "fmi2GetBoolean"                      BOTH, READABLE,                       INST;
+    GetString                "fmi2GetString"                       BOTH, READABLE,                       INST;
+    SetReal                  "fmi2SetReal"                         BOTH, INST | INIT | DONE | EVENT | CONT, NONE;
+    SetInteger               "fmi2SetInteger"                      BOTH, INST | INIT | DONE | EVENT,     NONE;
+    SetBoolean               "fmi2SetBoolean"                      BOTH, INST | INIT | DONE | EVENT,     NONE;
+    SetString                "fmi2SetString"                       BOTH, INST | INIT | DONE | EVENT,     NONE;
+    GetFmuState              "fmi2GetFMUstate"                     BOTH, AT_REST,                        NONE;
+    SetFmuState              "fmi2SetFMUstate"                     BOTH, AT_REST,                        NONE;
+    FreeFmuState             "fmi2FreeFMUstate"                    BOTH, AT_REST,                        FATAL;
+    SerializedFmuStateSize   "fmi2SerializedFMUstateSize"          BOTH, AT_REST,                        NONE;
+    SerializeFmuState        "fmi2SerializeFMUstate"               BOTH, AT_REST,                        NONE;
+    DeSerializeFmuState      "fmi2DeSerializeFMUstate"             BOTH, AT_REST,                        NONE;
+    GetDirectionalDerivative "fmi2GetDirectionalDerivative"        BOTH, READABLE,                       NONE;
+    SetRealInputDerivatives  "fmi2SetRealInputDerivatives"         CS,   INST | INIT | DONE,             NONE;
+    GetRealOutputDerivatives "fmi2GetRealOutputDerivatives"        CS,   DONE | FAIL | CANC | TERM | ERR, NONE;
+    DoStep                   "fmi2DoStep"                          CS,   DONE,                           NONE;
+    CancelStep               "fmi2CancelStep"                      CS,   BUSY,                           NONE;
+    GetStatus                "fmi2GetStatus"                       CS,   DONE | BUSY | FAIL | TERM,      NONE;
+    GetRealStatus            "fmi2GetRealStatus"                   CS,   DONE | BUSY | FAIL | TERM,      NONE;
+    GetIntegerStatus         "fmi2GetIntegerStatus"                CS,   DONE | BUSY | FAIL | TERM,      NONE;
+    GetBooleanStatus         "fmi2GetBooleanStatus"                CS,   DONE | BUSY | FAIL | TERM,      NONE;
+    GetStringStatus          "fmi2GetStringStatus"                 CS,   DONE | BUSY | FAIL | TERM,      NONE;
+    EnterEventMode           "fmi2EnterEventMode"                  ME,   EVENT | CONT,                   NONE;
+    NewDiscreteStates        "fmi2NewDiscreteStates"               ME,   EVENT,                          NONE;
+    EnterContinuousTimeMode  "fmi2EnterContinuousTimeMode"         ME,   EVENT,                          NONE;
+    CompletedIntegratorStep  "fmi2CompletedIntegratorStep"         ME,   CONT,                           NONE;
+    SetTime                  "fmi2SetTime"                         ME,   CONT,                           EVENT;
+    SetContinuousStates      "fmi2SetContinuousStates"             ME,   CONT,                           NONE;
+    GetDerivatives           "fmi2GetDerivatives"                  ME,   EXCHANGED,                      NONE;
+    GetEventIndicators       "fmi2GetEventIndicators"              ME,   EXCHANGED,                      NONE;
+    GetContinuousStates      "fmi2GetContinuousStates"             ME,   EXCHANGED,                      NONE;
+    GetNominals              "fmi2GetNominalsOfContinuousStates"   ME,   INST | EXCHANGED,               NONE;
 }
 
 impl Function {
-    /// What the table says of this function in `state`.
-    pub const fn legality(self, state: CallState) -> Legality {
+    /// What the table says of this function in `state` of an instance for `interface`. Tolerated are
+    /// - Get before initialisation: importers show start values,
+    /// - `fmi2SetTime` in event mode, where the standard wants a purely discrete FMU: importers go to the time of an
+    ///   event on either side of `fmi2EnterEventMode`,
+    /// - giving memory back after a fatal error: otherwise it would be lost.
+    pub fn legality(self, interface: Interface, state: CallState) -> Legality {
         let (legal, tolerated) = self.states();
-        if legal & state.bit() != 0 {
+        if self.interface().is_some_and(|own| own != interface) {
+            Legality::Illegal
+        } else if legal & state.bit() != 0 {
             Legality::Legal
         } else if tolerated & state.bit() != 0 {
             Legality::Tolerated
@@ -194,22 +228,9 @@ impl Function {
     }
 
     /// The states in which this function is legal, for messages.
-    pub(crate) fn legal_states(self) -> String {
-        let legal = CallState::ALL.into_iter().filter(|&state| self.legality(state) == Legality::Legal);
-        legal.map(|s| s.to_string()).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// Whether a variable may be set in a state (FMI 2.0.4, the footnotes of the tables): before initialisation what
-/// has a start value, in initialization mode the same, after it inputs and tunable parameters; in continuous-time mode
-/// continuous inputs.
-pub const fn is_settable(causality: Causality, variability: Variability, state: CallState) -> bool {
-    use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete};
-    match (causality, state) {
-        (Causality::Input | Causality::Parameter, Instantiated | InitializationMode)
-        | (Causality::Input, StepComplete | EventMode) => true,
-        (Causality::Input, ContinuousTimeMode) => matches!(variability, Variability::Continuous),
-        (Causality::Parameter, StepComplete | EventMode) => matches!(variability, Variability::Tunable),
-        _ => false,
+    pub(crate) fn legal_states(self, interface: Interface) -> String {
+        let legal = |state: &CallState| self.legality(interface, *state) == Legality::Legal;
+        let names: Vec<_> = CallState::ALL.into_iter().filter(legal).map(|s| s.to_string()).collect();
+        if names.is_empty() { format!("no state of a {interface} instance") } else { names.join(", ") }
     }
 }

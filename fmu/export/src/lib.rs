@@ -69,6 +69,7 @@
 //! `fmi2GetDirectionalDerivative` unless the model offers it.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
+mod access;
 mod call_state;
 mod error;
 pub mod ffi;
@@ -86,7 +87,7 @@ mod slave;
 mod units;
 mod variable;
 
-pub use call_state::{CallState, Function, Legality, is_settable};
+pub use call_state::{CallState, Function, Interface, Legality};
 pub use error::{Severity, SlaveError};
 pub use fmi2_abi as abi;
 pub use guid::Guid;

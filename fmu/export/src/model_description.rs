@@ -8,7 +8,7 @@ use crate::info::ModelInfo;
 use crate::logger::LogCategory;
 use crate::slave::Slave;
 use crate::units::{BaseUnit, base_unit};
-use crate::variable::{Causality, EnumerationType, Initial, Kind, TableError, Variable, check_fmu, value_reference};
+use crate::variable::{Causality, EnumerationType, Kind, TableError, Variable, check_fmu, value_reference};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
 use std::io;
@@ -294,19 +294,14 @@ fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
     attributes
 }
 
-/// Every output; and as unknowns of the initialisation the calculated outputs and calculated parameters.
+/// Every output, the derivatives of the continuous states, and the unknowns of the initialisation.
 fn model_structure<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
     let output = |v: &Variable<M>| v.causality() == Causality::Output;
     let derivative = |v: &Variable<M>| v.derivative_of().is_some();
-    let calculated = |v: &Variable<M>| match v.causality() {
-        Causality::Output => v.initial() == Some(Initial::Calculated),
-        Causality::CalculatedParameter => true,
-        _ => derivative(v),
-    };
     element(xml, "ModelStructure", &[], |xml| {
         unknowns(xml, "Outputs", table, output, true)?;
         unknowns(xml, "Derivatives", table, derivative, true)?;
-        unknowns(xml, "InitialUnknowns", table, calculated, false)
+        unknowns(xml, "InitialUnknowns", table, |v| v.is_initial_unknown(table), false)
     })
 }
 

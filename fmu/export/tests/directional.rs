@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::toy::{COUNT, DOUBLED, GAIN, INPUT, INTEGRAL, SEED};
+use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, INPUT, INTEGRAL, SEED};
 use common::*;
 use core::ptr::{null, null_mut};
 use fmi2_export::abi::*;
@@ -33,9 +33,39 @@ fn during_initialisation_seeds_are_weighted_with_the_partial_derivatives() {
 }
 
 #[test]
-fn afterwards_an_output_depends_on_what_the_table_says_and_nothing_else() {
+fn in_model_exchange_an_unknown_depends_on_what_the_table_says_and_nothing_else() {
+    for host in [Host::at_event(), Host::exchanging()] {
+        let unknowns = [INTEGRAL, DERIVATIVE];
+        assert_eq!(derivative(&host, &unknowns, &[INPUT, INTEGRAL], &[1.0, 1.0]), Ok(vec![0.0, 2.0]));
+    }
+}
+
+#[test]
+fn in_co_simulation_an_input_acts_through_the_step_whatever_depends_on_it_at_one_point() {
     let host = Host::initialized();
-    assert_eq!(derivative(&host, &[INTEGRAL], &[INPUT], &[1.0]), Ok(vec![0.0]));
+    assert_eq!(derivative(&host, &[INTEGRAL, DERIVATIVE], &[INPUT], &[3.0]), Ok(vec![6.0, 6.0]));
+}
+
+#[test]
+fn each_mode_has_the_unknowns_and_knowns_that_the_standard_lists() {
+    type Mode = fn() -> Host;
+    // Variable, then whether it is an unknown and a known: initialisation, steps, events, between events.
+    let modes: [Mode; 4] = [Host::initializing, Host::initialized, Host::at_event, Host::exchanging];
+    let rows = [
+        (GAIN, [false; 4], [true, false, false, false]),
+        (DOUBLED, [true, false, false, false], [false; 4]),
+        (INPUT, [false; 4], [true; 4]),
+        (INTEGRAL, [true; 4], [false, true, true, true]),
+        (DERIVATIVE, [true; 4], [false; 4]),
+        (COUNT, [false; 4], [false; 4]),
+    ];
+    for (variable, unknown, known) in rows {
+        for (k, mode) in modes.iter().enumerate() {
+            let given = |unknown, known| derivative(&mode(), &[unknown], &[known], &[1.0]).is_ok();
+            assert_eq!(given(variable, INPUT), unknown[k], "variable {variable} as unknown, mode {k}");
+            assert_eq!(given(INTEGRAL, variable), known[k], "variable {variable} as known, mode {k}");
+        }
+    }
 }
 
 #[test]

@@ -23,6 +23,7 @@ fn a_bad_argument_of_instantiate_gives_null_and_the_reason_even_with_logging_off
     let me = fmi2CoSimulation;
     let cases = [
         (Some(""), me, Some(good.as_str()), "instanceName is empty"),
+        (Some(" \t"), me, Some(&good), "instanceName is empty"),
         (None, me, Some(&good), "instanceName is empty"),
         (Some("toy"), 17, Some(&good), "fmuType = 17; this FMU offers model exchange (0) and co-simulation (1) only"),
         (Some("toy"), me, Some("{other}"), "fmuGUID = \"{other}\"; this FMU has {"),

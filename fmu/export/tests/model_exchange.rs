@@ -61,6 +61,26 @@ fn an_event_changes_states_and_announces_the_next_one() {
 }
 
 #[test]
+fn a_continuous_state_can_be_set_by_name_between_events_with_inputs_or_without() {
+    let host = Host::exchanging();
+    assert_eq!(host.set_real(INTEGRAL, 0.75), fmi2OK);
+    assert_eq!((state(&host), host.real(INTEGRAL)), (0.75, 0.75));
+    let (references, values) = ([INPUT, INTEGRAL], [4.0, 0.5]);
+    assert_eq!(unsafe { fmi2SetReal(host.component, references.as_ptr(), 2, values.as_ptr()) }, fmi2OK);
+    assert_eq!((state(&host), derivative(&host)), (0.5, 8.0));
+    for (references, values, reason) in [
+        ([INPUT, INTEGRAL], [7.0, f64::NAN], "variable integral = NaN: it must be finite"),
+        ([INTEGRAL, INPUT], [7.0, f64::NAN], "variable u = NaN: it must be finite"),
+    ] {
+        let host = Host::exchanging();
+        assert_eq!(unsafe { fmi2SetReal(host.component, references.as_ptr(), 2, values.as_ptr()) }, fmi2Error);
+        assert_eq!(host.error(), format!("fmi2SetReal: {reason}"));
+        assert_eq!((host.real(INPUT), host.real(INTEGRAL)), (1.0, 0.0), "all or nothing");
+    }
+    assert_eq!(Host::at_event().set_real(INTEGRAL, 0.5), fmi2Error, "only between events");
+}
+
+#[test]
 fn counts_and_values_that_make_no_sense_are_refused() {
     let mut values = [0.0; 3];
     let host = Host::exchanging();

@@ -3,10 +3,12 @@
 
 mod common;
 
+use common::calls::{call, host_in};
 use common::toy::*;
 use common::*;
 use core::ptr::null_mut;
 use fmi2_export::abi::*;
+use fmi2_export::{CallState, Function, Interface, Legality};
 
 /// The call failed, the reason is logged, and a reset makes the instance usable again.
 fn assert_survives(host: &Host, status: fmi2Status, function: &str, hook: &str) {
@@ -18,6 +20,39 @@ fn assert_survives(host: &Host, status: fmi2Status, function: &str, hook: &str) 
     assert_eq!(host.setup(0.0, None), fmi2OK);
     assert_eq!(host.initialize(), fmi2OK);
     assert_eq!(host.step(0.0, 1.0), fmi2OK);
+}
+
+/// Every function that acts on an instance, in a state in which it is legal; those without an instance to act on
+/// cannot fail but `fmi2Instantiate` (below). `tests/exports.rs` of the root package sees that the libraries export
+/// no other functions.
+#[test]
+fn a_panic_behind_any_function_is_an_error_of_that_call_and_the_host_lives_on() {
+    let mut cases = 0;
+    for &function in Function::ALL.iter().filter(|f| **f != Function::FreeInstance) {
+        for interface in [Interface::ModelExchange, Interface::CoSimulation] {
+            let legal = |state: &CallState| function.legality(interface, *state) == Legality::Legal;
+            let Some(host) = CallState::ALL.into_iter().filter(legal).find_map(|state| host_in(interface, state))
+            else {
+                assert!(function.interface().is_some_and(|own| own != interface) || function == Function::CancelStep);
+                continue;
+            };
+            let saved = host.save();
+            PANIC_IN_CALL.set(Some(function));
+            let status = call(&host, function, saved);
+            PANIC_IN_CALL.set(None);
+            assert_eq!(status, fmi2Error, "{function:?}");
+            let expected = format!("{0}: internal error, the model panicked: panic in {0}", function.name());
+            assert!(
+                host.lines().iter().any(|line| line.status == fmi2Error && line.message == expected),
+                "{function:?}"
+            );
+            assert_eq!(host.reset(), fmi2OK);
+            assert_eq!(host.setup(0.0, None), fmi2OK);
+            assert_eq!(host.initialize(), fmi2OK);
+            cases += 1;
+        }
+    }
+    assert_eq!(cases, 2 * 22 - 2 + 8 + 10, "common functions for both interfaces, the others for their own");
 }
 
 #[test]
@@ -119,6 +154,10 @@ fn a_panic_in_drop_ends_with_the_call() {
     let host = Host::initialized();
     PANIC_IN_DROP.set(true);
     assert_survives(&host, host.reset(), "fmi2Reset", "drop");
+    host.save();
+    let mut host = host;
     PANIC_IN_DROP.set(true);
-    drop(host);
+    unsafe { fmi2FreeInstance(core::mem::replace(&mut host.component, null_mut())) };
+    assert_eq!(host.error(), "fmi2FreeInstance: internal error, the model panicked: panic in drop");
+    assert!(!PANIC_IN_DROP.get());
 }

@@ -148,7 +148,7 @@ fn strings_travel_both_ways_and_a_nul_inside_is_replaced() {
 
 #[test]
 fn strings_live_until_the_next_call() {
-    let host = Host::initializing();
+    let host = Host::initialized();
     let references = [LABEL, ECHO, LABEL];
     let mut values = [null(); 3];
     let status = unsafe { fmi2GetString(host.component, references.as_ptr(), 3, values.as_mut_ptr()) };

@@ -1,115 +1,100 @@
-//! Partial derivatives of calculated parameters and initial outputs with respect to the parameters, in closed form.
+//! Partial derivatives, in closed form and finite whatever the motion does; [`videg_model::Sensitivities`] say how.
 //!
-//! They hold at the start, where no membrane is pressed in yet. After initialisation no output depends on an input of
-//! the same communication point (an impact and a step act through the state), which the variable table says; in model
-//! exchange derivatives and outputs depend on states and input as Eq. (7) says, between events. So they are
-//! finite whatever the motion does, grazing included; at an impact they are those of the state after it.
+//! - During initialisation: of initial values with respect to parameters and inputs.
+//! - In model exchange afterwards: with respect to states and input at the present point, Eq. (7) and a free or carried
+//!   ball.
+//! - In co-simulation afterwards: with respect to `externalForce`, of the outputs at the end of the last step when the force
+//!   of that step is shifted by a constant; before the first step, of the initial values. The change is part of the
+//!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
+//!   communication point, as in model exchange.
+//!
+//! The voltages have no influence: an impulsive impact takes no time in which they could do work on the ball.
 
-use fmi2_export::Variable;
-use videg_model::{Harvester as Model, OutsideGap, Parameters};
+use videg_model::{Direction, Harvester as Model, Sensitivities};
 
 use crate::slave::Harvester;
+use crate::variables::STATES;
 
 impl Harvester {
-    /// d `unknown` / d `known` at the start.
-    pub(crate) fn partial(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        let (p, known) = (&self.parameters, known.name());
-        match unknown.name() {
-            "membrane.radius" => match known {
-                "membrane.prestretch" => p.initial_radius,
-                "membrane.initialRadius" => p.prestretch,
-                _ => 0.0,
-            },
-            "membrane.thickness" => match known {
-                "membrane.initialThickness" => p.membrane_thickness() / p.initial_thickness,
-                "membrane.prestretch" => -2.0 * p.membrane_thickness() / p.prestretch,
-                _ => 0.0,
-            },
-            "membrane.restCapacitance" | "left.capacitance" | "right.capacitance" => {
-                self.read(|model| rest_capacitance(model, known))
+    /// d `unknown` / d `known`.
+    pub(crate) fn partial(&self, unknown: &str, known: &str) -> f64 {
+        let (is_force, is_state) = (known == "externalForce", STATES.contains(&known));
+        if is_state || self.placed {
+            return self.partial_at_point(unknown, known);
+        }
+        if is_force {
+            return self.read(|model| of_output(&model.sensitivities(), unknown));
+        }
+        Direction::of_parameter(known).map_or(0.0, |direction| self.initial_partial(unknown, &direction))
+    }
+
+    /// Of calculated parameters and initial values along `direction`.
+    fn initial_partial(&self, unknown: &str, direction: &Direction) -> f64 {
+        let (p, d) = (&self.parameters, &direction.parameters);
+        match unknown {
+            "membrane.radius" => p.prestretch * d.initial_radius + d.prestretch * p.initial_radius,
+            "membrane.thickness" => {
+                p.membrane_thickness() * (d.initial_thickness / p.initial_thickness - 2.0 * d.prestretch / p.prestretch)
             }
-            "ball.travel" => travel(known),
-            "cylinder.position" => f64::from(known == "initial.cylinderPosition"),
-            "cylinder.velocity" => f64::from(known == "initial.cylinderVelocity"),
-            "ball.position" => self.read(|model| ball_position(model, p, known)),
-            "ball.velocity" => self.read(|model| ball_velocity(model, p, known)),
-            "relativeDisplacement" => {
-                let cylinder = f64::from(known == "initial.cylinderPosition");
-                cylinder - self.read(|model| ball_position(model, p, known))
+            "ball.travel" => d.travel(),
+            _ => {
+                let moved = Model::along(p, self.start_time, self.external_force, direction);
+                moved.map_or(f64::NAN, |model| of_output(&model.sensitivities(), unknown))
             }
-            // Deflections are 0 and area ratios 1 at the start, whatever the parameters.
-            _ => 0.0,
         }
     }
 
-    /// d `unknown` / d `known` in model exchange: of derivatives and outputs with respect to states and inputs, between
-    /// events. A ball at rest moves with the cylinder.
-    pub(crate) fn placed_partial(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        let (known, resting) = (known.name(), self.model().is_some_and(|model| model.resting().is_some()));
+    /// With respect to states and force at the present point, between events.
+    fn partial_at_point(&self, unknown: &str, known: &str) -> f64 {
+        let resting = self.model().is_some_and(|model| model.resting().is_some());
         let is = |name: &str| f64::from(known == name);
         let by_force = is("externalForce") / self.parameters.cylinder_mass; // Eq. (7)
-        match unknown.name() {
-            "cylinder.position" => is("cylinder.position"),
-            "cylinder.velocity" | "der(cylinder.position)" => is("cylinder.velocity"),
-            "ball.position" => is(if resting { "cylinder.position" } else { "ball.position" }),
-            "ball.velocity" | "der(ball.position)" => is(if resting { "cylinder.velocity" } else { "ball.velocity" }),
-            "relativeDisplacement" if !resting => is("cylinder.position") - is("ball.position"),
+        // z_M - z_m and its rate; a ball at rest moves with the cylinder.
+        let displacement =
+            if resting { [0.0; 2] } else { [is(STATES[0]) - is(STATES[2]), is(STATES[1]) - is(STATES[3])] };
+        let next_time = |which: usize| {
+            self.read(|model| {
+                let by = model.next_times_by_displacement()[which];
+                by[0] * displacement[0] + by[1] * displacement[1]
+            })
+        };
+        match unknown {
+            "cylinder.position" => is(STATES[0]),
+            "cylinder.velocity" | "der(cylinder.position)" => is(STATES[1]),
+            "ball.position" => is(if resting { STATES[0] } else { STATES[2] }),
+            "ball.velocity" | "der(ball.position)" => is(if resting { STATES[1] } else { STATES[3] }),
+            "relativeDisplacement" => displacement[0],
             "der(cylinder.velocity)" => by_force,
             "der(ball.velocity)" if resting => by_force,
+            "impact.nextTime" => next_time(0),
+            "pulse.nextKnot" => next_time(1),
+            // Capacitances follow the pulses of impacts that have been, and so do the sums over them.
             _ => 0.0,
         }
     }
 }
 
-/// Of `C_2` = `eps_0` `eps_r` pi lambda^4 `R_1`^2 / `h_1`, Eq. (1): each parameter enters with a power.
-fn rest_capacitance(model: &Model, known: &str) -> f64 {
-    let (p, capacitance) = (model.parameters(), model.membrane().rest_capacitance());
-    match known {
-        "membrane.relativePermittivity" => capacitance / p.relative_permittivity,
-        "membrane.prestretch" => 4.0 * capacitance / p.prestretch,
-        "membrane.initialRadius" => 2.0 * capacitance / p.initial_radius,
-        "membrane.initialThickness" => -capacitance / p.initial_thickness,
+/// The change of one output.
+fn of_output(changes: &Sensitivities, name: &str) -> f64 {
+    match name {
+        "cylinder.position" => changes.cylinder[0],
+        "cylinder.velocity" | "der(cylinder.position)" => changes.cylinder[1],
+        "der(cylinder.velocity)" => changes.cylinder[2],
+        "ball.position" => changes.ball[0],
+        "ball.velocity" | "der(ball.position)" => changes.ball[1],
+        "der(ball.velocity)" => changes.ball[2],
+        "relativeDisplacement" => changes.relative_displacement,
+        "left.deflection" => changes.deflection[0],
+        "right.deflection" => changes.deflection[1],
+        "left.areaRatio" => changes.area_ratio[0],
+        "right.areaRatio" => changes.area_ratio[1],
+        "left.capacitance" | "membrane.restCapacitance" => changes.capacitance[0],
+        "right.capacitance" => changes.capacitance[1],
+        "impact.lastVelocity" => changes.last_speed,
+        "impact.nextTime" => changes.next_impact,
+        "pulse.nextKnot" => changes.next_knot,
+        "gain.voltage" => changes.voltage_gain,
+        "gain.energyEq13" => changes.energy,
         _ => 0.0,
     }
-}
-
-/// Of s = d + 2 w - 2 `r_b`.
-fn travel(known: &str) -> f64 {
-    match known {
-        "cylinder.length" => 1.0,
-        "frame.width" => 2.0,
-        "ball.radius" => -2.0,
-        _ => 0.0,
-    }
-}
-
-/// Of `z_m` at the start: as set, or on the membrane at `z_M` - dz with dz = +s/2 or -s/2.
-fn ball_position(model: &Model, p: &Parameters, known: &str) -> f64 {
-    let dz = p.cylinder_position - p.ball_position;
-    let put_there = p.outside_gap == OutsideGap::Project && dz.abs() > p.travel() / 2.0;
-    if !put_there && !touches(model) {
-        return f64::from(known == "initial.ballPosition");
-    }
-    f64::from(known == "initial.cylinderPosition") - model.relative_displacement().signum() * travel(known) / 2.0
-}
-
-/// Of `z_m'` at the start: as set, or after an impact at the start by Eq. (11), or that of the wall.
-fn ball_velocity(model: &Model, p: &Parameters, known: &str) -> f64 {
-    if model.resting().is_some() {
-        return f64::from(known == "initial.cylinderVelocity");
-    }
-    if !touches(model) {
-        return f64::from(known == "initial.ballVelocity");
-    }
-    match known {
-        "initial.cylinderVelocity" => 1.0 + p.restitution,
-        "initial.ballVelocity" => -p.restitution,
-        "membrane.restitution" => p.cylinder_velocity - p.ball_velocity,
-        _ => 0.0,
-    }
-}
-
-/// Whether the start is a contact.
-fn touches(model: &Model) -> bool {
-    model.totals().impacts > 0 || model.resting().is_some()
 }

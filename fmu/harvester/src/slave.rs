@@ -8,6 +8,10 @@ use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape
 
 use crate::variables::VARIABLES;
 
+/// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
+/// importer wait without end for one that it mistook.
+const MAX_PERIODS: f64 = 1e7;
+
 /// The law of the contact between ball and membrane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ContactLaw {
@@ -44,6 +48,13 @@ impl Harvester {
 
     fn running(&mut self) -> Result<&mut Model, SlaveError> {
         self.model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+    }
+
+    /// The model at the start, as parameters and inputs have it.
+    pub(crate) fn at_start(&self) -> Result<Model, ModelError> {
+        let mut model = Model::new(&self.parameters, self.start_time)?;
+        model.set_external_force(self.external_force, 0.0)?;
+        Ok(model)
     }
 
     fn check_law(&self) -> Result<(), SlaveError> {
@@ -98,7 +109,7 @@ impl Slave for Harvester {
     }
 
     fn update(&mut self) {
-        self.model = Model::new(&self.parameters, self.start_time);
+        self.model = self.at_start();
     }
 
     fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
@@ -116,6 +127,12 @@ impl Slave for Harvester {
 
     /// The external force runs on at its rate over the step and stays where that took it, unless it is set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
+        let longest = MAX_PERIODS / self.parameters.frequency;
+        if h > longest {
+            let message =
+                format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+            return Err(SlaveError::discard(t, message));
+        }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let model = self.running()?;
         let events = log.is_enabled(LogCategory::Events);
@@ -160,7 +177,7 @@ impl Slave for Harvester {
     }
 
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        if self.placed { self.placed_partial(unknown, known) } else { self.partial(unknown, known) }
+        self.partial(unknown.name(), known.name())
     }
 
     fn write_state(&self, out: &mut StateWriter) {

@@ -1,7 +1,7 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
 use fmi2_export::{StateError, StateReader, StateWriter};
-use videg_model::{Harvester as Model, NoiseModel, OutsideGap, Parameters, Pulse, Side, Snapshot, Totals};
+use videg_model::{Harvester as Model, NoiseModel, OutsideGap, Parameters, Pulse, PulseChange, Side, Snapshot, Totals};
 
 use crate::slave::{ContactLaw, Harvester};
 
@@ -29,26 +29,26 @@ impl Harvester {
         let electrostatic_feedback = from.bool()?;
         let [external_force, external_force_rate, left, right, start_time] = finite(from)?;
         let placed = from.bool()?;
-        let model = if from.bool()? {
-            let snapshot = read_snapshot(from)?;
-            let restore = if placed { Model::restore_placed } else { Model::restore };
-            let restored = restore(&parameters, &snapshot);
-            Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
-        } else {
-            Model::new(&parameters, start_time)
-        };
-        let voltages = [left, right];
-        Ok(Self {
+        let mut slave = Self {
             parameters,
             law,
             electrostatic_feedback,
             external_force,
             external_force_rate,
-            voltages,
+            voltages: [left, right],
             start_time,
             placed,
-            model,
-        })
+            model: Model::new(&Parameters::default(), 0.0),
+        };
+        slave.model = if from.bool()? {
+            let snapshot = read_snapshot(from)?;
+            let restore = if placed { Model::restore_placed } else { Model::restore };
+            let restored = restore(&parameters, &snapshot);
+            Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
+        } else {
+            slave.at_start()
+        };
+        Ok(slave)
     }
 }
 
@@ -84,7 +84,8 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
     for pulses in &snapshot.pulses {
         out.len(pulses.len());
         for pulse in pulses {
-            write_all([pulse.start, pulse.speed, pulse.peak], out);
+            let PulseChange { start, speed, peak } = pulse.change;
+            write_all([pulse.start, pulse.speed, pulse.peak, start, speed, peak], out);
         }
     }
     let totals = &snapshot.totals;
@@ -92,6 +93,7 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
         out.u64(count);
     }
     write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
+    write_all(snapshot.changes, out);
     out.f64(snapshot.second);
     out.u64(snapshot.second_events);
 }
@@ -120,14 +122,19 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
             voltage_gain: from.f64()?,
             energy: from.f64()?,
         },
+        changes: array(from)?,
         second: from.f64()?,
         second_events: from.u64()?,
     })
 }
 
 fn read_pulses(from: &mut StateReader<'_>) -> Result<Vec<Pulse>, StateError> {
-    let count = from.len(3 * size_of::<f64>())?;
-    (0..count).map(|_| array(from).map(|[start, speed, peak]| Pulse { start, speed, peak })).collect()
+    let count = from.len(6 * size_of::<f64>())?;
+    (0..count).map(|_| array(from).map(pulse)).collect()
+}
+
+fn pulse([start, speed, peak, by_start, by_speed, by_peak]: [f64; 6]) -> Pulse {
+    Pulse { start, speed, peak, change: PulseChange { start: by_start, speed: by_speed, peak: by_peak } }
 }
 
 fn write_all<const N: usize>(values: [f64; N], out: &mut StateWriter) {

@@ -129,8 +129,12 @@ static INPUTS: [V; 3] = [
     .access(|slave| slave.voltages[1], |slave, voltage| slave.voltages[1] = voltage),
 ];
 
-/// The outputs of the membrane at one side, and the names of the three. No output depends on an input of the same
-/// communication point.
+// Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
+// Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
+// connections algebraic; how the force of a step acts on the outputs at its end is no dependency in this sense, and
+// directional derivatives in co-simulation give it all the same.
+
+/// The outputs of the membrane at one side, and the names of the three. They depend on time and past impacts only.
 macro_rules! membrane_outputs {
     ($side:expr, $capacitance:literal, $deflection:literal, $area_ratio:literal, $which:literal) => {
         [
@@ -163,7 +167,10 @@ static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left.capacitance", "left.de
 static RIGHT: [V; 3] =
     membrane_outputs!(Side::Right, "right.capacitance", "right.deflection", "right.areaRatio", "right");
 
-/// In model exchange these depend on the continuous states, which are the first four.
+/// The continuous states.
+pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
+
+/// The continuous states, and what depends on them.
 static MOTION: [V; 5] = [
     V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
         .nominal(1e-2)
@@ -203,7 +210,7 @@ static EVENTS: [V; 8] = [
         "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within the present hold interval)",
     )
     .discrete()
-    .depends_on(&[])
+    .depends_on(&STATES)
     .get(|slave| slave.read(|model| model.next_impact().unwrap_or(f64::MAX))),
     V::output(
         "pulse.nextKnot",
@@ -211,7 +218,7 @@ static EVENTS: [V; 8] = [
         "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse); the largest double if none",
     )
     .discrete()
-    .depends_on(&[])
+    .depends_on(&STATES)
     .get(|slave| slave.read(|model| model.next_knot().unwrap_or(f64::MAX))),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()

@@ -1,5 +1,6 @@
 //! The events of the motion: what comes next, and what it does.
 
+use super::tangent::Hit;
 use super::{Ball, Harvester, phase};
 use crate::cylinder::Drive;
 use crate::error::ModelError;
@@ -92,7 +93,7 @@ impl Harvester {
         let side = if dz > 0.0 { Side::Left } else { Side::Right };
         let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
         let at_rest = self.cylinder.velocity == self.ball.velocity;
-        if touching && at_rest && self.end_of_bounces(self.time, side, 0.0).is_some() {
+        if touching && at_rest && self.end_of_bounces(self.time, side, 0.0, self.cylinder_acceleration()).is_some() {
             self.rest(self.time, side);
         }
     }
@@ -164,6 +165,7 @@ impl Harvester {
             Event::Release { time } => {
                 self.spend(time)?;
                 let dz = self.relative_displacement_at(time);
+                self.tangent.ball = self.ball_change(time);
                 self.ball = self.ball_at(time);
                 self.totals.releases += 1;
                 self.new_search(time, dz);
@@ -189,13 +191,16 @@ impl Harvester {
 
     /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
     pub(super) fn impact(&mut self, time: f64, side: Side) {
-        let wall = self.cylinder.velocity(time);
+        let (wall, acceleration) = (self.cylinder.velocity(time), self.cylinder.acceleration(time));
         let speed = (side.sign() * (wall - self.ball.velocity)).max(0.0);
         let peak = self.membrane.deflection(speed);
-        self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak });
+        let excess = self.membrane.capacitance_excess(peak);
+        let change = self.change_of(&Hit { time, side, speed, peak, wall, acceleration });
+        self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak, change: change.pulse });
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
-        self.credit(self.membrane.capacitance_excess(peak));
+        self.credit(excess);
+        self.take_over(&change, excess);
         let rebound = self.parameters.restitution * speed;
         self.ball = Ball {
             since: time,
@@ -204,9 +209,11 @@ impl Harvester {
             resting: None,
         };
         self.new_search(time, side.sign() * self.half_travel());
-        match self.end_of_bounces(time, side, rebound) {
+        match self.end_of_bounces(time, side, rebound, acceleration) {
             Some(Tail::Summed) => {
-                self.credit(self.membrane.excess_of_chatter(rebound, self.parameters.restitution));
+                let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
+                self.credit(excess);
+                self.take_over_tail(speed, excess);
                 self.settle(time, side);
             }
             Some(Tail::Unresolved) => self.settle(time, side),
@@ -234,10 +241,10 @@ impl Harvester {
     }
 
     /// Whether a ball that leaves `side` with relative speed `rebound`, m/s, comes to rest there, because the wall
-    /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the
-    /// push is constant meanwhile.
-    fn end_of_bounces(&self, time: f64, side: Side, rebound: f64) -> Option<Tail> {
-        let push = side.sign() * self.cylinder.acceleration(time);
+    /// pushes (`acceleration`, m/s^2) and the next bounce is lower than rounding, or at least very low, with all that
+    /// follow so short that the push is constant meanwhile.
+    fn end_of_bounces(&self, time: f64, side: Side, rebound: f64, acceleration: f64) -> Option<Tail> {
+        let push = side.sign() * acceleration;
         let jerk = self.cylinder.jerk(time);
         if push <= 0.0 {
             return (push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);

@@ -85,8 +85,7 @@ impl Harvester {
     /// The next time, s, at which an event is due whatever the states do: a fresh phase-noise sample, or the peak or end of
     /// a pulse, where a capacitance has a kink.
     pub fn next_time_event(&self) -> Option<f64> {
-        let knots = self.pulses.iter().filter_map(|pulses| pulses.next_knot(&self.shape, self.time));
-        knots.chain(self.noise_limit()).min_by(f64::total_cmp)
+        self.pulse_knots().map(|knot| knot.time).chain(self.noise_limit()).min_by(f64::total_cmp)
     }
 
     fn release_if_pulled(&mut self, side: Side) -> Result<bool, ModelError> {

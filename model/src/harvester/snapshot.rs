@@ -1,13 +1,14 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
 use super::events::Search;
+use super::tangent::Tangent;
 use super::{Ball, Harvester, Noise, Totals, phase};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::membrane::Membrane;
 use crate::parameters::Parameters;
-use crate::pulse::{Pulse, PulseShape, Pulses};
+use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
 
 /// Phase-noise samples that an integrator may be behind: it may pause at an event before the event is handled.
 const MAX_LAG: f64 = 1e6;
@@ -38,6 +39,9 @@ pub struct Snapshot {
     pub pulses: [Vec<Pulse>; 2],
     /// Sums over all impacts so far.
     pub totals: Totals,
+    /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
+    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy, J.
+    pub changes: [f64; 6],
     /// Number of the second in which events are being counted.
     pub second: f64,
     /// Events counted in it.
@@ -47,7 +51,8 @@ pub struct Snapshot {
 impl Harvester {
     /// The dynamic state.
     pub fn snapshot(&self) -> Snapshot {
-        let Self { cylinder, ball, noise, .. } = self;
+        let Self { cylinder, ball, noise, tangent, .. } = self;
+        let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
         Snapshot {
             time: self.time,
             cylinder: [cylinder.start, cylinder.position, cylinder.velocity],
@@ -59,6 +64,7 @@ impl Harvester {
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
             totals: self.totals,
+            changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy],
             second: self.second,
             second_events: self.second_events,
         }
@@ -103,6 +109,9 @@ impl Harvester {
         let cylinder = CylinderMotion::new(start, position, velocity, drive);
         let [since, position, velocity] = snapshot.ball;
         let ball = Ball { since, position, velocity, resting: snapshot.resting };
+        let [since, position_change, velocity_change, totals @ ..] = snapshot.changes;
+        let mut tangent = Tangent::of_force(since, p.cylinder_mass);
+        (tangent.ball, tangent.totals) = ([position_change, velocity_change], totals);
         let [start, offset] = snapshot.flight;
         let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
         let flight = Flight::new(&cylinder, start, 0.0, ball_velocity, p.travel() / 2.0).with_offset(offset);
@@ -117,6 +126,7 @@ impl Harvester {
             search: Search::none(flight),
             pulses: snapshot.pulses.clone().map(Pulses::from_inner),
             totals: snapshot.totals,
+            tangent,
             placed: true,
             second: snapshot.second,
             second_events: snapshot.second_events,
@@ -131,7 +141,14 @@ impl Snapshot {
         for value in self.cylinder.into_iter().chain(self.external).chain(self.ball).chain(self.flight) {
             check("motion", value, value.is_finite())?;
         }
-        for start in [self.cylinder[0], self.ball[0], self.flight[0]] {
+        let changes = self.pulses.iter().flatten().flat_map(|pulse| {
+            let PulseChange { start, speed, peak } = pulse.change;
+            [start, speed, peak]
+        });
+        for change in changes.chain(self.changes) {
+            check("change", change, change.is_finite())?;
+        }
+        for start in [self.cylinder[0], self.ball[0], self.flight[0], self.changes[0]] {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
             check("start of a motion", start, start <= time && (time - start) * parameters.frequency < 9.0e15)?;
         }

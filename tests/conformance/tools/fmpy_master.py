@@ -1,4 +1,4 @@
-"""FMPy as the importer, with a fixed-step master written out: what the other importers are compared with."""
+"""FMPy as the importer, with a fixed-step master written out."""
 
 import shutil
 
@@ -35,7 +35,8 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
     harvester, circuit = slaves
     harvester.setReal([references[0][name] for name in job.START_VALUES], list(job.START_VALUES.values()))
     sources, sinks = ([names[name] for name in job.CONNECTED] for names in references)
-    read = [[names[name] for name in job.OUTPUTS[fmu]] for fmu, names in zip(job.FMUS, references)]
+    outputs = {name: job.outputs(fmus[name]) for name in job.FMUS}
+    read = [[names[name] for name in outputs[fmu]] for fmu, names in zip(job.FMUS, references)]
     for slave in slaves:
         slave.enterInitializationMode()
     circuit.setReal(sinks, harvester.getReal(sources))
@@ -51,4 +52,4 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
         slave.terminate()
         slave.freeInstance()
         shutil.rmtree(folder)
-    return {fmu: dict(zip(job.OUTPUTS[fmu], np.array(values).T)) for fmu, values in zip(job.FMUS, rows)}
+    return {fmu: dict(zip(outputs[fmu], np.array(values).T)) for fmu, values in zip(job.FMUS, rows)}

@@ -34,6 +34,7 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
     index = {name: execution.add_local_slave(slave) for name, slave in slaves.items()}
     reference = {name: references(fmus[name]) for name in job.FMUS}
     source, sink = job.FMUS
+    outputs = {name: job.outputs(fmus[name]) for name in job.FMUS}
     for name, value in job.START_VALUES.items():
         assert execution.real_initial_value(index[source], reference[source][name], value), name
     for name in job.CONNECTED:
@@ -43,7 +44,7 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
         assert status == 0, name
     observer = CosimObserver.create_time_series(job.STEPS + 1)
     execution.add_observer(observer)
-    for fmu, names in job.OUTPUTS.items():
+    for fmu, names in outputs.items():
         for name in names:
             observer.start_time_series(index[fmu], reference[fmu][name], CosimVariableType.REAL)
     assert execution.simulate_until(nanoseconds * job.STEPS)
@@ -53,4 +54,4 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
         assert list(times) == [nanoseconds * step for step in range(1, job.STEPS + 1)], "other communication points"
         return np.array(values)
 
-    return {fmu: {name: series(fmu, name) for name in names} for fmu, names in job.OUTPUTS.items()}
+    return {fmu: {name: series(fmu, name) for name in names} for fmu, names in outputs.items()}

@@ -122,7 +122,7 @@ getters! {
 }
 
 macro_rules! setters {
-    ($($name:ident $c_name:literal $function:ident $value:ty, $marker:ident, $take:expr;)*) => {$(
+    ($($name:ident $c_name:literal $function:ident $value:ty, |$i:ident, $vr:ident, $values:ident| $set:expr;)*) => {$(
         #[doc = concat!("`", $c_name, "`")]
         pub unsafe fn $name<S: Slave>(
             c: fmi2Component,
@@ -130,12 +130,12 @@ macro_rules! setters {
             count: usize,
             values: *const $value,
         ) -> fmi2Status {
-            let call = |i: &mut Instance<S>| {
+            let call = |$i: &mut Instance<S>| {
                 // SAFETY: contract of this module.
-                let references = unsafe { array(references, count, "vr") }?;
+                let $vr = unsafe { array(references, count, "vr") }?;
                 // SAFETY: contract of this module.
-                let values = unsafe { array(values, count, "value") }?;
-                i.set::<$marker, _>(references, values, $take)
+                let $values = unsafe { array(values, count, "value") }?;
+                $set
             };
             // SAFETY: contract of this module.
             unsafe { enter(c, Function::$function, call) }
@@ -143,10 +143,11 @@ macro_rules! setters {
     )*};
 }
 setters! {
-    set_real "fmi2SetReal" SetReal fmi2Real, AsReal, |value| value;
-    set_integer "fmi2SetInteger" SetInteger fmi2Integer, AsInteger, |value| value;
-    set_boolean "fmi2SetBoolean" SetBoolean fmi2Boolean, AsBoolean, |value| value != fmi2False;
-    set_string "fmi2SetString" SetString fmi2String, AsString,
+    set_real "fmi2SetReal" SetReal fmi2Real, |i, vr, values| i.set_reals(vr, values);
+    set_integer "fmi2SetInteger" SetInteger fmi2Integer, |i, vr, values| i.set::<AsInteger, _>(vr, values, |value| value);
+    set_boolean "fmi2SetBoolean" SetBoolean fmi2Boolean,
+        |i, vr, values| i.set::<AsBoolean, _>(vr, values, |value| value != fmi2False);
+    set_string "fmi2SetString" SetString fmi2String,
         // SAFETY: contract of this module.
-        |value| unsafe { text(value) };
+        |i, vr, values| i.set::<AsString, _>(vr, values, |value| unsafe { text(value) });
 }

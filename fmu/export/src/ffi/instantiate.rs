@@ -45,7 +45,8 @@ pub unsafe fn instantiate<S: Slave>(
             resources: (!resource_location.is_null()).then_some(resources),
         };
         let logger = Logger::new(functions, request.name, logging_on != fmi2False);
-        match create::<S>(fmu, &request, logger) {
+        let created = catch_unwind(AssertUnwindSafe(|| create::<S>(fmu, &request, logger)));
+        match created.unwrap_or_else(|payload| Err(format!("the model panicked: {}", panic_message(payload)))) {
             Ok(instance) => Box::into_raw(Box::new(Handle::new(instance))).cast(),
             Err(reason) => {
                 let logger = Logger::new(functions, request.name, true);
@@ -57,12 +58,9 @@ pub unsafe fn instantiate<S: Slave>(
 }
 
 fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<Instance<S>, String> {
-    let identity = match fmu.identity::<S>() {
-        Ok(identity) => identity,
-        Err(e) => return Err(format!("the FMU is faulty: {e}")),
-    };
-    if request.name.is_empty() {
-        return Err("instanceName is empty, NULL or not UTF-8".to_owned());
+    let own_guid = fmu.guid::<S>().map_err(|e| format!("the FMU is faulty: {e}"))?;
+    if request.name.trim().is_empty() {
+        return Err("instanceName is empty, blank, NULL or not UTF-8".to_owned());
     }
     let exchange = request.kind == fmi2ModelExchange;
     if !(exchange && S::INFO.model_exchange.is_some() || request.kind == fmi2CoSimulation) {
@@ -75,8 +73,8 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
         return Err(format!("fmuType = {kind}; this FMU offers {offer} only"));
     }
     let given = request.guid.map_err(|reason| format!("fmuGUID: {reason}"))?;
-    if given != identity.text {
-        return Err(format!("fmuGUID = {given:?}; this FMU has {}", identity.text));
+    if given != own_guid.to_string() {
+        return Err(format!("fmuGUID = {given:?}; this FMU has {own_guid}"));
     }
     // Nothing is read from there, so an odd location is worth a warning at most.
     let location = request.resources.map(|uri| uri.map(resource_path));
@@ -89,8 +87,7 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     }
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();
-    catch_unwind(AssertUnwindSafe(|| Instance::new(exchange, logger, identity.guid)))
-        .map_err(|payload| format!("the model panicked: {}", panic_message(payload)))
+    Ok(Instance::new(exchange, logger, own_guid))
 }
 
 /// `fmi2FreeInstance`. NULL is ignored; so is an instance that is in a call, which leaks rather than vanish under
@@ -105,5 +102,6 @@ pub unsafe fn free_instance<S: Slave>(component: fmi2Component) {
         return;
     }
     // SAFETY: by contract it came from `Box::into_raw` in `instantiate` and was not freed; `busy` keeps others out.
-    guard((), || drop(unsafe { Box::from_raw(handle) }));
+    let handle = unsafe { Box::from_raw(handle) };
+    guard((), || handle.instance.into_inner().free());
 }

@@ -36,16 +36,10 @@ use fmi2_abi::{fmi2Component, fmi2Error, fmi2Status};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
-/// What is worked out once per FMU and process: whether its table is sound, and its GUID.
+/// What is worked out once per FMU and process: the GUID, once the table is known to be sound. It takes no memory that an
+/// unloaded library would leave behind.
 #[derive(Debug, Default)]
-pub struct Fmu(OnceLock<Result<Identity, TableError>>);
-
-/// The GUID, as number and as text.
-#[derive(Debug)]
-struct Identity {
-    guid: Guid,
-    text: String,
-}
+pub struct Fmu(OnceLock<Guid>);
 
 impl Fmu {
     /// Nothing worked out yet.
@@ -53,12 +47,12 @@ impl Fmu {
         Self(OnceLock::new())
     }
 
-    fn identity<S: Slave>(&self) -> &Result<Identity, TableError> {
-        self.0.get_or_init(|| {
-            check_fmu::<S>()?;
-            let guid = Guid::of::<S>();
-            Ok(Identity { guid, text: guid.to_string() })
-        })
+    fn guid<S: Slave>(&self) -> Result<Guid, TableError> {
+        if let Some(guid) = self.0.get() {
+            return Ok(*guid);
+        }
+        check_fmu::<S>()?;
+        Ok(*self.0.get_or_init(Guid::of::<S>))
     }
 }
 

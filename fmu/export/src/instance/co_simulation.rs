@@ -99,7 +99,8 @@ impl<S: Slave> Instance<S> {
         self.core.last_step = LastStep { status, successful_time: Some(reached), terminated };
     }
 
-    /// `fmi2SetRealInputDerivatives`, all or nothing as a Set.
+    /// `fmi2SetRealInputDerivatives`, all or nothing as a Set. Only inputs have such derivatives, and where the call is
+    /// legal, those of all of them may be set: in state `instantiated`, too, where the inputs themselves may not.
     pub(crate) fn set_input_derivatives(&mut self, references: &[u32], orders: &[i32], values: &[f64]) -> Call {
         let rows = || references.iter().zip(orders).zip(values);
         let mut checked = Vec::with_capacity(references.len());
@@ -108,7 +109,6 @@ impl<S: Slave> Instance<S> {
             let Kind::Real(spec) = variable.kind() else {
                 return Err(not_real(variable, reference));
             };
-            self.check_settable(variable)?;
             let Some((highest, set)) = spec.input_derivatives else {
                 return Err(no_derivatives(variable));
             };

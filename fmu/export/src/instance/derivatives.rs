@@ -1,8 +1,12 @@
 //! Directional derivatives: which variables may be asked for in which state, and the sum over the knowns.
+//!
+//! The unknowns and knowns of each mode are those of FMI 2.0.4, section 2.1.9 and `dependencies` in section 2.2.8, but for
+//! the independent variable, which need not be a variable.
 
 use super::model_exchange::states_and_derivatives;
 use super::values::variable;
 use super::{Call, Instance};
+use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::slave::Slave;
 use crate::variable::{Causality, Kind, Variability, Variable};
@@ -29,38 +33,43 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
-    /// After initialisation an output depends on what its row of the table says, and on nothing else.
+    /// In model exchange, after initialisation, an unknown depends on what its row of the table says and on nothing else.
+    ///
+    /// Not so in co-simulation: the dependencies are those "at the current Communication Point", of `f_output` and `f_der`
+    /// (section 2.2.8), but the equations of Step Mode are `f_doStep` (section 4.1), through which an input of the step acts
+    /// on an output that does not depend on the input of the same communication point.
     fn partial_derivative(&self, unknown: &Variable<S>, known: &Variable<S>) -> f64 {
-        let ask = self.core.state.is_before_initialization()
+        let ask = !self.core.exchange
+            || self.core.state.is_before_initialization()
             || unknown.dependencies().is_none_or(|names| names.contains(&known.name()));
         if ask { self.core.model.partial_derivative(unknown, known) } else { 0.0 }
     }
 
-    /// Whether continuous states and their derivatives may be asked for.
-    fn is_exchanged(&self) -> bool {
-        self.core.exchange && !self.core.state.is_before_initialization()
+    /// Discrete variables take part except between events.
+    fn takes_part(&self, variable: &Variable<S>) -> bool {
+        variable.variability() == Variability::Continuous || self.core.state != CallState::ContinuousTimeMode
     }
 
-    /// During initialisation a parameter or a continuous input, afterwards a continuous input or state.
+    /// An input; during initialisation a parameter, afterwards a continuous state, too.
     fn known(&self, reference: u32) -> Call<&'static Variable<S>> {
         let variable = variable::<S>(reference)?;
+        let initializing = self.core.state.is_before_initialization();
+        let is_state = || states_and_derivatives(S::variables()).any(|(state, _)| state.name() == variable.name());
         let may_be = match variable.causality() {
-            Causality::Parameter => self.core.state.is_before_initialization(),
-            Causality::Input => variable.variability() == Variability::Continuous,
-            _ => {
-                self.is_exchanged() && states_and_derivatives(S::variables()).any(|(s, _)| s.name() == variable.name())
-            }
+            Causality::Parameter => initializing,
+            Causality::Input => self.takes_part(variable),
+            _ => !initializing && is_state(),
         };
         self.check_real(variable, may_be, "known")
     }
 
-    /// A continuous output; during initialisation a calculated parameter, afterwards a derivative of a state, too.
+    /// An output or the derivative of a continuous state; during initialisation a calculated parameter, too.
     fn unknown(&self, reference: u32) -> Call<&'static Variable<S>> {
         let variable = variable::<S>(reference)?;
         let may_be = match variable.causality() {
             Causality::CalculatedParameter => self.core.state.is_before_initialization(),
-            Causality::Output => variable.variability() == Variability::Continuous,
-            _ => self.is_exchanged() && variable.derivative_of().is_some(),
+            Causality::Output => self.takes_part(variable),
+            _ => variable.derivative_of().is_some(),
         };
         self.check_real(variable, may_be, "unknown")
     }

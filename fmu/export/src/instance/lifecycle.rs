@@ -14,12 +14,13 @@ impl<S: Slave> Instance<S> {
             self.logger.enable_all(on);
             return;
         }
-        let known = names.iter().filter_map(|name| LogCategory::from_name(name));
-        self.logger.enable_only(known);
+        // While the categories so far are on: the new ones may not show a warning.
         let is_unknown = |name: &&&str| LogCategory::from_name(name).is_none();
         for name in names.iter().filter(is_unknown) {
             self.logger.warning(format_args!("there is no log category {name:?}"));
         }
+        let known = names.iter().filter_map(|name| LogCategory::from_name(name));
+        self.logger.enable_only(known);
     }
 
     /// `fmi2SetupExperiment`

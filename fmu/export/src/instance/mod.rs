@@ -8,7 +8,7 @@ mod lifecycle;
 mod model_exchange;
 mod values;
 
-use crate::call_state::{CallState, Function, Legality};
+use crate::call_state::{CallState, Function, Interface, Legality};
 use crate::error::CallError;
 use crate::guid::Guid;
 use crate::logger::Logger;
@@ -74,27 +74,43 @@ impl<S: Slave> Instance<S> {
         Self { core: Core::new(exchange), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
     }
 
+    /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would
+    /// end the process.
+    pub(crate) fn free(self) {
+        let Self { core, logger, fmu_states, .. } = self;
+        for core in core::iter::once(core).chain(fmu_states.into_values()) {
+            if let Err(payload) = catch_unwind(AssertUnwindSafe(|| drop(core))) {
+                let error = CallError::Panic(panic_message(payload));
+                logger.status(fmi2Error, format_args!("{}: {error}", Function::FreeInstance.name()));
+            }
+        }
+    }
+
     /// Runs one C function: state check, the call itself behind a panic guard, then status, log and new state.
     pub(crate) fn run(&mut self, function: Function, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
         let result = self.check_state(function).and_then(|()| {
             // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
             // values are for debugging only and from which restoring a state or a reset replaces it.
-            catch_unwind(AssertUnwindSafe(|| call(self)))
-                .unwrap_or_else(|payload| Err(CallError::Panic(panic_message(payload))))
+            catch_unwind(AssertUnwindSafe(|| {
+                self.core.model.on_call(function);
+                call(self)
+            }))
+            .unwrap_or_else(|payload| Err(CallError::Panic(panic_message(payload))))
         });
         self.conclude(function, result)
     }
 
     fn check_state(&self, function: Function) -> Call {
         let state = self.core.state;
-        match function.legality(state) {
+        let interface = if self.core.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
+        match function.legality(interface, state) {
             Legality::Legal => Ok(()),
             Legality::Tolerated => {
                 self.logger
                     .warning(format_args!("{}: FMI 2.0 forbids it in state {state}; tolerated", function.name()));
                 Ok(())
             }
-            Legality::Illegal => Err(CallError::IllegalState { state, legal: function.legal_states() }),
+            Legality::Illegal => Err(CallError::IllegalState { state, legal: function.legal_states(interface) }),
         }
     }
 

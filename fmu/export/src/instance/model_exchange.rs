@@ -1,10 +1,11 @@
 //! Model exchange: modes, continuous states and what follows from them.
 
+use super::values::variable;
 use super::{Call, Instance};
 use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::slave::{EventOutcome, Slave};
-use crate::variable::{Kind, Variable};
+use crate::variable::{AsReal, Kind, Variable};
 
 /// The continuous states of a table, in the order of the derivatives in it, each with its derivative.
 pub(super) fn states_and_derivatives<M>(table: &[Variable<M>]) -> impl Iterator<Item = (&Variable<M>, &Variable<M>)> {
@@ -19,6 +20,22 @@ fn check_count(argument: &'static str, given: usize, wanted: usize) -> Call {
     }
     let bound = format!("this FMU has {wanted}");
     Err(CallError::BadArgument { argument, value: given.to_string(), bound })
+}
+
+/// The place of a variable among the continuous states.
+fn state_index<S: Slave>(reference: u32) -> Option<usize> {
+    let name = variable::<S>(reference).ok()?.name();
+    states_and_derivatives(S::variables()).position(|(state, _)| state.name() == name)
+}
+
+fn check_states<S: Slave>(states: &[f64]) -> Call {
+    for ((state, _), value) in states_and_derivatives(S::variables()).zip(states) {
+        if !value.is_finite() {
+            let bound = "it must be finite".to_owned();
+            return Err(CallError::BadValue { name: state.name(), value: value.to_string(), bound });
+        }
+    }
+    Ok(())
 }
 
 fn real<M>(variable: &Variable<M>, model: &M) -> f64 {
@@ -60,15 +77,34 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
+    /// `fmi2SetReal`: any other Set, and in continuous-time mode one of the continuous states, too.
+    pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Call {
+        let (mut states, mut others) = (Vec::new(), (Vec::new(), Vec::new()));
+        let between_events = self.core.state == CallState::ContinuousTimeMode;
+        for (&reference, &value) in references.iter().zip(values) {
+            if let Some(index) = state_index::<S>(reference).filter(|_| between_events) {
+                states.push((index, value));
+            } else {
+                others.0.push(reference);
+                others.1.push(value);
+            }
+        }
+        if states.is_empty() {
+            return self.set::<AsReal, _>(references, values, |value| value);
+        }
+        let mut all = self.continuous_states(states_and_derivatives(S::variables()).count())?;
+        for (index, value) in states {
+            all[index] = value;
+        }
+        check_states::<S>(&all)?;
+        self.set::<AsReal, _>(&others.0, &others.1, |value| value)?;
+        self.set_continuous_states(&all)
+    }
+
     /// `fmi2SetContinuousStates`
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Call {
         check_count("nx", states.len(), states_and_derivatives(S::variables()).count())?;
-        for ((state, _), value) in states_and_derivatives(S::variables()).zip(states) {
-            if !value.is_finite() {
-                let bound = "it must be finite".to_owned();
-                return Err(CallError::BadValue { name: state.name(), value: value.to_string(), bound });
-            }
-        }
+        check_states::<S>(states)?;
         self.core.dirty = false;
         Ok(self.core.model.place(self.core.time, Some(states))?)
     }

@@ -1,7 +1,7 @@
 //! Get and Set of variables. A Set is all or nothing: every value is checked before the first is written.
 
 use super::{Call, Instance};
-use crate::call_state::is_settable;
+use crate::call_state::Legality;
 use crate::error::CallError;
 use crate::logger::c_string;
 use crate::slave::Slave;
@@ -29,8 +29,11 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut put: impl FnMut(usize, T::Taken)) -> Call {
         self.update()?;
         for (i, &reference) in references.iter().enumerate() {
-            let value = T::get(variable::<S>(reference)?, &self.core.model)
-                .ok_or_else(|| wrong_type::<S>(reference, T::NAME))?;
+            let variable = variable::<S>(reference)?;
+            let value = T::get(variable, &self.core.model).ok_or_else(|| wrong_type::<S>(reference, T::NAME))?;
+            if variable.may_be_read(S::variables(), self.core.state) == Legality::Tolerated {
+                self.tolerate(variable, "read");
+            }
             put(i, value);
         }
         Ok(())
@@ -67,15 +70,25 @@ impl<S: Slave> Instance<S> {
     }
 
     pub(super) fn check_settable(&self, variable: &Variable<S>) -> Call {
-        let state = self.core.state;
-        if is_settable(variable.causality(), variable.variability(), state) {
-            return Ok(());
+        match variable.may_be_set(S::variables(), self.core.state) {
+            Legality::Legal => Ok(()),
+            Legality::Tolerated => {
+                self.tolerate(variable, "set");
+                Ok(())
+            }
+            Legality::Illegal => Err(CallError::NotSettable {
+                name: variable.name(),
+                causality: variable.causality().as_str(),
+                variability: variable.variability().as_str(),
+                state: self.core.state,
+            }),
         }
-        Err(CallError::NotSettable {
-            name: variable.name(),
-            causality: variable.causality().as_str(),
-            variability: variable.variability().as_str(),
-            state,
-        })
+    }
+
+    fn tolerate(&self, variable: &Variable<S>, what: &str) {
+        let (name, causality) = (variable.name(), variable.causality().as_str());
+        let state = self.core.state;
+        self.logger
+            .warning(format_args!("FMI 2.0 forbids that {causality} {name} be {what} in state {state}; tolerated"));
     }
 }

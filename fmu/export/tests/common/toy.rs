@@ -1,14 +1,16 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
 use fmi2_export::{
-    EnumerationItem, EnumerationType, EventOutcome, Experiment, Logger, ModelInfo, Slave, SlaveError, StateError,
-    StateReader, StateWriter, Variable, export_fmu,
+    EnumerationItem, EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError,
+    StateError, StateReader, StateWriter, Variable, export_fmu,
 };
 use std::cell::Cell;
 
 thread_local! {
     /// Makes `Toy::new` panic, which no variable can.
     pub static PANIC_IN_NEW: Cell<bool> = const { Cell::new(false) };
+    /// Makes each call of this function on an instance panic.
+    pub static PANIC_IN_CALL: Cell<Option<Function>> = const { Cell::new(None) };
     /// Makes `Toy::clone` panic.
     pub static PANIC_IN_CLONE: Cell<bool> = const { Cell::new(false) };
     /// Makes dropping a `Toy` panic.
@@ -226,10 +228,14 @@ impl Slave for Toy {
         self.fail_in("derivative");
         match (unknown.name(), known.name()) {
             ("doubled", "toy.gain") => 2.0,
-            ("der(integral)", "u") => self.gain,
-            ("integral", "u") => f64::NAN, // the table says that there is no such dependency
+            // Of the integral through a step of one second; at one point it depends on nothing, as the table says.
+            ("der(integral)" | "integral", "u") => self.gain,
             _ => 0.0,
         }
+    }
+
+    fn on_call(&self, function: Function) {
+        assert!(PANIC_IN_CALL.get() != Some(function), "panic in {}", function.name());
     }
 
     fn write_state(&self, out: &mut StateWriter) {

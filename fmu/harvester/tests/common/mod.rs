@@ -1,5 +1,8 @@
-//! The slave driven without the C interface.
+//! The slave driven without the C interface, and through it (`host`).
 #![allow(dead_code, clippy::expect_used)] // each test file uses its part; helpers fail a test, too
+
+pub mod differences;
+pub mod host;
 
 use VibroImpactHarvester::Harvester;
 use fmi2_export::{Causality, Experiment, Kind, Logger, Slave, Variable, value_reference};

@@ -1,10 +1,11 @@
-//! Drives a library of the harvester FMU through the case of Fig. 14 and prints what comes out, so that the libraries
-//! of two platforms can be compared. Deliberately without the importer: nothing here but the C functions.
+//! Drives a library of the harvester FMU through the case of Fig. 14, as a slave and as differential equations, and prints
+//! what comes out, so that the libraries of two platforms can be compared. Deliberately without the importer: nothing here but the C functions.
 //!
 //! `videg-fmu-client LIBRARY MODEL_DESCRIPTION`
 
 use std::error::Error;
 use std::ffi::{CString, c_int};
+use std::mem::MaybeUninit;
 use std::ptr;
 
 use fmi2_abi as abi;
@@ -20,6 +21,11 @@ const OUTPUTS: [&str; 5] = ["gain.voltage", "gain.energyEq13", "cylinder.positio
 /// Outputs of which the sum over all steps is printed.
 const SUMMED: [&str; 2] = ["left.capacitance", "right.capacitance"];
 
+/// Time at which the differential equations are evaluated, s.
+const LATER: f64 = 0.01;
+/// Position and velocity of the cylinder, then of the ball, which is in flight; m and m/s.
+const STATES: [f64; 4] = [0.02, 0.3, 0.001, -0.1];
+
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
 fn main() -> Outcome<()> {
@@ -30,7 +36,8 @@ fn main() -> Outcome<()> {
     let description = std::fs::read_to_string(description)?;
     // SAFETY: the library is one of this project, whose loading runs no code of its own.
     let library = unsafe { Library::new(library)? };
-    let instance = Instance::new(&library, &attribute(&description, "guid=\"")?)?;
+    let guid = attribute(&description, "guid=\"")?;
+    let instance = Instance::new(&library, abi::fmi2CoSimulation, &guid)?;
     instance.set_up(&description)?;
     let sums = instance.run(&references(&description, &SUMMED)?)?;
     let values = instance.get(&references(&description, &OUTPUTS)?)?;
@@ -40,7 +47,9 @@ fn main() -> Outcome<()> {
     for (name, value) in SUMMED.iter().zip(sums) {
         println!("sum({name}) {value:e}");
     }
-    Ok(())
+    let instance = Instance::new(&library, abi::fmi2ModelExchange, &guid)?;
+    instance.set_up(&description)?;
+    instance.evaluate(&description)
 }
 
 /// An instance; the functions are looked up at each call, which is as slow as it is short.
@@ -50,7 +59,7 @@ struct Instance<'a> {
 }
 
 impl<'a> Instance<'a> {
-    fn new(library: &'a Library, guid: &str) -> Outcome<Self> {
+    fn new(library: &'a Library, kind: abi::fmi2Type, guid: &str) -> Outcome<Self> {
         let (name, guid) = (CString::new("client")?, CString::new(guid)?);
         let callbacks = abi::fmi2CallbackFunctions {
             logger: None,
@@ -65,7 +74,7 @@ impl<'a> Instance<'a> {
         let component = unsafe {
             let instantiate: Symbol<'_, abi::fmi2InstantiateTYPE> = library.get(b"fmi2Instantiate")?;
             let (name, guid) = (name.as_ptr(), guid.as_ptr());
-            instantiate(name, abi::fmi2CoSimulation, guid, ptr::null(), callbacks, abi::fmi2False, abi::fmi2False)
+            instantiate(name, kind, guid, ptr::null(), callbacks, abi::fmi2False, abi::fmi2False)
         };
         if component.is_null() {
             return Err("fmi2Instantiate gave NULL".into());
@@ -106,6 +115,39 @@ impl<'a> Instance<'a> {
             sums.iter_mut().zip(self.get(summed)?).for_each(|(sum, value)| *sum += value);
         }
         Ok(sums)
+    }
+
+    /// Enters continuous-time mode and prints derivatives and event indicators at [`LATER`] in [`STATES`].
+    fn evaluate(&self, description: &str) -> Outcome<()> {
+        let mut info = MaybeUninit::<abi::fmi2EventInfo>::uninit();
+        self.call::<abi::fmi2NewDiscreteStatesTYPE>("fmi2NewDiscreteStates", |update, component| unsafe {
+            // SAFETY: the function writes the information and does not read it.
+            update(component, info.as_mut_ptr())
+        })?;
+        // SAFETY: these functions take plain values.
+        self.call::<abi::fmi2TerminateTYPE>("fmi2EnterContinuousTimeMode", |enter, component| unsafe {
+            enter(component)
+        })?;
+        self.call::<abi::fmi2SetTimeTYPE>("fmi2SetTime", |set, component| unsafe { set(component, LATER) })?;
+        self.call::<abi::fmi2SetContinuousStatesTYPE>("fmi2SetContinuousStates", |set, component| unsafe {
+            // SAFETY: the array is as long as is said.
+            set(component, STATES.as_ptr(), STATES.len())
+        })?;
+        self.print("fmi2GetDerivatives", STATES.len())?;
+        self.print("fmi2GetEventIndicators", attribute(description, "numberOfEventIndicators=\"")?.parse()?)
+    }
+
+    /// Prints what one of the functions that fill an array gives.
+    fn print(&self, name: &str, count: usize) -> Outcome<()> {
+        let mut values = vec![f64::NAN; count];
+        self.call::<abi::fmi2GetDerivativesTYPE>(name, |get, component| unsafe {
+            // SAFETY: the array is as long as is said.
+            get(component, values.as_mut_ptr(), count)
+        })?;
+        for (index, value) in values.iter().enumerate() {
+            println!("{name}[{index}] {value:e}");
+        }
+        Ok(())
     }
 
     fn get(&self, references: &[u32]) -> Outcome<Vec<f64>> {

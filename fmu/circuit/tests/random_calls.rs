@@ -1,0 +1,16 @@
+//! Random call sequences with random arguments on the FMU as it is exported.
+
+use HarvestingCircuit as _; // links its C functions
+use fmi2_host::{Fmu, linked_functions, run};
+
+/// Of up to 32 calls each; some seconds without optimisation.
+const SEQUENCES: u64 = 50_000;
+
+#[test]
+fn random_call_sequences_go_as_the_tables_say() {
+    let description = include_str!("../../../modelDescription/HarvestingCircuit.xml");
+    let fmu = Fmu::new(linked_functions!(), description).unwrap();
+    let census = run(&fmu, 0..SEQUENCES).unwrap();
+    let [ok, warning, _, error, fatal] = census.statuses;
+    assert!(ok > 1000 && warning > 100 && error > 1000 && fatal == 0, "{:?}", census.statuses);
+}

@@ -1,0 +1,30 @@
+//! Values and arguments that make no sense, one by one: a status and a line in the log, never a crash.
+
+use VibroImpactHarvester as _; // links its C functions
+use fmi2_host::{Fmu, hostile, linked_functions};
+
+#[allow(clippy::unwrap_used)] // a helper fails a test, too
+fn fmu() -> Fmu {
+    Fmu::new(linked_functions!(model_exchange), include_str!("../../../modelDescription/VibroImpactHarvester.xml"))
+        .unwrap()
+}
+
+#[test]
+fn no_variable_takes_what_is_no_number_but_infinity_where_it_has_a_meaning() {
+    assert_eq!(hostile::variables(&fmu()).unwrap(), 0);
+}
+
+#[test]
+fn no_argument_takes_what_is_no_number() {
+    hostile::arguments(&fmu()).unwrap();
+}
+
+#[test]
+fn value_references_beyond_the_table_are_refused() {
+    hostile::references(&fmu()).unwrap();
+}
+
+#[test]
+fn odd_resource_locations_and_missing_callbacks_do_no_harm() {
+    hostile::instantiation(&fmu()).unwrap();
+}

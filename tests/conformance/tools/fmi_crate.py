@@ -1,0 +1,26 @@
+"""The crate `fmi`, an importer in Rust. Its program also goes back half-way, from a saved and from a serialised state,
+and fails unless the rest comes out the same to the last bit.
+
+Built without optimisation: compiling takes far longer than running.
+"""
+
+import re
+import tempfile
+from pathlib import Path
+
+import harness
+import job
+
+NAME = "fmi (Rust)"
+PROVES = "loads and runs both FMUs, goes back to saved and serialised states to the last bit"
+MANIFEST = harness.ROOT / "tests" / "fmi-crate" / "Cargo.toml"
+
+
+def version() -> str:
+    return re.search(r'^fmi = .*version = "=([^"]*)"', MANIFEST.read_text(), re.MULTILINE).group(1)
+
+
+def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
+    program = job.build_program("videg-fmi-crate", "--locked", "--manifest-path", str(MANIFEST))
+    with tempfile.TemporaryDirectory() as folder:
+        return job.run_program(program, fmus, Path(folder))

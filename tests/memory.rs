@@ -1,0 +1,69 @@
+//! Loading and unloading the libraries of the FMUs leaves nothing behind. Alone in its file: the memory of the process is
+//! measured, and other tests would use some meanwhile.
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use fmi2_host::{Fmu, Functions, Instance, abi};
+use videg::package::{Options, build_all};
+
+/// The libraries of both FMUs with their model descriptions, unpacked into `folder`.
+fn libraries(folder: &Path) -> Vec<(PathBuf, String)> {
+    let unpack = |archive: PathBuf| {
+        let name = archive.file_stem().unwrap().to_str().unwrap().to_owned();
+        let mut archive = zip::ZipArchive::new(std::fs::File::open(archive).unwrap()).unwrap();
+        let library = folder.join(format!("{name}.so"));
+        let mut file = std::fs::File::create(&library).unwrap();
+        std::io::copy(&mut archive.by_name(&format!("binaries/linux64/{name}.so")).unwrap(), &mut file).unwrap();
+        let description = std::io::read_to_string(archive.by_name("modelDescription.xml").unwrap()).unwrap();
+        (library, description)
+    };
+    let options = Options { output: Some(folder.to_owned()), ..Options::default() };
+    build_all(&options).unwrap().into_iter().map(unpack).collect()
+}
+
+/// Loads the library, runs an instance through a step, a saved state and an error, and unloads the library.
+fn cycle(library: &Path, description: &str) {
+    // SAFETY: the library exports the functions of FMI 2.0, which are called while it is loaded.
+    unsafe {
+        let library = libloading::Library::new(library).unwrap();
+        let fmu = Fmu::new(Functions::load(&library).unwrap(), description).unwrap();
+        let f = &fmu.functions;
+        let mut instance = Instance::new(&fmu, fmi2_host::Interface::CoSimulation).unwrap();
+        let (c, mut state) = (instance.component, std::ptr::null_mut());
+        assert_eq!((f.fmi2SetupExperiment)(c, 0, 0.0, 0.0, 0, 0.0), abi::fmi2OK);
+        assert_eq!((f.fmi2EnterInitializationMode)(c), abi::fmi2OK);
+        assert_eq!((f.fmi2ExitInitializationMode)(c), abi::fmi2OK);
+        assert_eq!((f.fmi2DoStep)(c, 0.0, 1.0, abi::fmi2True), abi::fmi2OK);
+        assert_eq!((f.fmi2GetFMUstate)(c, &raw mut state), abi::fmi2OK);
+        assert_eq!((f.fmi2DoStep)(c, 0.0, f64::NAN, abi::fmi2True), abi::fmi2Error);
+        assert_eq!(instance.log().take().last().unwrap().status, abi::fmi2Error);
+        drop(instance);
+        library.close().unwrap();
+    }
+}
+
+/// Resident memory of this process, bytes.
+fn resident() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/statm").unwrap();
+    status.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() * 4096
+}
+
+#[test]
+fn ten_thousand_cycles_of_loading_running_and_unloading_leave_memory_flat() {
+    let folder = tempfile::tempdir().unwrap();
+    for (library, description) in libraries(folder.path()) {
+        let cycle = || cycle(&library, &description);
+        (0..1000).for_each(|_| cycle());
+        let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+        assert!(!maps.contains(library.to_str().unwrap()), "{} is still loaded", library.display());
+        let before = resident();
+        (0..9000).for_each(|_| cycle());
+        let grown = resident().saturating_sub(before);
+        println!("{}: {grown} bytes more after 9000 further cycles", library.display());
+        // 16 pages, which the allocator may keep for itself: whatever is left behind by each cycle, be it as small as the
+        // smallest block of malloc (32 bytes), would come to 288 kB.
+        assert!(grown <= 1 << 16, "{grown} bytes more after 9000 further cycles of {}", library.display());
+    }
+}
