@@ -12,8 +12,8 @@ use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, output, packaging, picture, settings};
 use crate::cosim::{
-    CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
-    NgspiceCircuit, Schedule, Trace,
+    CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu,
+    Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Schedule, Trace,
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
@@ -27,6 +27,34 @@ pub struct Arguments {
     /// Which circuit the harvester is coupled with
     #[arg(long, value_enum, default_value_t = Backend::Embedded)]
     circuit: Backend,
+    /// What harvester and circuit know of each other during a communication step
+    #[arg(long, value_enum, default_value_t = Order::GaussSeidel)]
+    master: Order,
+    /// Adapt the communication step (--step is the first one) so that no signal within it is off by more than this part of
+    /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
+    #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
+    adaptive: Option<f64>,
+}
+
+/// The method of the master, as it is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Order {
+    /// The harvester steps first, then the circuit with C(t) linear between its ends: second order
+    GaussSeidel,
+    /// Both step at once, with C(t) extrapolated at dC/dt: second order
+    Jacobi,
+    /// Both step at once on a regular grid and get values only, as from a tool that knows no more of FMI: first order
+    Plain,
+}
+
+impl From<Order> for Method {
+    fn from(order: Order) -> Self {
+        match order {
+            Order::GaussSeidel => Self::GaussSeidel,
+            Order::Jacobi => Self::Jacobi,
+            Order::Plain => Self::Plain,
+        }
+    }
 }
 
 /// What solves the circuit.
@@ -57,6 +85,7 @@ struct Output<'a> {
     circuit: &'a str,
     #[serde(flatten)]
     summary: &'a CircuitSummary,
+    coupling: CouplingSummary,
     comparison: &'a [Compared],
 }
 
@@ -68,6 +97,8 @@ pub struct Finished {
     pub mechanics: MechanicsSummary,
     /// The circuit asked for, then those to compare it with.
     pub circuits: Vec<Compared>,
+    /// The coupling of the harvester with the circuit asked for.
+    pub coupling: CouplingSummary,
     /// Supply voltage, V.
     pub supply_voltage: f64,
     /// What the user should know before believing the numbers.
@@ -80,10 +111,12 @@ pub struct Finished {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
     let scenario = options.scenario()?;
+    let coupling = Coupling { method: arguments.master.into(), tolerance: arguments.adaptive };
+    coupling.check()?;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let finished = couple(arguments.circuit, &fmu, scenario, &csv)?;
+    let finished = couple(arguments.circuit, coupling, &fmu, scenario, &csv)?;
     let files = write_files(&folder, &csv, &finished)?;
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -97,7 +130,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 }
 
 /// Runs the co-simulation and writes the time series to `csv`.
-fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
+fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
     let (mechanical, electrical) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let ratio = best_capacitance_ratio(fmu, &scenario, &mechanical)?;
@@ -106,21 +139,23 @@ fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow
     warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
     let circuits = circuits(backend, &scenario, &settings, ratio, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
+    let master = Master::new(harvester, circuits, &scenario, coupling)?;
     let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
-    let master = Master::new(harvester, circuits, &scenario);
     let outcome = master.run(&mut [&mut recorder, &mut trace, &mut bar]);
     bar.finish();
     recorder.finish()?;
     // What is there when a subsystem gives up stays.
-    let (mechanics, samples) = outcome
+    let outcome = outcome
         .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    let Outcome { mechanics, circuits: samples, coupling } = outcome;
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let svg = picture::cosim(&trace, &scenario)?;
-    Ok(Finished { scenario, mechanics, circuits, supply_voltage: settings.circuit.supply_voltage, warnings, svg })
+    let supply_voltage = settings.circuit.supply_voltage;
+    Ok(Finished { scenario, mechanics, circuits, coupling, supply_voltage, warnings, svg })
 }
 
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
@@ -248,7 +283,7 @@ fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result
 fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Output<'a>> {
     let (first, comparison) = finished.circuits.split_first().context("a co-simulation without a circuit")?;
     let run = RunOutput::new(&finished.scenario, finished.mechanics, &finished.warnings, files);
-    Ok(Output { run, circuit: &first.label, summary: &first.summary, comparison })
+    Ok(Output { run, circuit: &first.label, summary: &first.summary, coupling: finished.coupling, comparison })
 }
 
 fn text(finished: &Finished, files: &[PathBuf]) -> String {
@@ -257,6 +292,7 @@ fn text(finished: &Finished, files: &[PathBuf]) -> String {
         text_table(&finished.scenario, &finished.mechanics),
         cosim_report::energy_table(finished),
         cosim_report::EXPLANATION.join("\n"),
+        cosim_report::coupling_line(&finished.coupling),
         file_list(files),
     ];
     parts.join("\n\n")
