@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use videg_circuit::{Release, Settings, Topology, formulas, names};
+use videg_circuit::{Release, Settings, Topology, names};
 
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
-use super::{Verdict, cosim_report, output, packaging, picture, settings};
+use super::{Verdict, cosim_report, electrical, output, packaging, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu,
-    Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Schedule, Trace,
+    Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::Scenario;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -131,10 +131,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 
 /// Runs the co-simulation and writes the time series to `csv`.
 fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
-    let (mechanical, electrical) = settings::split(fmu, &scenario)?;
+    let (mechanical, of_circuit) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
-    let ratio = best_capacitance_ratio(fmu, &scenario, &mechanical)?;
-    let settings = circuit_settings(&electrical, harvester.bias_voltage(), ratio)?;
+    let ratio = electrical::best_capacitance_ratio(fmu, &scenario, &mechanical)?;
+    let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratio)?;
     let mut warnings = harvester.warnings();
     warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
     let circuits = circuits(backend, &scenario, &settings, ratio, &harvester)?;
@@ -156,33 +156,6 @@ fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, c
     let svg = picture::cosim(&trace, &scenario)?;
     let supply_voltage = settings.circuit.supply_voltage;
     Ok(Finished { scenario, mechanics, circuits, coupling, supply_voltage, warnings, svg })
-}
-
-/// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
-/// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.
-fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
-    let mut settings = Settings::default();
-    settings.circuit.supply_voltage = bias;
-    for setting in electrical {
-        EmbeddedCircuit::apply(&mut settings, setting)?;
-    }
-    let given = |name| electrical.iter().any(|setting| setting.name == name);
-    if !given(names::ZENER_VOLTAGE) {
-        settings.circuit.zener_voltage = settings.circuit.supply_voltage;
-    }
-    if !given(names::STORAGE_VOLTAGE) {
-        settings.circuit.storage_voltage = best_release_voltage(&settings, ratio);
-    }
-    Ok(settings)
-}
-
-/// The voltage of release that gains most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
-fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
-    let idle = match settings.circuit.topology {
-        Topology::SharedNode => 1.0,
-        Topology::Isolated => 0.0,
-    };
-    formulas::best_release_voltage(settings.circuit.supply_voltage, 1.0 + idle, ratio + idle)
 }
 
 fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
@@ -216,7 +189,7 @@ fn circuits(
         }
         Backend::Fmu => {
             let fmu = packaging::open("HarvestingCircuit")?;
-            let all = every_setting(settings);
+            let all = electrical::every_setting(settings);
             Box::new(FmuCircuit::new(&label(settings), &fmu, &all, capacitance, scenario.until)?)
         }
     };
@@ -224,7 +197,7 @@ fn circuits(
     switch.circuit.release = Release::Switch;
     let mut better = switch;
     better.circuit.topology = Topology::Isolated;
-    better.circuit.zener_voltage = best_release_voltage(&better, ratio);
+    better.circuit.zener_voltage = electrical::best_release_voltage(&better, ratio);
     let mut storage = better;
     storage.circuit.release = Release::Storage;
     storage.circuit.storage_voltage = better.circuit.zener_voltage;
@@ -233,35 +206,6 @@ fn circuits(
         circuits.push(Box::new(EmbeddedCircuit::new(&label(&compared), &compared, capacitance)?));
     }
     Ok(circuits)
-}
-
-/// `C_3` / `C_2` to choose a voltage of release by, from a run of the mechanics ahead. Impacts within one communication
-/// step count as equal.
-fn best_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
-    let mut ahead = HarvesterFmu::new(fmu, scenario, mechanical)?;
-    let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
-    let (mut now, mut gain, mut impacts) = (0.0, 0.0, 0);
-    let mut ratios = Vec::new();
-    while now < scenario.until {
-        let next = schedule.next(now, f64::INFINITY);
-        ahead.step(now, next - now)?;
-        let [count, _] = ahead.counts()?;
-        if count > impacts {
-            let (total, number) = (ahead.sample()?.voltage_gain(), count - impacts);
-            let ratio = 1.0 + (total - gain) / (f64::from(number) * ahead.bias_voltage());
-            ratios.extend((0..number).map(|_| ratio));
-            (gain, impacts) = (total, count);
-        }
-        now = next;
-    }
-    Ok(formulas::best_release_ratio(ratios))
-}
-
-/// The settings as text, for an FMU. Numbers read back to the same bits.
-fn every_setting(settings: &Settings) -> Vec<Setting> {
-    let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
-    let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
-    quantities.chain(choices).map(|(name, value)| Setting { name: name.to_owned(), value }).collect()
 }
 
 /// What a circuit is called in tables.
