@@ -78,8 +78,8 @@ fn a_failed_write_leaves_the_old_archive_alone() {
     let path = tree.path().join("Toy.fmu");
     fs::write(&path, "old").unwrap();
     let mut contents = contents(tree.path());
-    contents.add_file("resources/gone", &tree.path().join("gone"));
-    let error = contents.write(&path).unwrap_err().to_string();
+    contents.entries.add_file("resources/gone", &tree.path().join("gone"));
+    let error = contents.entries.write(&path).unwrap_err().to_string();
     assert!(error.starts_with("cannot read ") && error.contains("gone"), "{error}");
     assert_eq!(fs::read(&path).unwrap(), b"old");
 }
