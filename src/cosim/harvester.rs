@@ -28,8 +28,8 @@ const REALS: [&str; 16] = [
 /// Of those, how many make a row of a time series: all but the two that look ahead.
 const RECORDED: usize = 14;
 
-/// Electrical work of the membranes so far, J: what the force of the connected voltages took from the ball. Only a
-/// harvester on which voltages act has it.
+/// Integral of 1/2 U^2 dC so far, J: what the force of the connected voltages did to the ball. Only a harvester on which
+/// voltages act has it.
 const ELECTRICAL_WORK: &str = "energy.electrical";
 
 /// Outputs of the harvester at one communication point.
@@ -161,7 +161,7 @@ impl HarvesterFmu {
         self.feedback.is_some_and(|feedback| feedback.takes_rates)
     }
 
-    /// Electrical work of the membranes so far, J, as the harvester sums it up; none if it does not.
+    /// What the mechanics gave to the membranes so far, J, as the harvester sums it up; none if it does not.
     ///
     /// # Errors
     /// What the FMU says.
@@ -169,7 +169,7 @@ impl HarvesterFmu {
         let Some(reference) = self.feedback.and_then(|feedback| feedback.work) else { return Ok(None) };
         let mut work = [0.0];
         self.instance.get_real(&[reference], &mut work)?;
-        Ok(Some(work[0]))
+        Ok(Some(-work[0]))
     }
 
     /// dC/dt of the membranes, left and right, F/s, at the communication point.

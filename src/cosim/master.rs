@@ -61,7 +61,7 @@ struct Point {
     capacitance_rate: [f64; 2],
     impacts: i32,
     circuits: Vec<CircuitSample>,
-    /// Work that the harvester books by itself, if it does, J.
+    /// What the mechanics gave so far as the harvester books it by itself, if it does, J.
     electrical_work: Option<f64>,
     /// What the circuits had of C(t) last, F.
     given: [f64; 2],
