@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use std::process::Command;
+use std::sync::LazyLock;
 
 use serde_json::Value;
 
@@ -31,10 +32,9 @@ fn converted(run: &Value) -> f64 {
     run["energy"]["converted"].as_f64().unwrap()
 }
 
-/// Energy that the mechanics gave with a hundredth of the coarsest step below: its own error is 1e-4 of what is compared with it.
-fn reference() -> f64 {
-    converted(&cosim(&["--step", "1e-5"]))
-}
+/// Energy that the mechanics gave with a hundredth of the coarsest step below: its own error is 1e-4 of what is compared
+/// with it.
+static EXACT: LazyLock<f64> = LazyLock::new(|| converted(&cosim(&["--step", "1e-5"])));
 
 fn coupling(run: &Value, key: &str) -> f64 {
     run["coupling"][key].as_f64().unwrap()
@@ -54,10 +54,9 @@ fn order(errors: [f64; 2]) -> f64 {
 /// is what remains of higher ones at these steps.
 #[test]
 fn halving_the_step_shows_the_order_that_each_master_claims() {
-    let exact = reference();
     for (master, claimed) in [("gauss-seidel", 2.0), ("jacobi", 2.0), ("plain", 1.0)] {
         let runs = ["1e-3", "1.25e-4"].map(|step| cosim(&["--master", master, "--step", step]));
-        let of_energy = order([0, 1].map(|k| (converted(&runs[k]) - exact).abs()));
+        let of_energy = order([0, 1].map(|k| (converted(&runs[k]) - *EXACT).abs()));
         assert!((of_energy - claimed).abs() < 0.25, "{master}: order {of_energy} instead of {claimed}");
     }
 }
@@ -75,12 +74,11 @@ fn the_residual_of_the_coupling_vanishes_with_the_step_at_the_order_of_the_maste
 
 #[test]
 fn the_adaptive_master_reaches_the_accuracy_of_twice_the_steps() {
-    let exact = reference();
     for master in ["gauss-seidel", "jacobi"] {
         let adaptive = cosim(&["--master", master, "--adaptive", "1e-4"]);
         let step = format!("{:e}", 5.0 / (2.0 * work(&adaptive)));
         let fixed = cosim(&["--master", master, "--step", &step]);
-        let [of_adaptive, of_fixed] = [&adaptive, &fixed].map(|run| (converted(run) - exact).abs());
+        let [of_adaptive, of_fixed] = [&adaptive, &fixed].map(|run| (converted(run) - *EXACT).abs());
         assert!(coupling(&fixed, "steps") > 2.0 * work(&adaptive));
         assert!(of_adaptive < of_fixed, "{master}: {of_adaptive:e} J adaptive, {of_fixed:e} J with twice the steps");
     }
@@ -89,9 +87,8 @@ fn the_adaptive_master_reaches_the_accuracy_of_twice_the_steps() {
 /// The tolerance is on signals that are off by the square of the step, so energies follow it proportionally.
 #[test]
 fn a_smaller_tolerance_gives_a_smaller_error() {
-    let exact = reference();
     for master in ["gauss-seidel", "jacobi"] {
-        let error = |tolerance| (converted(&cosim(&["--master", master, "--adaptive", tolerance])) - exact).abs();
+        let error = |tolerance| (converted(&cosim(&["--master", master, "--adaptive", tolerance])) - *EXACT).abs();
         let [coarse, fine] = [error("1e-3"), error("1e-5")];
         assert!(coarse > 20.0 * fine, "{master}: {coarse:e} {fine:e}");
     }
