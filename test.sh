@@ -23,7 +23,8 @@ Runs the stages named, or all of them in this order:
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line
-  conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md
+  conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
+               on how masters converge and circuits agree
 
 Only when named:
   conformance-slow
@@ -174,6 +175,7 @@ stage_conformance() {
     build_fmus
     run "$VENV/bin/python" -m pytest tests/c
     run "$VENV/bin/python" tests/conformance
+    run "$VENV/bin/python" tests/coupling
 }
 
 stage_conformance-slow() {

@@ -222,7 +222,7 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
         (&["simulate", "--until", "-1"], &["--until", "-1 s", "1e9 s"]),
         (&["simulate", "--until", "long"], &["--until", "'long'"]),
         (&["cosim", "--step", "0"], &["--step", "0 s", "above 0"]),
-        (&["cosim", "--circuit", "paper"], &["--circuit", "'paper'", "embedded, fmu"]),
+        (&["cosim", "--circuit", "paper"], &["--circuit", "'paper'", "embedded, ngspice, fmu"]),
         (&["simulate", "--case-file", "missing.toml"], &["missing.toml", "No such file"]),
         (&["destroy"], &["destroy"]),
     ];
@@ -278,6 +278,9 @@ fn what_is_no_fmu_is_refused() {
 fn completions_and_help_are_data() {
     let completions = videg(&["completions", "bash"]);
     assert!(completions.code == Some(0) && completions.stdout.contains("_videg"));
+    for verb in ["cosim", "simulate", "fmu", "ssp", "completions"] {
+        assert!(completions.stdout.contains(&format!("videg__subcmd__{verb}\"")), "{verb}");
+    }
     let help = videg(&["--help"]);
     assert!(help.code == Some(0) && help.stdout.contains("cosim") && help.stderr.is_empty());
 }

@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use videg_circuit::{Release, Settings, Topology, formulas, names};
+use videg_circuit::{Release, Settings, Topology, names};
 
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
-use super::{Verdict, cosim_report, output, packaging, picture, settings};
+use super::{Verdict, cosim_report, electrical, output, packaging, picture, settings};
 use crate::cosim::{
-    CircuitSlave, CircuitSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu, Master, MechanicsSummary,
-    NgspiceCircuit, Schedule, Trace,
+    CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu,
+    Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::Scenario;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -27,6 +27,34 @@ pub struct Arguments {
     /// Which circuit the harvester is coupled with
     #[arg(long, value_enum, default_value_t = Backend::Embedded)]
     circuit: Backend,
+    /// What harvester and circuit know of each other during a communication step
+    #[arg(long, value_enum, default_value_t = Order::GaussSeidel)]
+    master: Order,
+    /// Adapt the communication step (--step is the first one) so that no signal within it is off by more than this part of
+    /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
+    #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
+    adaptive: Option<f64>,
+}
+
+/// The method of the master, as it is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Order {
+    /// The harvester steps first, then the circuit with C(t) linear between its ends: second order
+    GaussSeidel,
+    /// Both step at once, with C(t) extrapolated at dC/dt: second order
+    Jacobi,
+    /// Both step at once on a regular grid and get values only, as from a tool that knows no more of FMI: first order
+    Plain,
+}
+
+impl From<Order> for Method {
+    fn from(order: Order) -> Self {
+        match order {
+            Order::GaussSeidel => Self::GaussSeidel,
+            Order::Jacobi => Self::Jacobi,
+            Order::Plain => Self::Plain,
+        }
+    }
 }
 
 /// What solves the circuit.
@@ -57,6 +85,7 @@ struct Output<'a> {
     circuit: &'a str,
     #[serde(flatten)]
     summary: &'a CircuitSummary,
+    coupling: CouplingSummary,
     comparison: &'a [Compared],
 }
 
@@ -68,6 +97,8 @@ pub struct Finished {
     pub mechanics: MechanicsSummary,
     /// The circuit asked for, then those to compare it with.
     pub circuits: Vec<Compared>,
+    /// The coupling of the harvester with the circuit asked for.
+    pub coupling: CouplingSummary,
     /// Supply voltage, V.
     pub supply_voltage: f64,
     /// What the user should know before believing the numbers.
@@ -80,10 +111,12 @@ pub struct Finished {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
     let scenario = options.scenario()?;
+    let coupling = Coupling { method: arguments.master.into(), tolerance: arguments.adaptive };
+    coupling.check()?;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let finished = couple(arguments.circuit, &fmu, scenario, &csv)?;
+    let finished = couple(arguments.circuit, coupling, &fmu, scenario, &csv)?;
     let files = write_files(&folder, &csv, &finished)?;
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -97,57 +130,32 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 }
 
 /// Runs the co-simulation and writes the time series to `csv`.
-fn couple(backend: Backend, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
-    let (mechanical, electrical) = settings::split(fmu, &scenario)?;
+fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
+    let (mechanical, of_circuit) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
-    let ratio = best_capacitance_ratio(fmu, &scenario, &mechanical)?;
-    let settings = circuit_settings(&electrical, harvester.bias_voltage(), ratio)?;
+    let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;
+    let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratios.best)?;
     let mut warnings = harvester.warnings();
     warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
-    let circuits = circuits(backend, &scenario, &settings, ratio, &harvester)?;
+    let circuits = circuits(backend, &scenario, &settings, ratios, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
+    let master = Master::new(harvester, circuits, &scenario, coupling)?;
     let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
-    let master = Master::new(harvester, circuits, &scenario);
     let outcome = master.run(&mut [&mut recorder, &mut trace, &mut bar]);
     bar.finish();
     recorder.finish()?;
     // What is there when a subsystem gives up stays.
-    let (mechanics, samples) = outcome
+    let outcome = outcome
         .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    let Outcome { mechanics, circuits: samples, coupling } = outcome;
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let svg = picture::cosim(&trace, &scenario)?;
-    Ok(Finished { scenario, mechanics, circuits, supply_voltage: settings.circuit.supply_voltage, warnings, svg })
-}
-
-/// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
-/// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.
-pub fn circuit_settings(electrical: &[Setting], bias: f64, ratio: f64) -> anyhow::Result<Settings> {
-    let mut settings = Settings::default();
-    settings.circuit.supply_voltage = bias;
-    for setting in electrical {
-        EmbeddedCircuit::apply(&mut settings, setting)?;
-    }
-    let given = |name| electrical.iter().any(|setting| setting.name == name);
-    if !given(names::ZENER_VOLTAGE) {
-        settings.circuit.zener_voltage = settings.circuit.supply_voltage;
-    }
-    if !given(names::STORAGE_VOLTAGE) {
-        settings.circuit.storage_voltage = best_release_voltage(&settings, ratio);
-    }
-    Ok(settings)
-}
-
-/// The voltage of release that gains most, V, where an impact multiplies the capacitance of a membrane by `ratio`.
-pub fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
-    let idle = match settings.circuit.topology {
-        Topology::SharedNode => 1.0,
-        Topology::Isolated => 0.0,
-    };
-    formulas::best_release_voltage(settings.circuit.supply_voltage, 1.0 + idle, ratio + idle)
+    let supply_voltage = settings.circuit.supply_voltage;
+    Ok(Finished { scenario, mechanics, circuits, coupling, supply_voltage, warnings, svg })
 }
 
 pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
@@ -167,21 +175,21 @@ fn circuits(
     backend: Backend,
     scenario: &Scenario,
     settings: &Settings,
-    ratio: f64,
+    ratios: electrical::Ratios,
     harvester: &HarvesterFmu,
 ) -> anyhow::Result<Vec<Box<dyn CircuitSlave>>> {
     let capacitance = harvester.sample()?.capacitance();
     let first: Box<dyn CircuitSlave> = match backend {
         Backend::Embedded => Box::new(EmbeddedCircuit::new(&label(settings), settings, capacitance)?),
         Backend::Ngspice => {
-            let elements = Elements::new(&settings.parameters(), ratio)?;
+            let elements = Elements::new(&settings.parameters(), ratios.largest)?;
             let program = std::env::current_exe().context("cannot find this program's own file")?;
-            let run = ngspice::Run::new(scenario.until, ratio);
+            let run = ngspice::Run::new(scenario.until, ratios.largest);
             Box::new(NgspiceCircuit::new(&label(settings), &program, &elements, capacitance, &run)?)
         }
         Backend::Fmu => {
             let fmu = packaging::open("HarvestingCircuit")?;
-            let all = every_setting(settings);
+            let all = electrical::every_setting(settings);
             Box::new(FmuCircuit::new(&label(settings), &fmu, &all, capacitance, scenario.until)?)
         }
     };
@@ -189,7 +197,7 @@ fn circuits(
     switch.circuit.release = Release::Switch;
     let mut better = switch;
     better.circuit.topology = Topology::Isolated;
-    better.circuit.zener_voltage = best_release_voltage(&better, ratio);
+    better.circuit.zener_voltage = electrical::best_release_voltage(&better, ratios.best);
     let mut storage = better;
     storage.circuit.release = Release::Storage;
     storage.circuit.storage_voltage = better.circuit.zener_voltage;
@@ -198,35 +206,6 @@ fn circuits(
         circuits.push(Box::new(EmbeddedCircuit::new(&label(&compared), &compared, capacitance)?));
     }
     Ok(circuits)
-}
-
-/// `C_3` / `C_2` to choose a voltage of release by, from a run of the mechanics ahead. Impacts within one communication
-/// step count as equal.
-fn best_capacitance_ratio(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> anyhow::Result<f64> {
-    let mut ahead = HarvesterFmu::new(fmu, scenario, mechanical)?;
-    let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
-    let (mut now, mut gain, mut impacts) = (0.0, 0.0, 0);
-    let mut ratios = Vec::new();
-    while now < scenario.until {
-        let next = schedule.next(now, f64::INFINITY);
-        ahead.step(now, next - now)?;
-        let [count, _] = ahead.counts()?;
-        if count > impacts {
-            let (total, number) = (ahead.sample()?.voltage_gain(), count - impacts);
-            let ratio = 1.0 + (total - gain) / (f64::from(number) * ahead.bias_voltage());
-            ratios.extend((0..number).map(|_| ratio));
-            (gain, impacts) = (total, count);
-        }
-        now = next;
-    }
-    Ok(formulas::best_release_ratio(ratios))
-}
-
-/// The settings as text, for an FMU. Numbers read back to the same bits.
-fn every_setting(settings: &Settings) -> Vec<Setting> {
-    let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
-    let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
-    quantities.chain(choices).map(|(name, value)| Setting { name: name.to_owned(), value }).collect()
 }
 
 /// What a circuit is called in tables.
@@ -248,7 +227,7 @@ fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result
 fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Output<'a>> {
     let (first, comparison) = finished.circuits.split_first().context("a co-simulation without a circuit")?;
     let run = RunOutput::new(&finished.scenario, finished.mechanics, &finished.warnings, files);
-    Ok(Output { run, circuit: &first.label, summary: &first.summary, comparison })
+    Ok(Output { run, circuit: &first.label, summary: &first.summary, coupling: finished.coupling, comparison })
 }
 
 fn text(finished: &Finished, files: &[PathBuf]) -> String {
@@ -257,6 +236,7 @@ fn text(finished: &Finished, files: &[PathBuf]) -> String {
         text_table(&finished.scenario, &finished.mechanics),
         cosim_report::energy_table(finished),
         cosim_report::EXPLANATION.join("\n"),
+        cosim_report::coupling_line(&finished.coupling),
         file_list(files),
     ];
     parts.join("\n\n")

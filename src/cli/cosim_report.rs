@@ -2,6 +2,7 @@
 
 use super::cosim::{Compared, Finished};
 use super::{format, output, simulate};
+use crate::cosim::CouplingSummary;
 use crate::report::{self, Column, Report, ReportError, Section, Table};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
@@ -67,6 +68,18 @@ pub fn energy_table(finished: &Finished) -> String {
     table.to_string()
 }
 
+/// What the coupling with the first circuit came to.
+pub fn coupling_line(coupling: &CouplingSummary) -> String {
+    let work = |joule: f64| format::significant(1e3 * joule, DIGITS);
+    let CouplingSummary { steps, rejected, circuit_work, harvester_work, residual, relative_residual, .. } = *coupling;
+    format!(
+        "coupling: {steps} communication steps, {rejected} undone; work -1/2 U^2 dC booked by the circuit {} mJ, by the \
+         harvester {} mJ; residual {residual:.1e} J, {relative_residual:.1e} of the energy moved",
+        work(circuit_work),
+        work(harvester_work),
+    )
+}
+
 /// The HTML report.
 pub fn html(finished: &Finished) -> Result<String, ReportError> {
     let scenario = &finished.scenario;
@@ -89,6 +102,7 @@ pub fn html(finished: &Finished) -> Result<String, ReportError> {
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(result)
     .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies))
+    .section(Section::new("Coupling").text(coupling_line(&finished.coupling)))
     .section(Section::new("Motion, capacitances, voltages and energies").figure(
         finished.svg.clone(),
         "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds of the run; (d) \

@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, names};
 
-use super::cosim::{best_release_voltage, circuit_settings, label, voltage_warning};
+use super::cosim::{label, voltage_warning};
+use super::electrical;
 use super::options::RunOptions;
 use super::progress::{TaskBar, TimeBar};
 use super::simulate::{RunOutput, file_list, heading};
@@ -146,7 +147,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let mut bar = TimeBar::new(format!("{}: mechanics", scenario.name), scenario.until);
     let case = Case::new(&fmu, &scenario, &mechanical, &mut bar)?;
     bar.finish();
-    let circuit = circuit_settings(&electrical, case.bias_voltage, case.best_ratio())?;
+    let circuit = electrical::resolve(&electrical, case.bias_voltage, case.best_ratio())?;
     Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth())?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
     let finished = solve(scenario, case, circuit, &ngspice, arguments.sweep)?;
@@ -279,7 +280,7 @@ fn others(asked: &Settings, ratio: f64) -> Vec<Settings> {
     let mut storage = paper;
     storage.circuit.topology = Topology::Isolated;
     storage.circuit.release = Release::Storage;
-    storage.circuit.storage_voltage = best_release_voltage(&storage, ratio);
+    storage.circuit.storage_voltage = electrical::best_release_voltage(&storage, ratio);
     let same = |other: &Settings| {
         let [a, b] = [other, asked].map(|settings| settings.circuit);
         (a.topology, a.release, a.release_voltage()) == (b.topology, b.release, b.release_voltage())

@@ -10,6 +10,7 @@ mod crosscheck;
 mod crosscheck_files;
 mod crosscheck_picture;
 mod crosscheck_report;
+mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
@@ -20,6 +21,7 @@ mod picture;
 mod progress;
 mod settings;
 mod simulate;
+mod ssp;
 mod worker;
 
 use std::process::ExitCode;
@@ -44,6 +46,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Build, describe and check FMUs
     Fmu(fmu::Arguments),
+    /// Package both FMUs, connected and with the parameters of a case, as Harvester.ssp (SSP 1.0)
+    Ssp(ssp::Arguments),
     /// Print shell completions
     Completions(completions::Arguments),
     /// Run the shared library of ngspice for another process
@@ -70,6 +74,7 @@ pub fn main() -> ExitCode {
         Verb::Crosscheck(arguments) => crosscheck::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
+        Verb::Ssp(arguments) => ssp::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),
         Verb::NgspiceWorker => worker::run(),
     };

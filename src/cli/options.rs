@@ -6,9 +6,9 @@ use clap::Args;
 
 use crate::scenario::{CaseFile, Request, Scenario, ScenarioError, Setting};
 
-/// What to run and where results go.
+/// What to run.
 #[derive(Args)]
-pub struct RunOptions {
+pub struct CaseOptions {
     /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
@@ -22,6 +22,13 @@ pub struct RunOptions {
     /// End of the run, s [default: 100]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     until: Option<f64>,
+}
+
+/// What to run, how, and where results go.
+#[derive(Args)]
+pub struct RunOptions {
+    #[command(flatten)]
+    case: CaseOptions,
     /// Communication step, s; impacts and peaks of C(t) are landed on as well [default: 1e-3]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     step: Option<f64>,
@@ -48,6 +55,26 @@ fn parse_window(text: &str) -> Result<Window, String> {
     }
 }
 
+impl CaseOptions {
+    /// Resolves the options.
+    ///
+    /// # Errors
+    /// Whatever in them makes no sense.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        self.request()?.resolve()
+    }
+
+    fn request(&self) -> Result<Request, ScenarioError> {
+        Ok(Request {
+            case: self.case.clone(),
+            file: self.case_file.as_deref().map(CaseFile::read).transpose()?,
+            settings: self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?,
+            until: self.until,
+            ..Request::default()
+        })
+    }
+}
+
 impl RunOptions {
     /// Resolves the options.
     ///
@@ -62,16 +89,8 @@ impl RunOptions {
     /// # Errors
     /// Whatever in them makes no sense.
     pub fn scenario_with(&self, more: Vec<Setting>) -> Result<Scenario, ScenarioError> {
-        let mut settings: Vec<_> = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
-        settings.extend(more);
-        let request = Request {
-            case: self.case.clone(),
-            file: self.case_file.as_deref().map(CaseFile::read).transpose()?,
-            settings,
-            until: self.until,
-            step: self.step,
-            window: self.window.map(|Window(window)| window),
-        };
-        request.resolve()
+        let mut request = self.case.request()?;
+        request.settings.extend(more);
+        Request { step: self.step, window: self.window.map(|Window(window)| window), ..request }.resolve()
     }
 }

@@ -1,6 +1,7 @@
 //! The FMUs of this project, put together when a verb needs them.
 
 use std::io::IsTerminal as _;
+use std::path::PathBuf;
 
 use anyhow::Context as _;
 
@@ -15,14 +16,19 @@ pub fn follow(line: &str) {
     }
 }
 
-/// Packages the FMUs, with progress, and opens the one with this identifier.
-pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
+/// Packages the FMUs, with progress; returns the archives, in the order of [`FMUS`].
+pub fn build() -> anyhow::Result<Vec<PathBuf>> {
     let waiting = spinner("packaging the FMUs");
     // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
     let as_is = std::env::var_os("CARGO").is_none();
     let paths = package::build_all(&Options { as_is, progress: follow, ..Options::default() });
     waiting.finish_and_clear();
-    let paths = paths.context("cannot package the FMUs")?;
+    paths.context("cannot package the FMUs")
+}
+
+/// Packages the FMUs, with progress, and opens the one with this identifier.
+pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
+    let paths = build()?;
     let index = FMUS.iter().position(|fmu| fmu.identifier == identifier);
     let path = index.and_then(|index| paths.get(index)).with_context(|| format!("no FMU is called {identifier}"))?;
     Ok(Fmu::open(path)?)

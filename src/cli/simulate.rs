@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::{Verdict, format, output, packaging, picture, settings};
-use crate::cosim::{CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Trace};
+use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Trace};
 use crate::report::{self, Column, Report, Section};
 use crate::scenario::{Scenario, Setting};
 
@@ -85,8 +85,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let mut recorder = CsvRecorder::create(&output::partial(&csv), false)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
-    let (mechanics, _) =
-        Master::new(harvester, Vec::new(), &scenario).run(&mut [&mut recorder, &mut trace, &mut bar])?;
+    let master = Master::new(harvester, Vec::new(), &scenario, Coupling::default())?;
+    let mechanics = master.run(&mut [&mut recorder, &mut trace, &mut bar])?.mechanics;
     bar.finish();
     recorder.finish()?;
     std::fs::rename(output::partial(&csv), &csv).with_context(|| format!("cannot write {}", csv.display()))?;

@@ -26,6 +26,28 @@ pub enum CosimError {
         /// Its error.
         cause: Box<crate::ngspice::NgspiceError>,
     },
+    /// A circuit cannot go back to an earlier state, which an adaptive step takes.
+    #[error(
+        "--adaptive takes circuits that can go back to an earlier state; \"{label}\" cannot (ngspice never can; allowed: embedded, fmu)"
+    )]
+    NoRollback {
+        /// The circuit.
+        label: String,
+    },
+    /// No state was kept to which an FMU could go back.
+    #[error("{instance}: no earlier state is kept to go back to")]
+    NothingKept {
+        /// The instance.
+        instance: String,
+    },
+    /// The options of the master contradict each other or are out of bounds.
+    #[error("--adaptive {tolerance}: {bound}")]
+    Tolerance {
+        /// The tolerance given.
+        tolerance: f64,
+        /// What is allowed.
+        bound: String,
+    },
     /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
     #[error("{name} = {value}: {bound}")]
     Setting {

@@ -1,6 +1,7 @@
 //! The harvester FMU as the master sees it.
 
 use super::CosimError;
+use super::rollback::Kept;
 use crate::fmi::{Fmu, Instance, Logging, Status};
 use crate::scenario::{Scenario, Setting};
 
@@ -26,6 +27,10 @@ const REALS: [&str; 16] = [
 
 /// Of those, how many make a row of a time series: all but the two that look ahead.
 const RECORDED: usize = 14;
+
+/// Integral of 1/2 U^2 dC so far, J: what the force of the connected voltages did to the ball. Only a harvester on which
+/// voltages act has it.
+const ELECTRICAL_WORK: &str = "energy.electrical";
 
 /// Outputs of the harvester at one communication point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +80,17 @@ pub struct HarvesterFmu {
     counts: [u32; 2],
     voltages: [u32; 2],
     bias_voltage: f64,
+    feedback: Option<Feedback>,
+    kept: Kept,
+}
+
+/// How voltages act on a harvester with `contact.electrostaticFeedback`.
+#[derive(Debug, Clone, Copy)]
+struct Feedback {
+    /// The voltages may be given with their first derivatives.
+    takes_rates: bool,
+    /// Reference of the electrical work, if the FMU sums it up.
+    work: Option<u32>,
 }
 
 impl HarvesterFmu {
@@ -100,7 +116,9 @@ impl HarvesterFmu {
         instance.exit_initialization_mode()?;
         let mut bias_voltage = [0.0];
         instance.get_real(&bias, &mut bias_voltage)?;
-        Ok(Self { instance, reals, counts, voltages, bias_voltage: bias_voltage[0] })
+        let feedback = Feedback::of(fmu, &instance, &voltages)?;
+        let bias_voltage = bias_voltage[0];
+        Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, kept: Kept::default() })
     }
 
     /// What the FMU warned of so far.
@@ -123,6 +141,61 @@ impl HarvesterFmu {
     /// What the FMU says.
     pub fn set_voltage(&mut self, voltage: [f64; 2]) -> Result<(), CosimError> {
         Ok(self.instance.set_real(&self.voltages, &voltage)?)
+    }
+
+    /// Has the voltages run on at `rate` (left, right), V/s, over the next step.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn set_voltage_rate(&mut self, rate: [f64; 2]) -> Result<(), CosimError> {
+        Ok(self.instance.set_real_input_derivatives(&self.voltages, &[1, 1], &rate)?)
+    }
+
+    /// Whether the voltages act on the ball.
+    pub fn feels_voltage(&self) -> bool {
+        self.feedback.is_some()
+    }
+
+    /// Whether [`HarvesterFmu::set_voltage_rate`] works and is of use.
+    pub fn takes_voltage_rates(&self) -> bool {
+        self.feedback.is_some_and(|feedback| feedback.takes_rates)
+    }
+
+    /// What the mechanics gave to the membranes so far, J, as the harvester sums it up; none if it does not.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn electrical_work(&self) -> Result<Option<f64>, CosimError> {
+        let Some(reference) = self.feedback.and_then(|feedback| feedback.work) else { return Ok(None) };
+        let mut work = [0.0];
+        self.instance.get_real(&[reference], &mut work)?;
+        Ok(Some(-work[0]))
+    }
+
+    /// dC/dt of the membranes, left and right, F/s, at the communication point.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn capacitance_rate(&self) -> Result<[f64; 2], CosimError> {
+        let mut rate = [0.0; 2];
+        self.instance.get_real_output_derivatives(&self.reals[..2], &[1, 1], &mut rate)?;
+        Ok(rate)
+    }
+
+    /// Keeps the state, in place of one that was kept before.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn save(&mut self) -> Result<(), CosimError> {
+        self.kept.save(&self.instance)
+    }
+
+    /// Goes back to the state kept.
+    ///
+    /// # Errors
+    /// What the FMU says, or that no state was kept.
+    pub fn restore(&mut self) -> Result<(), CosimError> {
+        self.kept.restore(&mut self.instance)
     }
 
     /// Outputs at the communication point.
@@ -156,5 +229,22 @@ impl HarvesterFmu {
     /// What the FMU says.
     pub fn terminate(&mut self) -> Result<(), CosimError> {
         Ok(self.instance.terminate()?)
+    }
+}
+
+impl Feedback {
+    /// None for a harvester that feels no voltage. What FMI 2.0 says of input derivatives holds for the FMU as a whole, so
+    /// another instance tries those of `voltages`: a refusal would end a run.
+    fn of(fmu: &Fmu, instance: &Instance, voltages: &[u32]) -> Result<Option<Self>, CosimError> {
+        let description = fmu.description();
+        let mut on = [false];
+        instance.get_boolean(&[description.variable("contact.electrostaticFeedback")?.value_reference], &mut on)?;
+        if !on[0] {
+            return Ok(None);
+        }
+        let mut trial = fmu.instantiate("trial", Logging::default())?;
+        let takes_rates = trial.set_real_input_derivatives(voltages, &[1, 1], &[0.0, 0.0]).is_ok();
+        let work = description.variable(ELECTRICAL_WORK).ok().map(|variable| variable.value_reference);
+        Ok(Some(Self { takes_rates, work }))
     }
 }

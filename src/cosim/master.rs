@@ -1,6 +1,12 @@
 //! The master: one harvester, any number of circuits.
 
-use super::{CircuitSample, CircuitSlave, CosimError, HarvesterFmu, HarvesterSample, MechanicsSummary, Schedule};
+use super::adaptive::StepControl;
+use super::coupling::Books;
+use super::signal::{Curve, Line};
+use super::{
+    CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, HarvesterFmu, HarvesterSample,
+    MechanicsSummary, Method, Schedule,
+};
 use crate::scenario::Scenario;
 
 /// What holds at one communication point.
@@ -23,12 +29,46 @@ pub trait Observer {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError>;
 }
 
+/// What a run comes to.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The mechanics.
+    pub mechanics: MechanicsSummary,
+    /// The circuits at the end, in their order.
+    pub circuits: Vec<CircuitSample>,
+    /// The coupling of the harvester with the first circuit.
+    pub coupling: CouplingSummary,
+}
+
 /// The master, ready to run.
 pub struct Master {
     harvester: HarvesterFmu,
     circuits: Vec<Box<dyn CircuitSlave>>,
     schedule: Schedule,
     scenario: Scenario,
+    coupling: Coupling,
+    control: Option<StepControl>,
+    books: Books,
+    steps: u64,
+    rejected: u64,
+}
+
+/// A communication point, and what the master goes on from there with.
+struct Point {
+    time: f64,
+    harvester: HarvesterSample,
+    /// dC/dt, F/s.
+    capacitance_rate: [f64; 2],
+    impacts: i32,
+    circuits: Vec<CircuitSample>,
+    /// What the mechanics gave so far as the harvester books it by itself, if it does, J.
+    electrical_work: Option<f64>,
+    /// What the circuits had of C(t) last, F.
+    given: [f64; 2],
+    /// Voltages over the step that led here, V.
+    voltage: [Line; 2],
+    /// Length of that step, s.
+    step: f64,
 }
 
 /// Running sums of the harvester at an edge of the averaging window.
@@ -38,71 +78,206 @@ struct Gain {
     energy: f64,
 }
 
+/// Most times that a step may be longer than the one before if voltages are extrapolated at what they did in that: further
+/// on, the jump of a diode would count as a slope.
+const REACH: f64 = 10.0;
+
 impl Master {
     /// A master for `harvester` and `circuits`, all initialised at 0 s.
-    pub fn new(harvester: HarvesterFmu, circuits: Vec<Box<dyn CircuitSlave>>, scenario: &Scenario) -> Self {
+    ///
+    /// # Errors
+    /// A coupling that makes no sense, or an adaptive one with a circuit that cannot go back.
+    pub fn new(
+        harvester: HarvesterFmu,
+        circuits: Vec<Box<dyn CircuitSlave>>,
+        scenario: &Scenario,
+        coupling: Coupling,
+    ) -> Result<Self, CosimError> {
+        coupling.check()?;
+        if let Some(stubborn) = circuits.iter().find(|circuit| !circuit.can_roll_back())
+            && coupling.tolerance.is_some()
+        {
+            return Err(CosimError::NoRollback { label: stubborn.label().to_owned() });
+        }
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
-        Self { harvester, circuits, schedule, scenario: scenario.clone() }
+        let control = coupling.tolerance.map(|tolerance| StepControl::new(tolerance, scenario.step));
+        let scenario = scenario.clone();
+        Ok(Self {
+            harvester,
+            circuits,
+            schedule,
+            scenario,
+            coupling,
+            control,
+            books: Books::default(),
+            steps: 0,
+            rejected: 0,
+        })
     }
 
     /// Runs to the end, showing each communication point to `observers`, and sums up.
     ///
     /// # Errors
     /// What a subsystem or an observer says.
-    pub fn run(
-        mut self,
-        observers: &mut [&mut dyn Observer],
-    ) -> Result<(MechanicsSummary, Vec<CircuitSample>), CosimError> {
+    pub fn run(mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, CosimError> {
         let [from, to] = self.scenario.window;
-        let mut now = 0.0;
-        let mut harvester = self.harvester.sample()?;
-        let mut samples = self.circuit_samples()?;
+        let mut point = self.start()?;
         let mut gains = [None; 2];
         loop {
-            let row = Row { time: now, harvester: &harvester, circuits: &samples };
+            let harvester = &point.harvester;
+            let row = Row { time: point.time, harvester, circuits: &point.circuits };
             observers.iter_mut().try_for_each(|observer| observer.observe(&row))?;
             for (gain, edge) in gains.iter_mut().zip([from, to]) {
-                if gain.is_none() && now >= edge {
+                if gain.is_none() && point.time >= edge {
                     *gain = Some(Gain { voltage: harvester.voltage_gain(), energy: harvester.energy_eq13() });
                 }
             }
-            if now >= self.scenario.until {
+            if point.time >= self.scenario.until {
                 break;
             }
-            let next = self.schedule.next(now, harvester.next_knot());
-            if let Some(circuit) = samples.first() {
-                self.harvester.set_voltage(circuit.voltage)?;
-            }
-            harvester = self.step(now, next, &harvester)?;
-            samples = self.circuit_samples()?;
-            now = next;
+            let next = self.advance(&point)?;
+            self.book(&point, &next);
+            point = next;
         }
         let [start, end] = gains.map(Option::unwrap_or_default);
         let [impacts, events] = self.harvester.counts()?;
         self.harvester.terminate()?;
-        let summary = MechanicsSummary {
+        let mechanics = MechanicsSummary {
             impacts,
             events,
             average_voltage_gain: (end.voltage - start.voltage) / (to - from),
             average_power_eq13: (end.energy - start.energy) / (to - from),
-            voltage_gain: harvester.voltage_gain(),
-            energy_eq13: harvester.energy_eq13(),
+            voltage_gain: point.harvester.voltage_gain(),
+            energy_eq13: point.harvester.energy_eq13(),
         };
-        Ok((summary, samples))
+        let coupling = self.books.summary(&self.coupling, self.steps, self.rejected);
+        Ok(Outcome { mechanics, circuits: point.circuits, coupling })
     }
 
-    /// Steps the harvester from `now` to `next`, s, then the circuits with the capacitances at both ends.
-    fn step(&mut self, now: f64, next: f64, before: &HarvesterSample) -> Result<HarvesterSample, CosimError> {
-        let step = next - now;
-        self.harvester.step(now, step)?;
-        let after = self.harvester.sample()?;
-        for circuit in &mut self.circuits {
-            circuit.step(now, step, before.capacitance(), after.capacitance())?;
+    fn start(&self) -> Result<Point, CosimError> {
+        let harvester = self.harvester.sample()?;
+        let voltage = [Line { start: 0.0, rate: 0.0 }; 2];
+        self.point(0.0, harvester.capacitance(), voltage, 0.0)
+    }
+
+    /// What holds at `time`, s, after a `step`, s, in which the circuits were given C(t) up to `given`, F, and the harvester
+    /// `voltage`, V.
+    fn point(&self, time: f64, given: [f64; 2], voltage: [Line; 2], step: f64) -> Result<Point, CosimError> {
+        Ok(Point {
+            time,
+            harvester: self.harvester.sample()?,
+            capacitance_rate: self.harvester.capacitance_rate()?,
+            impacts: self.harvester.counts()?[0],
+            circuits: self.circuits.iter().map(|circuit| circuit.sample()).collect::<Result<_, _>>()?,
+            electrical_work: self.harvester.electrical_work()?,
+            given,
+            voltage,
+            step,
+        })
+    }
+
+    /// The next communication point.
+    fn advance(&mut self, from: &Point) -> Result<Point, CosimError> {
+        let knot = from.harvester.next_knot();
+        let Some(mut control) = self.control else {
+            let knot = if self.coupling.method == Method::Plain { f64::INFINITY } else { knot };
+            self.steps += 1;
+            return self.step(from, self.schedule.next(from.time, knot));
+        };
+        self.save()?;
+        loop {
+            let next = self.schedule.within(from.time, control.step(), knot);
+            let to = self.step(from, next)?;
+            // An impact that was not foreseen may hide a whole pulse.
+            let surprise = to.impacts > from.impacts && next < knot;
+            let error = if surprise { f64::INFINITY } else { self.error(from, &to) };
+            // Rounding must not make a shortest step longer than it is.
+            let shortest = to.step <= 1.5 * self.schedule.closest();
+            if control.accepts(to.step, error) || shortest {
+                self.control = Some(control);
+                self.steps += 1;
+                return Ok(to);
+            }
+            self.rejected += 1;
+            self.restore()?;
         }
-        Ok(after)
     }
 
-    fn circuit_samples(&self) -> Result<Vec<CircuitSample>, CosimError> {
-        self.circuits.iter().map(|circuit| circuit.sample()).collect()
+    /// Steps all subsystems to `next`, s.
+    fn step(&mut self, from: &Point, next: f64) -> Result<Point, CosimError> {
+        let (now, step) = (from.time, next - from.time);
+        let voltage = self.voltage(from, step);
+        if !self.circuits.is_empty() {
+            self.harvester.set_voltage(voltage.map(|line| line.start))?;
+        }
+        if self.harvester.takes_voltage_rates() {
+            self.harvester.set_voltage_rate(voltage.map(|line| line.rate))?;
+        }
+        self.harvester.step(now, step)?;
+        let start = from.harvester.capacitance();
+        let (start, end) = match self.coupling.method {
+            Method::GaussSeidel => (start, self.harvester.sample()?.capacitance()),
+            Method::Jacobi => (start, [0, 1].map(|j| start[j] + from.capacitance_rate[j] * step)),
+            Method::Plain => (from.given, start),
+        };
+        for circuit in &mut self.circuits {
+            circuit.step(now, step, start, end)?;
+        }
+        self.point(next, end, voltage, step)
     }
+
+    /// The voltages that the harvester is given for a `step`, s: those of the first circuit, as they went in the last step.
+    /// One that feels none would be given the same.
+    fn voltage(&self, from: &Point, step: f64) -> [Line; 2] {
+        let present = from.circuits.first().map_or([0.0; 2], |circuit| circuit.voltage);
+        let deaf = self.harvester.feels_voltage() && !self.harvester.takes_voltage_rates();
+        let held = deaf || self.coupling.method == Method::Plain || step > REACH * from.step;
+        let rate = |j: usize| if held { 0.0 } else { (present[j] - from.voltage[j].start) / from.step };
+        [0, 1].map(|j| Line { start: present[j], rate: rate(j) })
+    }
+
+    /// Largest error of a signal in the step between two points, relative to its value: of C(t) as the circuits had it, and
+    /// of the voltages where the harvester feels them.
+    fn error(&self, from: &Point, to: &Point) -> f64 {
+        let of_capacitance = (0..2).map(|j| {
+            let curve = capacitance(from, to, j);
+            let rate = (to.given[j] - curve.value[0]) / to.step;
+            curve.deviation(&Line { start: curve.value[0], rate })
+        });
+        let of_voltage = to.circuits.first().filter(|_| self.harvester.feels_voltage()).map(|circuit| {
+            let error = |j: usize| (to.voltage[j].at(to.step) / circuit.voltage[j] - 1.0).abs();
+            error(0).max(error(1))
+        });
+        of_capacitance.chain(of_voltage).fold(0.0, larger)
+    }
+
+    fn book(&mut self, from: &Point, to: &Point) {
+        let (Some(before), Some(after)) = (from.circuits.first(), to.circuits.first()) else { return };
+        let by_harvester = match (from.electrical_work, to.electrical_work) {
+            (Some(before), Some(after)) => after - before,
+            _ => (0..2).map(|j| capacitance(from, to, j).work(&to.voltage[j])).sum(),
+        };
+        self.books.add(after.ledger.mechanical - before.ledger.mechanical, by_harvester);
+    }
+
+    fn save(&mut self) -> Result<(), CosimError> {
+        self.harvester.save()?;
+        self.circuits.iter_mut().try_for_each(|circuit| circuit.save())
+    }
+
+    fn restore(&mut self) -> Result<(), CosimError> {
+        self.harvester.restore()?;
+        self.circuits.iter_mut().try_for_each(|circuit| circuit.restore())
+    }
+}
+
+/// C(t) of a membrane (0 left, 1 right) between two communication points, as the harvester has it.
+fn capacitance(from: &Point, to: &Point, side: usize) -> Curve {
+    let value = [from.harvester.capacitance()[side], to.harvester.capacitance()[side]];
+    Curve { step: to.step, value, rate: [from.capacitance_rate[side], to.capacitance_rate[side]] }
+}
+
+/// The larger of two; what is no number is larger than all.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
 }

@@ -1,22 +1,31 @@
 //! Co-simulation of the harvester FMU with harvesting circuits: the master, its subsystems, and what it records.
 //!
-//! The order is Gauss-Seidel: the harvester steps first, then each circuit with the capacitances known at both ends of the
-//! step. The voltages of the first circuit go back to the harvester; under the impulsive law they do not act on it, so
-//! the order loses nothing. Any number of further circuits can listen, which is how circuits are compared.
+//! [`Method`] says what the subsystems know of each other during a step, [`Coupling`] whether the step adapts. The voltages
+//! of the first circuit go back to the harvester; any number of further circuits can listen, which is how circuits are
+//! compared. A circuit is whatever implements [`CircuitSlave`], in a file of its own.
 
+mod adaptive;
 mod circuit;
+mod circuit_fmu;
+mod coupling;
+mod embedded;
 mod error;
 mod harvester;
 mod master;
 mod ngspice;
 mod record;
+mod rollback;
 mod schedule;
+mod signal;
 mod summary;
 
-pub use circuit::{CircuitSample, CircuitSlave, EmbeddedCircuit, FmuCircuit};
+pub use circuit::{CircuitSample, CircuitSlave};
+pub use circuit_fmu::FmuCircuit;
+pub use coupling::{Coupling, CouplingSummary, Method};
+pub use embedded::EmbeddedCircuit;
 pub use error::CosimError;
 pub use harvester::{HarvesterFmu, HarvesterSample};
-pub use master::{Master, Observer, Row};
+pub use master::{Master, Observer, Outcome, Row};
 pub use ngspice::NgspiceCircuit;
 pub use record::{CsvRecorder, Trace, TracePoint};
 pub use schedule::Schedule;

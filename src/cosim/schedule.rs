@@ -21,10 +21,24 @@ impl Schedule {
     /// The next communication point after `now`, s, if a capacitance has a kink or an extremum at `knot`, s. Points of
     /// the grid are products, not sums, so that they do not drift.
     pub fn next(&self, now: f64, knot: f64) -> f64 {
-        let closest = Self::CLOSEST * self.step;
-        let index = ((now + closest) / self.step).floor() + 1.0;
+        let index = ((now + self.closest()) / self.step).floor() + 1.0;
+        self.land(now, index * self.step, knot)
+    }
+
+    /// The next communication point at most `step`, s, after `now`, off the grid; the rest as for [`Schedule::next`].
+    pub fn within(&self, now: f64, step: f64, knot: f64) -> f64 {
+        self.land(now, now + step.max(self.closest()), knot)
+    }
+
+    /// Length of a step below which no step is made shorter on purpose, s.
+    pub fn closest(&self) -> f64 {
+        Self::CLOSEST * self.step
+    }
+
+    fn land(&self, now: f64, target: f64, knot: f64) -> f64 {
+        let closest = self.closest();
         let edges = self.window.into_iter().filter(|&edge| edge > now + closest);
-        let target = edges.fold((index * self.step).min(self.until), f64::min);
+        let target = edges.fold(target.min(self.until), f64::min);
         // Stop a hair after `until` rather than a hair before it.
         let target = if self.until - target < closest { self.until } else { target };
         // A knot that is too close is passed with the shortest step, so that it does not hide the one behind it.
@@ -54,6 +68,17 @@ mod tests {
         let fine = points(Schedule::new(1e-3, 100.0, [50.0, 100.0]), 100.0, &[]);
         assert_eq!(fine.len(), 100_000);
         assert!(fine.contains(&50.0) && fine.last() == Some(&100.0));
+    }
+
+    #[test]
+    fn steps_off_the_grid_meet_knots_window_and_end_and_are_never_too_short() {
+        let schedule = Schedule::new(0.25, 1.1, [0.3, 0.9]);
+        let next = |now, step, knot| schedule.within(now, step, knot);
+        assert_eq!(next(0.0, 0.2, f64::MAX), 0.2);
+        assert_eq!(next(0.2, 0.2, f64::MAX), 0.3);
+        assert_eq!(next(0.3, 0.5, 0.4), 0.4);
+        assert_eq!(next(0.4, 1e-9, f64::MAX), 0.4 + 0.25e-3);
+        assert_eq!(next(0.95, 0.149_9, f64::MAX), 1.1);
     }
 
     #[test]

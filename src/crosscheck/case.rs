@@ -2,7 +2,7 @@
 
 use videg_circuit::formulas;
 
-use crate::cosim::{CosimError, HarvesterFmu, Master, MechanicsSummary, Observer, Row};
+use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Row};
 use crate::fmi::Fmu;
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 use crate::scenario::{Scenario, Setting};
@@ -60,7 +60,8 @@ impl Case {
         let harvester = HarvesterFmu::new(fmu, scenario, settings)?;
         let bias_voltage = harvester.bias_voltage();
         let mut log = ImpactLog { bias: bias_voltage, gain: 0.0, impacts: Vec::new() };
-        let (mechanics, _) = Master::new(harvester, Vec::new(), scenario).run(&mut [&mut log, bar])?;
+        let master = Master::new(harvester, Vec::new(), scenario, Coupling::default())?;
+        let mechanics = master.run(&mut [&mut log, bar])?.mechanics;
         let least = |column: &[f64]| column.iter().copied().fold(f64::INFINITY, f64::min);
         let rest = [least(table.left()), least(table.right())];
         Ok(Self { table, mechanics, impacts: log.impacts, rest, bias_voltage, warnings })

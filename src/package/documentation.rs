@@ -68,13 +68,13 @@ pub(super) fn add(contents: &mut Contents) -> Result<()> {
     let description = contents.description();
     let (page, picture) = (page(description)?, picture::draw(description)?);
     if let Some(page) = page {
-        contents.add_bytes("documentation/index.html", page.into_bytes());
+        contents.entries.add_bytes("documentation/index.html", page.into_bytes());
     }
     if let Some(picture) = picture {
-        contents.add_bytes("model.png", picture);
+        contents.entries.add_bytes("model.png", picture);
     }
     for (name, text) in LICENSES {
-        contents.add_bytes(&format!("documentation/licenses/{name}"), text.into());
+        contents.entries.add_bytes(&format!("documentation/licenses/{name}"), text.into());
     }
     Ok(())
 }

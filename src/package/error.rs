@@ -109,6 +109,14 @@ pub enum PackageError {
         /// What the template engine said.
         cause: askama::Error,
     },
+    /// A document cannot be written as XML.
+    #[error("cannot write {document}: {cause}")]
+    Xml {
+        /// The document.
+        document: &'static str,
+        /// What the writer said.
+        cause: quick_xml::SeError,
+    },
     /// FMI 2.0 has no name for a platform.
     #[error(
         "no FMI 2.0 platform for the target {triple}; allowed are linux64, win64, darwin64 and Rust triples of Linux, \

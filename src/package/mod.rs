@@ -1,4 +1,4 @@
-//! Packager: from the compiled libraries to `.fmu` archives.
+//! Packager: from the compiled libraries to `.fmu` archives, and from those to the `.ssp` that connects them.
 //!
 //! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
 //! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses.
@@ -20,11 +20,13 @@ mod binary;
 mod cargo;
 mod contents;
 mod documentation;
+mod entries;
 mod error;
 mod fresh;
 mod locate;
 mod picture;
 mod platform;
+mod ssp;
 mod target;
 mod tools;
 
@@ -32,8 +34,10 @@ use std::path::{Path, PathBuf};
 
 pub use binary::AddedBinary;
 pub use contents::Contents;
+pub use entries::Entries;
 pub use error::{PackageError, Result};
 pub use platform::Platform;
+pub use ssp::{Part, SystemPackage};
 use target::Target;
 
 /// An FMU of this project.
@@ -122,7 +126,7 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
         }
         documentation::add(&mut contents)?;
         let archive = output.join(format!("{}.fmu", fmu.identifier));
-        contents.write(&archive)?;
+        contents.entries.write(&archive)?;
         archives.push(archive);
     }
     Ok(archives)

@@ -26,8 +26,8 @@ fn tree() -> TempDir {
 fn contents(tree: &Path) -> Contents {
     let mut contents = Contents::new("Toy", &tree.join("Toy.xml")).unwrap();
     contents.add_library(Platform { folder: "linux64" }, &tree.join("target/release/libToy.so"));
-    contents.add_folder("documentation", &tree.join("documentation")).unwrap();
-    contents.add_folder("resources", &tree.join("absent")).unwrap();
+    contents.entries.add_folder("documentation", &tree.join("documentation")).unwrap();
+    contents.entries.add_folder("resources", &tree.join("absent")).unwrap();
     documentation::add(&mut contents).unwrap();
     contents
 }
@@ -36,7 +36,7 @@ fn contents(tree: &Path) -> Contents {
 fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
     let tree = tree();
     let path = tree.path().join("out/deep/Toy.fmu");
-    contents(tree.path()).write(&path).unwrap();
+    contents(tree.path()).entries.write(&path).unwrap();
     let mut archive = Archive::open(&path).unwrap();
     let wanted = [
         "binaries/linux64/Toy.so",
@@ -60,7 +60,7 @@ fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
     let archive = |tree: &TempDir| {
         let path = tree.path().join("Toy.fmu");
         fs::write(&path, "old").unwrap();
-        contents(tree.path()).write(&path).unwrap();
+        contents(tree.path()).entries.write(&path).unwrap();
         fs::read(path).unwrap()
     };
     let bytes = archive(&first);
@@ -78,8 +78,8 @@ fn a_failed_write_leaves_the_old_archive_alone() {
     let path = tree.path().join("Toy.fmu");
     fs::write(&path, "old").unwrap();
     let mut contents = contents(tree.path());
-    contents.add_file("resources/gone", &tree.path().join("gone"));
-    let error = contents.write(&path).unwrap_err().to_string();
+    contents.entries.add_file("resources/gone", &tree.path().join("gone"));
+    let error = contents.entries.write(&path).unwrap_err().to_string();
     assert!(error.starts_with("cannot read ") && error.contains("gone"), "{error}");
     assert_eq!(fs::read(&path).unwrap(), b"old");
 }
@@ -119,7 +119,7 @@ fn the_source_tree_is_found_and_lists_the_same_packages() {
 fn an_archive_without_this_platform_is_not_loaded() {
     let tree = tree();
     let path = tree.path().join("Toy.fmu");
-    Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().write(&path).unwrap();
+    Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().entries.write(&path).unwrap();
     assert!(Fmu::open(PathBuf::from(&path)).unwrap_err().to_string().contains("no binary for this platform"));
 }
 

@@ -8,11 +8,16 @@ use crate::variables::VARIABLES;
 /// Capacitance of the paper's membranes at rest, F: the start value of the inputs.
 pub(crate) const REST_CAPACITANCE: f64 = 1.501_476_744_842_152e-11;
 
+/// The capacitances `set`, or `otherwise` where nothing has been handed over, F.
+pub(crate) fn handed_over(set: [f64; 2], otherwise: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|j| if set[j] == 0.0 { otherwise[j] } else { set[j] })
+}
+
 /// The harvesting circuit as a slave.
 #[derive(Clone)]
 pub struct Harvesting {
     pub(crate) settings: Settings,
-    /// Capacitances at the communication point, left and right, F.
+    /// Capacitances at the communication point, left and right, F; 0 where nothing has been handed over yet.
     pub(crate) capacitance: [f64; 2],
     /// Their rates over the next step, F/s; none: the capacitance set is taken to be reached at the step's end.
     pub(crate) rate: [Option<f64>; 2],
@@ -61,7 +66,7 @@ impl Slave for Harvesting {
     }
 
     fn update(&mut self) {
-        self.circuit = Circuit::new(self.settings.parameters(), self.capacitance);
+        self.circuit = Circuit::new(self.settings.parameters(), handed_over(self.capacitance, [REST_CAPACITANCE; 2]));
     }
 
     fn initialize(&mut self, _log: &Logger) -> Result<(), SlaveError> {
@@ -69,13 +74,15 @@ impl Slave for Harvesting {
     }
 
     /// The capacitances run linearly over the step: from the values set, at the rates set, or else from where they were
-    /// to the values set.
+    /// to the values set. No membrane has a capacitance of 0: masters that start all signals at 0 mean that they have none
+    /// yet, and it stays what it was.
     fn do_step(&mut self, _t: f64, h: f64, _log: &Logger) -> Result<(), SlaveError> {
-        let (capacitance, rate) = (self.capacitance, core::mem::take(&mut self.rate));
-        let circuit = self.running()?;
-        let present = circuit.capacitance();
+        let rate = core::mem::take(&mut self.rate);
+        let present = self.running()?.capacitance();
+        let capacitance = handed_over(self.capacitance, present);
         let start = [0, 1].map(|j| if rate[j].is_some() { capacitance[j] } else { present[j] });
         let end = [0, 1].map(|j| rate[j].map_or(capacitance[j], |rate| capacitance[j] + rate * h));
+        let circuit = self.running()?;
         let stepped = circuit.advance(0.0, start).and_then(|()| circuit.advance(h, end));
         stepped.map_err(|error| SlaveError::error(error.to_string()))?;
         self.capacitance = end;
@@ -88,5 +95,28 @@ impl Slave for Harvesting {
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         Self::read_from(from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(slave: &mut Harvesting, capacitance: [f64; 2]) -> [f64; 2] {
+        slave.capacitance = capacitance;
+        slave.do_step(0.0, 1e-3, &Logger::silent()).unwrap();
+        slave.circuit().unwrap().capacitance()
+    }
+
+    /// As from masters that start all signals at 0.
+    #[test]
+    fn a_capacitance_of_zero_means_that_none_has_been_handed_over() {
+        let mut slave = Harvesting::new();
+        slave.capacitance = [20e-12, 0.0];
+        slave.update();
+        assert_eq!(slave.circuit().unwrap().capacitance(), [20e-12, REST_CAPACITANCE]);
+        assert_eq!(step(&mut slave, [0.0; 2]), [20e-12, REST_CAPACITANCE]);
+        assert_eq!(step(&mut slave, [0.0, 16e-12]), [20e-12, 16e-12]);
+        assert_eq!(slave.capacitance, [20e-12, 16e-12]);
     }
 }

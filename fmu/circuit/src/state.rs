@@ -3,7 +3,7 @@
 use fmi2_export::{StateError, StateReader, StateWriter};
 use videg_circuit::{Circuit, Ledger, Settings, State};
 
-use crate::slave::Harvesting;
+use crate::slave::{Harvesting, REST_CAPACITANCE, handed_over};
 
 impl Harvesting {
     /// Parameters, inputs and, once it has a state of its own, the circuit.
@@ -46,7 +46,7 @@ impl Harvesting {
             circuit.restore(&state).map_err(invalid)?;
             Ok(circuit)
         } else {
-            Circuit::new(settings.parameters(), capacitance)
+            Circuit::new(settings.parameters(), handed_over(capacitance, [REST_CAPACITANCE; 2]))
         };
         Ok(Self { settings, capacitance, rate, circuit })
     }

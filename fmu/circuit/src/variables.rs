@@ -68,8 +68,8 @@ static CHOICES: [V; Settings::CHOICES.len()] =
 
 macro_rules! capacitance {
     ($index:literal, $name:expr, $side:literal) => {
-        V::input($name, "F", REST_CAPACITANCE, concat!("C: capacitance of the ", $side, " membrane, Eq. (1); with its first derivative set it runs from this value over the step, without from the value before to this one"))
-            .min(1e-18)
+        V::input($name, "F", REST_CAPACITANCE, concat!("C: capacitance of the ", $side, " membrane, Eq. (1); with its first derivative set it runs from this value over the step, without from the value before to this one; 0 means that nothing has been handed over yet, and the capacitance stays"))
+            .min(0.0)
             .nominal(1e-11)
             .input_derivatives(1, |slave, _order, rate| slave.rate[$index] = Some(rate))
             .access(|slave| slave.capacitance[$index], |slave, value| slave.capacitance[$index] = value)

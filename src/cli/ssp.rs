@@ -1,0 +1,99 @@
+//! `videg ssp`: both FMUs, connected, as a system package.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use clap::Args;
+use serde::Serialize;
+
+use super::options::CaseOptions;
+use super::{Verdict, electrical, output, packaging, settings};
+use crate::cosim::{EmbeddedCircuit, HarvesterFmu};
+use crate::fmi::{Fmu, Kind};
+use crate::package::{Part, SystemPackage};
+use crate::scenario::{Scenario, Setting};
+
+/// Name of the package.
+const FILE: &str = "Harvester.ssp";
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    case: CaseOptions,
+    /// Folder for Harvester.ssp [default: where the FMUs are, target/fmu of the source tree]
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print one JSON object on stdout instead of the file's name
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Packaged<'a> {
+    case: &'a str,
+    ssp: &'a Path,
+    parameters: &'a [String],
+    warnings: &'a [String],
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    let scenario = arguments.case.scenario()?;
+    let archives = packaging::build()?;
+    let [harvester, circuit] = archives.as_slice() else { anyhow::bail!("not two FMUs but {}", archives.len()) };
+    let beside = || harvester.parent().unwrap_or(Path::new("."));
+    let ssp = arguments.output.as_deref().unwrap_or_else(beside).join(FILE);
+    let (harvester_fmu, circuit_fmu) = (Fmu::open(harvester)?, Fmu::open(circuit)?);
+    let (mechanical, of_circuit) = settings_of_both(&harvester_fmu, &scenario)?;
+    let (harvester_part, circuit_part) = (
+        Part { fmu: harvester, description: harvester_fmu.description(), settings: &mechanical },
+        Part { fmu: circuit, description: circuit_fmu.description(), settings: &of_circuit },
+    );
+    let package = SystemPackage {
+        case: &scenario.name,
+        description: &scenario.description,
+        until: scenario.until,
+        harvester: harvester_part,
+        circuit: circuit_part,
+    };
+    let parameters = package.write(&ssp).with_context(|| format!("cannot package {FILE}"))?;
+    let warnings: Vec<_> = enumerations(&parameters, [&harvester_fmu, &circuit_fmu]).collect();
+    if arguments.json {
+        let packaged = Packaged { case: &scenario.name, ssp: &ssp, parameters: &parameters, warnings: &warnings };
+        output::print(&serde_json::to_string_pretty(&packaged)?)?;
+    } else {
+        output::print(&ssp.display().to_string())?;
+    }
+    output::warn(&warnings);
+    Ok(Verdict::Passed)
+}
+
+/// What to set in harvester and circuit. They are tried, so that what is packaged can run. The circuit starts with the
+/// capacitances that the harvester starts with.
+fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
+    let (mechanical, asked) = settings::split(fmu, scenario)?;
+    let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
+    let ratio = electrical::capacitance_ratios(fmu, scenario, &mechanical)?.best;
+    let resolved = electrical::resolve(&asked, harvester.bias_voltage(), ratio)?;
+    let capacitance = harvester.sample()?.capacitance();
+    EmbeddedCircuit::new("circuit", &resolved, capacitance)?;
+    let mut of_circuit = electrical::every_setting(&resolved);
+    for (name, value) in ["left.capacitance", "right.capacitance"].into_iter().zip(capacitance) {
+        of_circuit.push(Setting { name: name.to_owned(), value: format!("{value:?}") });
+    }
+    Ok((mechanical, of_circuit))
+}
+
+/// Warnings about parameters that not every tool reads.
+fn enumerations<'a>(parameters: &'a [String], fmus: [&'a Fmu; 2]) -> impl Iterator<Item = String> + 'a {
+    let is_enumeration = move |name: &str| {
+        let found = fmus.iter().find_map(|fmu| fmu.description().variable(name).ok());
+        found.is_some_and(|variable| matches!(variable.kind, Kind::Enumeration { .. }))
+    };
+    parameters.iter().filter(move |name| name.split_once('.').is_some_and(|(_, name)| is_enumeration(name))).map(
+        |name| {
+            format!("{name} is an enumeration: FMPy 0.3 and Ecos 0.7 do not read such parameters from a system package")
+        },
+    )
+}

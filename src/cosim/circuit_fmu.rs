@@ -1,0 +1,77 @@
+//! The FMU `HarvestingCircuit`, or any that speaks the same names, as a circuit that the master can step.
+
+use super::rollback::Kept;
+use super::{CircuitSample, CircuitSlave, CosimError};
+use crate::fmi::{Fmu, Instance, Logging};
+use crate::scenario::Setting;
+
+/// The FMU `HarvestingCircuit`. The capacitances go in with their first derivative, so that they run linearly over each
+/// step as they do for the embedded solver.
+pub struct FmuCircuit {
+    label: String,
+    instance: Instance,
+    inputs: [u32; 2],
+    outputs: [u32; CircuitSample::NAMES.len()],
+    kept: Kept,
+}
+
+impl FmuCircuit {
+    /// Instantiates `fmu` and initialises it with `settings` at `capacitance` (left, right), F, from 0 to `until`, s.
+    ///
+    /// # Errors
+    /// A setting that the FMU refuses, or an FMU that lacks a variable.
+    pub fn new(
+        label: &str,
+        fmu: &Fmu,
+        settings: &[Setting],
+        capacitance: [f64; 2],
+        until: f64,
+    ) -> Result<Self, CosimError> {
+        let mut instance = fmu.instantiate("circuit", Logging::default())?;
+        for setting in settings {
+            instance.set_by_name(&setting.name, &setting.value)?;
+        }
+        let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
+        let inputs = [reference("left.capacitance")?, reference("right.capacitance")?];
+        let mut outputs = [0; CircuitSample::NAMES.len()];
+        for (slot, name) in outputs.iter_mut().zip(CircuitSample::NAMES) {
+            *slot = reference(name)?;
+        }
+        instance.setup_experiment(0.0, Some(until), None)?;
+        instance.enter_initialization_mode()?;
+        instance.set_real(&inputs, &capacitance)?;
+        instance.exit_initialization_mode()?;
+        Ok(Self { label: label.to_owned(), instance, inputs, outputs, kept: Kept::default() })
+    }
+}
+
+impl CircuitSlave for FmuCircuit {
+    fn label(&self) -> &str {
+        &self.label
+    }
+
+    fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
+        let rate = [0, 1].map(|j| (end[j] - start[j]) / step);
+        self.instance.set_real(&self.inputs, &start)?;
+        self.instance.set_real_input_derivatives(&self.inputs, &[1, 1], &rate)?;
+        Ok(self.instance.do_step(time, step)?)
+    }
+
+    fn sample(&self) -> Result<CircuitSample, CosimError> {
+        let mut row = [0.0; CircuitSample::NAMES.len()];
+        self.instance.get_real(&self.outputs, &mut row)?;
+        Ok(CircuitSample::from_columns(row))
+    }
+
+    fn can_roll_back(&self) -> bool {
+        self.instance.description().co_simulation.can_get_and_set_fmu_state
+    }
+
+    fn save(&mut self) -> Result<(), CosimError> {
+        self.kept.save(&self.instance)
+    }
+
+    fn restore(&mut self) -> Result<(), CosimError> {
+        self.kept.restore(&mut self.instance)
+    }
+}

@@ -1,0 +1,110 @@
+//! How harvester and circuits are coupled, and what the coupling comes to.
+
+use serde::Serialize;
+
+use super::CosimError;
+
+/// What the subsystems know of each other during a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// The harvester steps first, with the voltages extrapolated; then the circuits, with C(t) linear between its ends.
+    /// Second order.
+    #[default]
+    GaussSeidel,
+    /// All step from the same communication point: the circuits with C(t) extrapolated at dC/dt, the harvester with the
+    /// voltages extrapolated. Second order.
+    Jacobi,
+    /// What a tool does that hands on values and no more: all step from the same communication point of a regular grid that
+    /// no impact disturbs, and C(t) runs behind by a step. First order.
+    Plain,
+}
+
+/// How to couple.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Coupling {
+    /// The order of things.
+    pub method: Method,
+    /// Largest error of a signal within a step, relative to its value, to which the communication step adapts; none keeps
+    /// to the step given.
+    pub tolerance: Option<f64>,
+}
+
+impl Coupling {
+    /// Bounds of the tolerance: below, signals have no digits left; above, a pulse of C(t) is not noticed.
+    const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-12..=0.1;
+
+    /// Whether these go together.
+    ///
+    /// # Errors
+    /// A tolerance out of bounds, or one for the plain method.
+    pub fn check(&self) -> Result<(), CosimError> {
+        let fail = |tolerance, bound| Err(CosimError::Tolerance { tolerance, bound });
+        match self.tolerance {
+            Some(tolerance) if !Self::TOLERANCES.contains(&tolerance) => {
+                fail(tolerance, format!("must lie from {:e} to {}", Self::TOLERANCES.start(), Self::TOLERANCES.end()))
+            }
+            Some(tolerance) if self.method == Method::Plain => {
+                fail(tolerance, "--master plain keeps to a regular grid; allowed: gauss-seidel, jacobi".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What the coupling comes to. Field names are the keys of `--json`; units are SI.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CouplingSummary {
+    /// The method.
+    pub master: Method,
+    /// Tolerance of the communication step; null if it is fixed.
+    pub tolerance: Option<f64>,
+    /// Communication steps in the whole run.
+    pub steps: u64,
+    /// Steps tried and undone.
+    pub rejected: u64,
+    /// Work of the mechanics on the first circuit, -1/2 U^2 dC, J, as the circuit books it: with its own U and the C(t) that
+    /// the master made up for it.
+    pub circuit_work: f64,
+    /// The same as the harvester books it: with its own C(t) and the U that the master made up for it.
+    pub harvester_work: f64,
+    /// What the coupling makes out of nothing: the difference, J.
+    pub residual: f64,
+    /// The difference over all the energy that went to and fro.
+    pub relative_residual: f64,
+}
+
+/// The work of the mechanics, booked on both sides, J.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Books {
+    /// By the circuit.
+    pub circuit: f64,
+    /// By the harvester.
+    pub harvester: f64,
+    /// The circuit's sum, without signs.
+    pub moved: f64,
+}
+
+impl Books {
+    /// Books a step.
+    pub(super) fn add(&mut self, by_circuit: f64, by_harvester: f64) {
+        self.circuit += by_circuit;
+        self.harvester += by_harvester;
+        self.moved += by_circuit.abs();
+    }
+
+    /// The sums beside the number of steps done and undone.
+    pub(super) fn summary(&self, coupling: &Coupling, steps: u64, rejected: u64) -> CouplingSummary {
+        let residual = self.circuit - self.harvester;
+        CouplingSummary {
+            master: coupling.method,
+            tolerance: coupling.tolerance,
+            steps,
+            rejected,
+            circuit_work: self.circuit,
+            harvester_work: self.harvester,
+            residual,
+            relative_residual: if self.moved > 0.0 { residual.abs() / self.moved } else { 0.0 },
+        }
+    }
+}

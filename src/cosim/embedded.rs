@@ -1,0 +1,124 @@
+//! The embedded solver as a circuit that the master can step.
+
+use videg_circuit::{Circuit, Settings, State};
+
+use super::{CircuitSample, CircuitSlave, CosimError};
+use crate::scenario::Setting;
+
+/// The solver of `videg-circuit`, called directly.
+pub struct EmbeddedCircuit {
+    label: String,
+    circuit: Circuit,
+    kept: State,
+}
+
+impl EmbeddedCircuit {
+    /// A circuit with `settings`, both membranes charged, at `capacitance` (left, right), F.
+    ///
+    /// # Errors
+    /// Settings out of bounds.
+    pub fn new(label: &str, settings: &Settings, capacitance: [f64; 2]) -> Result<Self, CosimError> {
+        let circuit = Circuit::new(settings.parameters(), capacitance)
+            .map_err(|cause| CosimError::Circuit { label: label.to_owned(), cause })?;
+        let kept = circuit.state();
+        Ok(Self { label: label.to_owned(), circuit, kept })
+    }
+
+    fn failed(&self, cause: videg_circuit::Error) -> CosimError {
+        CosimError::Circuit { label: self.label.clone(), cause }
+    }
+
+    /// Takes a setting by its name, if the circuit has such a variable; says whether it had.
+    ///
+    /// # Errors
+    /// A value that is no number, out of bounds, or no item of the choice.
+    pub fn apply(settings: &mut Settings, setting: &Setting) -> Result<bool, CosimError> {
+        let fail = |bound: String| {
+            Err(CosimError::Setting { name: setting.name.clone(), value: setting.value.clone(), bound })
+        };
+        if let Some(quantity) = Settings::QUANTITIES.iter().find(|quantity| quantity.name == setting.name) {
+            return match setting.value.parse::<f64>() {
+                Ok(value) if value >= quantity.min && value <= quantity.max => {
+                    (quantity.set)(settings, value);
+                    Ok(true)
+                }
+                Ok(_) => fail(format!("allowed: {} to {} {}", quantity.min, quantity.max, quantity.unit)),
+                Err(_) => fail(format!("not a number [{}]", quantity.unit)),
+            };
+        }
+        let Some(choice) = Settings::CHOICES.iter().find(|choice| choice.name == setting.name) else {
+            return Ok(false);
+        };
+        if let Some(item) = choice.items.iter().position(|(name, _)| *name == setting.value) {
+            (choice.set)(settings, item);
+            return Ok(true);
+        }
+        let items: Vec<_> = choice.items.iter().map(|(name, _)| *name).collect();
+        fail(format!("allowed: {}", items.join(", ")))
+    }
+}
+
+impl CircuitSlave for EmbeddedCircuit {
+    fn label(&self) -> &str {
+        &self.label
+    }
+
+    fn step(&mut self, _time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
+        let stepped = self.circuit.advance(0.0, start).and_then(|()| self.circuit.advance(step, end));
+        stepped.map_err(|cause| self.failed(cause))
+    }
+
+    fn sample(&self) -> Result<CircuitSample, CosimError> {
+        let c = &self.circuit;
+        Ok(CircuitSample {
+            voltage: c.voltage(),
+            load_voltage: c.load_voltage(),
+            load_current: c.load_current(),
+            supply_current: c.supply_current(),
+            ledger: c.ledger(),
+        })
+    }
+
+    fn can_roll_back(&self) -> bool {
+        true
+    }
+
+    fn save(&mut self) -> Result<(), CosimError> {
+        self.kept = self.circuit.state();
+        Ok(())
+    }
+
+    fn restore(&mut self) -> Result<(), CosimError> {
+        self.circuit.restore(&self.kept).map_err(|cause| self.failed(cause))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn apply(text: &str) -> Result<(bool, Settings), CosimError> {
+        let mut settings = Settings::default();
+        let found = EmbeddedCircuit::apply(&mut settings, &Setting::parse(text).unwrap())?;
+        Ok((found, settings))
+    }
+
+    #[test]
+    fn settings_of_the_circuit_are_taken_by_name_and_others_left_alone() {
+        assert_eq!(apply("load.resistance=inf").unwrap().1.circuit.load_resistance, f64::INFINITY);
+        assert_eq!(apply("topology=isolated").unwrap().1.circuit.topology, videg_circuit::Topology::Isolated);
+        assert!(!apply("ball.mass=1").unwrap().0);
+    }
+
+    #[test]
+    fn a_value_that_the_circuit_cannot_take_is_named_with_its_bound() {
+        for (text, expected) in [
+            ("topology=star", "topology = star: allowed: sharedNode, isolated"),
+            ("load.resistance=-1", "load.resistance = -1: allowed: 0 to inf Ohm"),
+            ("load.resistance=NaN", "load.resistance = NaN: allowed: 0 to inf Ohm"),
+            ("supply.voltage=much", "supply.voltage = much: not a number [V]"),
+        ] {
+            assert_eq!(apply(text).unwrap_err().to_string(), expected);
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The entries of one archive, and writing them so that equal entries give equal bytes.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
+
+use super::error::{PackageError, Result};
+
+/// What goes into an archive: names with forward slashes, sorted, and the files or bytes behind them.
+#[derive(Debug, Clone, Default)]
+pub struct Entries {
+    files: BTreeMap<String, Source>,
+}
+
+/// Where the bytes of an entry come from.
+#[derive(Debug, Clone)]
+enum Source {
+    File(PathBuf),
+    Bytes(Vec<u8>),
+}
+
+impl Entries {
+    /// Adds a file under a name with forward slashes.
+    pub fn add_file(&mut self, name: &str, file: &Path) {
+        self.files.insert(name.to_owned(), Source::File(file.to_path_buf()));
+    }
+
+    /// Adds bytes under a name with forward slashes.
+    pub fn add_bytes(&mut self, name: &str, bytes: Vec<u8>) {
+        self.files.insert(name.to_owned(), Source::Bytes(bytes));
+    }
+
+    /// Adds the files of a folder and its folders under `prefix`. A folder that does not exist counts as empty.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn add_folder(&mut self, prefix: &str, folder: &Path) -> Result<()> {
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        for entry in fs::read_dir(folder).map_err(PackageError::io("read", folder))? {
+            let path = entry.map_err(PackageError::io("read", folder))?.path();
+            let Some(name) = path.file_name() else { continue };
+            let name = format!("{prefix}/{}", name.to_string_lossy());
+            if path.is_dir() {
+                self.add_folder(&name, &path)?;
+            } else {
+                self.files.insert(name, Source::File(path));
+            }
+        }
+        Ok(())
+    }
+
+    /// Names in the archive, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.files.keys().map(String::as_str)
+    }
+
+    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it.
+    ///
+    /// # Errors
+    /// When a file cannot be read or the archive not written.
+    pub fn write(&self, archive: &Path) -> Result<()> {
+        let folder = archive.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
+        let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
+        self.write_to(temporary.as_file_mut(), archive)?;
+        temporary.persist(archive).map_err(|error| PackageError::io("write", archive)(error.error))?;
+        Ok(())
+    }
+
+    fn write_to(&self, file: &mut File, archive: &Path) -> Result<()> {
+        let failed = |cause| PackageError::Zip { path: archive.to_path_buf(), cause };
+        let mut writer = ZipWriter::new(file);
+        for (name, source) in &self.files {
+            writer.start_file(name.as_str(), options(name)).map_err(failed)?;
+            match source {
+                Source::File(path) => {
+                    let mut input = File::open(path).map_err(PackageError::io("read", path))?;
+                    io::copy(&mut input, &mut writer).map_err(PackageError::io("pack", path))?;
+                }
+                Source::Bytes(bytes) => {
+                    writer.write_all(bytes).map_err(PackageError::io("write", archive))?;
+                }
+            }
+        }
+        writer.finish().map_err(failed)?;
+        Ok(())
+    }
+}
+
+/// The same on every machine and day.
+fn options(name: &str) -> SimpleFileOptions {
+    SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .compression_level(Some(6))
+        .last_modified_time(DateTime::default())
+        .system(System::Unix)
+        .unix_permissions(if name.starts_with("binaries/") { 0o755 } else { 0o644 })
+}
+
+/// A temporary file with the permissions of any new file, not the private ones that are usual for temporary files.
+fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".videg-").suffix(".part");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
