@@ -29,7 +29,7 @@ use self::chebyshev::Series;
 use self::step::Step;
 use crate::flight::Side;
 
-/// A [`Touch`] in numbers.
+/// A contact in numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSnapshot {
     /// The membrane that is touched.
