@@ -31,6 +31,34 @@ pub enum ModelError {
         /// Unit of both.
         unit: &'static str,
     },
+    /// An option that the impulsive law does not have.
+    #[error("{name} = true needs contact.law = compliant: {reason}; allowed: false")]
+    NeedsCompliantLaw {
+        /// Name of the option.
+        name: &'static str,
+        /// Why.
+        reason: &'static str,
+    },
+    /// The Maxwell force has overcome the membrane.
+    #[error(
+        "at t = {time} s the membrane is pressed in by {deflection} m, more than {bound} m: the Maxwell force of \
+         {voltage} V overcomes the membrane (pull-in)"
+    )]
+    PullIn {
+        /// Time, s.
+        time: f64,
+        /// Deflection, m.
+        deflection: f64,
+        /// Largest deflection allowed, m.
+        bound: f64,
+        /// Voltage across the membrane, V.
+        voltage: f64,
+    },
+    /// Differential equations for an importer's integrator exist for the impulsive law only.
+    #[error(
+        "contact.law = compliant cannot be run by model exchange: co-simulation resolves its contacts; allowed: impulsive"
+    )]
+    CompliantExchange,
     /// An input or a time is NaN or infinite.
     #[error("{name} = {value} is not a finite number")]
     NotFinite {
@@ -58,7 +86,8 @@ pub enum ModelError {
     /// More events than the budget within one second of simulated time.
     #[error(
         "more than {limit} events within one second up to t = {time} s, with ball.travel = {travel} m and \
-         membrane.restitution = {restitution}: the gap is too narrow for the speed, or bounces die away too slowly"
+         membrane.restitution = {restitution}: the gap is too narrow for the speed, or bounces die away too slowly, \
+         or the membrane is too stiff for the ball's mass under the compliant law"
     )]
     TooManyEvents {
         /// Time of the last event, s.

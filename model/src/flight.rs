@@ -119,6 +119,11 @@ impl Flight {
         self
     }
 
+    /// s/2, m.
+    pub fn half_travel(&self) -> f64 {
+        self.half_travel
+    }
+
     fn omega(&self) -> f64 {
         TAU * self.frequency
     }
@@ -280,7 +285,7 @@ impl Flight {
 
 /// Root of a monotone `function` (value and slope) that is positive at `low` and not at `high`: Newton's method, with
 /// bisection wherever it would leave the bracket.
-fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+pub(crate) fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     const MAX_ITERATIONS: u32 = 200; // bisection alone needs at most some 110 to exhaust the digits of a double
     let (mut low, mut high) = (low, high);
     let mut x = 0.5 * (low + high);

@@ -1,21 +1,26 @@
-//! The vibro-impact harvester under the impulsive law: from event to event, exactly.
+//! The vibro-impact harvester: from event to event, exactly under the impulsive law.
 
+mod contact;
+mod energy;
 mod events;
 mod exchange;
 mod snapshot;
 mod tangent;
 
+pub use self::energy::Energies;
 pub use self::snapshot::Snapshot;
 pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
 
+use self::energy::Ledger;
 use self::events::{Event, Search};
 use self::tangent::Tangent;
+use crate::compliant::{Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::membrane::Membrane;
 use crate::noise;
-use crate::parameters::{NoiseModel, OutsideGap, Parameters};
+use crate::parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters};
 use crate::pulse::{Deflection, Knot, PulseShape, Pulses};
 
 /// Farthest start from t = 0, s: times have digits below a microsecond up to there.
@@ -24,7 +29,7 @@ const MAX_START: f64 = 1e9;
 /// Sums over all impacts so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
-    /// Impacts resolved one by one. Of a chattering sequence, the endless tail that is summed in closed form is not
+    /// Impacts resolved one by one; under the compliant law, contacts begun. Of a chattering sequence, the endless tail that is summed in closed form is not
     /// counted here; its gains are contained below.
     pub impacts: u64,
     /// Chattering sequences that ended with the ball at rest on a membrane.
@@ -87,7 +92,12 @@ pub struct Harvester {
     noise: Noise,
     search: Search,
     pulses: [Pulses; 2],
+    /// The present contact, under the compliant law.
+    touch: Option<Touch>,
+    /// Voltages across the membranes, V, for the Maxwell force.
+    voltages: [Ramp; 2],
     totals: Totals,
+    ledger: Ledger,
     tangent: Tangent,
     /// Its states are placed by an integrator.
     placed: bool,
@@ -155,7 +165,10 @@ impl Harvester {
             noise,
             search: Search::new(flight),
             pulses: [Pulses::default(), Pulses::default()],
+            touch: None,
+            voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             totals: Totals::default(),
+            ledger: Ledger::default(),
             tangent: Tangent::of_force(start, p.cylinder_mass),
             placed: false,
             second: 0.0,
@@ -233,6 +246,9 @@ impl Harvester {
     }
 
     fn relative_displacement_at(&self, time: f64) -> f64 {
+        if let Some(touch) = &self.touch {
+            return touch.side.sign() * (self.half_travel() + touch.at(time).x);
+        }
         match self.ball.resting {
             Some(side) => side.sign() * self.half_travel(),
             None => self.search.flight.derivative(0, time - self.search.flight.start),
@@ -240,6 +256,9 @@ impl Harvester {
     }
 
     fn ball_position_at(&self, time: f64) -> f64 {
+        if self.touch.is_some() {
+            return self.cylinder_position_at(time) - self.relative_displacement_at(time);
+        }
         match self.ball.resting {
             Some(side) => self.cylinder.position(time) - side.sign() * self.half_travel(),
             None => self.ball.position + self.ball.velocity * (time - self.ball.since),
@@ -247,6 +266,9 @@ impl Harvester {
     }
 
     fn ball_velocity_at(&self, time: f64) -> f64 {
+        if let Some(touch) = &self.touch {
+            return self.cylinder_velocity_at(time) - touch.side.sign() * touch.at(time).v;
+        }
         if self.ball.resting.is_some() { self.cylinder.velocity(time) } else { self.ball.velocity }
     }
 
@@ -267,17 +289,17 @@ impl Harvester {
 
     /// `z_M`, m.
     pub fn cylinder_position(&self) -> f64 {
-        self.cylinder.position(self.time)
+        self.cylinder_position_at(self.time)
     }
 
     /// `z_M'`, m/s.
     pub fn cylinder_velocity(&self) -> f64 {
-        self.cylinder.velocity(self.time)
+        self.cylinder_velocity_at(self.time)
     }
 
     /// `z_M''`, m/s^2, Eq. (7).
     pub fn cylinder_acceleration(&self) -> f64 {
-        self.cylinder.acceleration(self.time)
+        self.cylinder.acceleration(self.time) + self.recoil_acceleration()
     }
 
     /// `z_m`, m.
@@ -297,6 +319,9 @@ impl Harvester {
 
     /// Deflection of the membrane at `side` and its rate.
     pub fn deflection(&self, side: Side) -> Deflection {
+        if self.parameters.contact_law == ContactLaw::Compliant {
+            return self.touch_deflection(side);
+        }
         self.pulses[side.index()].at(&self.shape, self.time)
     }
 
@@ -311,9 +336,10 @@ impl Harvester {
         self.membrane.capacitance_slope(deflection.value) * deflection.rate
     }
 
-    /// The membrane on which the ball rests.
+    /// The membrane on which the ball rests: it does not move relative to it. Under the compliant law that is a ball which
+    /// the wall's push holds at a deflection; one that swings about its equilibrium does not rest.
     pub fn resting(&self) -> Option<Side> {
-        self.ball.resting
+        self.ball.resting.or(self.held())
     }
 
     /// Sums over all impacts so far.
@@ -330,9 +356,12 @@ impl Harvester {
         }
     }
 
-    /// The next time, s, at which a capacitance has a kink or an extremum: the peak or the end of a pulse, or an impact.
+    /// The next time, s, at which a capacitance has a kink or an extremum: the peak or the end of a pulse, or an impact; under
+    /// the compliant law the next turning point or end of the contact, foreseen under the present force and voltages for
+    /// at most one excitation period; none while the ball rests or comes back to the largest deflection first.
     pub fn next_knot(&self) -> Option<f64> {
-        self.pulse_knots().map(|knot| knot.time).chain(self.next_impact()).min_by(f64::total_cmp)
+        let knots = self.pulse_knots().map(|knot| knot.time);
+        knots.chain(self.next_impact()).chain(self.touch_knot()).min_by(f64::total_cmp)
     }
 
     /// The next peak or end of a pulse on each membrane.

@@ -16,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod cases;
+mod compliant;
 mod cylinder;
 mod error;
 mod flight;
@@ -26,10 +27,11 @@ mod parameters;
 mod pulse;
 
 pub use cases::{Case, saw_tooth_limit};
+pub use compliant::{ContactSnapshot, Phase};
 pub use cylinder::{CylinderMotion, Drive};
 pub use error::ModelError;
 pub use flight::Side;
-pub use harvester::{Direction, GRAZING_SPEED, Harvester, Impact, Sensitivities, Snapshot, Totals};
+pub use harvester::{Direction, Energies, GRAZING_SPEED, Harvester, Impact, Sensitivities, Snapshot, Totals};
 pub use membrane::Membrane;
-pub use parameters::{NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
+pub use parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
 pub use pulse::{Deflection, Pulse, PulseChange, PulseShape};

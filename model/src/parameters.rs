@@ -49,11 +49,25 @@ macro_rules! parameters {
             pub noise_model: NoiseModel,
             /// `initial.outsideGap`: what a start beyond a membrane means.
             pub outside_gap: OutsideGap,
+            /// `contact.law`: how ball and membrane act on each other.
+            pub contact_law: ContactLaw,
+            /// `contact.reaction`: the contact acts back on the cylinder.
+            pub reaction: bool,
+            /// `contact.electrostaticFeedback`: the Maxwell force acts on the ball.
+            pub electrostatic_feedback: bool,
         }
 
         impl Default for Parameters {
             fn default() -> Self {
-                Self { $($field: $start,)* seed: 1, noise_model: NoiseModel::Held, outside_gap: OutsideGap::Project }
+                Self {
+                    $($field: $start,)*
+                    seed: 1,
+                    noise_model: NoiseModel::Held,
+                    outside_gap: OutsideGap::Project,
+                    contact_law: ContactLaw::Impulsive,
+                    reaction: false,
+                    electrostatic_feedback: false,
+                }
             }
         }
 
@@ -110,6 +124,15 @@ pub enum OutsideGap {
     Project,
 }
 
+/// The law of the contact between ball and membrane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactLaw {
+    /// An impact takes no time, Eqs. (10) and (11): the paper's.
+    Impulsive,
+    /// The membrane is a nonlinear spring with losses, and a contact takes time.
+    Compliant,
+}
+
 impl Parameters {
     /// All real parameters zero: no change of any.
     pub(crate) fn none() -> Self {
@@ -124,11 +147,29 @@ impl Parameters {
     ///
     /// # Errors
     /// The first parameter that is not finite or out of bounds; `ball.travel` not positive; `membrane.radius` not
-    /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution).
+    /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution); feedback or
+    /// reaction without the compliant law.
     pub fn validate(&self) -> Result<(), ModelError> {
         Self::TABLE.iter().try_for_each(|quantity| quantity.check(self))?;
+        self.check_contact()?;
         exceeds("membrane.radius", self.membrane_radius(), "ball.radius", self.ball_radius)?;
         exceeds("ball.travel", self.travel(), "its lower bound", 0.0)
+    }
+
+    /// What an impact that takes no time cannot have.
+    fn check_contact(&self) -> Result<(), ModelError> {
+        if self.contact_law == ContactLaw::Compliant {
+            return Ok(());
+        }
+        if self.electrostatic_feedback {
+            let reason = "an impact that takes no time does no electrical work";
+            return Err(ModelError::NeedsCompliantLaw { name: "contact.electrostaticFeedback", reason });
+        }
+        if self.reaction {
+            let reason = "the impulsive law is the paper's, which neglects m / M";
+            return Err(ModelError::NeedsCompliantLaw { name: "contact.reaction", reason });
+        }
+        Ok(())
     }
 
     /// s = d + 2 w - 2 `r_b`, m: the largest distance that the ball moves inside the cylinder (Section 3.2).

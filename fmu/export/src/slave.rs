@@ -121,6 +121,8 @@ pub trait Slave: Clone + Send + 'static {
     /// Of an input in co-simulation it is the derivative of the outputs at the end of the last step with respect to the
     /// input held during that step, of a state that at the communication point. In model exchange, after initialisation, it
     /// is called only where the unknown depends on the known, as its row of the table says; else the derivative is zero.
+    ///
+    /// NaN where the model knows none: the call is an error then.
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
         let _ = (unknown, known);
         0.0

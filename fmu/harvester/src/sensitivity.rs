@@ -8,16 +8,21 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
+//! Under the compliant law there are none.
+//!
 //! The voltages have no influence: an impulsive impact takes no time in which they could do work on the ball.
 
-use videg_model::{Direction, Harvester as Model, Sensitivities};
+use videg_model::{ContactLaw, Direction, Harvester as Model, Sensitivities};
 
 use crate::slave::Harvester;
 use crate::variables::STATES;
 
 impl Harvester {
-    /// d `unknown` / d `known`.
+    /// d `unknown` / d `known`; NaN under the compliant law, of which none are known.
     pub(crate) fn partial(&self, unknown: &str, known: &str) -> f64 {
+        if self.parameters.contact_law == ContactLaw::Compliant {
+            return f64::NAN; // none; the exporter makes an error of it
+        }
         let (is_force, is_state) = (known == "externalForce", STATES.contains(&known));
         if is_state || self.placed {
             return self.partial_at_point(unknown, known);

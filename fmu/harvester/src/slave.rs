@@ -4,7 +4,7 @@ use fmi2_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{Harvester as Model, Impact, ModelError, Parameters, PulseShape, Side};
+use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Parameters, PulseShape, Side};
 
 use crate::variables::VARIABLES;
 
@@ -12,22 +12,14 @@ use crate::variables::VARIABLES;
 /// importer wait without end for one that it mistook.
 const MAX_PERIODS: f64 = 1e7;
 
-/// The law of the contact between ball and membrane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ContactLaw {
-    Impulsive,
-    Compliant,
-}
-
 /// The harvester as a slave.
 #[derive(Clone)]
 pub struct Harvester {
     pub(crate) parameters: Parameters,
-    pub(crate) law: ContactLaw,
-    pub(crate) electrostatic_feedback: bool,
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
+    pub(crate) voltage_rates: [f64; 2],
     pub(crate) start_time: f64,
     /// The model runs under an integrator of the importer's: model exchange.
     pub(crate) placed: bool,
@@ -54,20 +46,8 @@ impl Harvester {
     pub(crate) fn at_start(&self) -> Result<Model, ModelError> {
         let mut model = Model::new(&self.parameters, self.start_time)?;
         model.set_external_force(self.external_force, 0.0)?;
+        model.set_voltages(self.voltages, [0.0; 2])?;
         Ok(model)
-    }
-
-    fn check_law(&self) -> Result<(), SlaveError> {
-        if self.law == ContactLaw::Compliant {
-            return Err(SlaveError::error("contact.law = compliant is not part of this version; allowed: impulsive"));
-        }
-        if self.electrostatic_feedback {
-            return Err(SlaveError::error(
-                "contact.electrostaticFeedback = true needs contact.law = compliant: an impact that takes no time does \
-                 no electrical work; allowed: false",
-            ));
-        }
-        Ok(())
     }
 }
 
@@ -92,11 +72,10 @@ impl Slave for Harvester {
         let parameters = Parameters::default();
         Self {
             parameters,
-            law: ContactLaw::Impulsive,
-            electrostatic_feedback: false,
             external_force: 0.0,
             external_force_rate: 0.0,
             voltages: [parameters.bias_voltage; 2],
+            voltage_rates: [0.0; 2],
             start_time: 0.0,
             placed: false,
             model: Model::new(&parameters, 0.0),
@@ -113,8 +92,8 @@ impl Slave for Harvester {
     }
 
     fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
-        self.check_law()?;
-        if self.parameters.restitution < PulseShape::MIN_RESTITUTION {
+        let impulsive = self.parameters.contact_law == ContactLaw::Impulsive;
+        if impulsive && self.parameters.restitution < PulseShape::MIN_RESTITUTION {
             log.warning(format_args!(
                 "membrane.restitution = {}: pulses of C(t) fall as for {}, 100 times slower than they rise; without a \
                  rebound they would never end",
@@ -125,7 +104,7 @@ impl Slave for Harvester {
         self.running().map(|_| ())
     }
 
-    /// The external force runs on at its rate over the step and stays where that took it, unless it is set again.
+    /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
         let longest = MAX_PERIODS / self.parameters.frequency;
         if h > longest {
@@ -134,19 +113,24 @@ impl Slave for Harvester {
             return Err(SlaveError::discard(t, message));
         }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
+        let (voltages, voltage_rates) = (self.voltages, core::mem::take(&mut self.voltage_rates));
         let model = self.running()?;
         let events = log.is_enabled(LogCategory::Events);
         let mut number = model.totals().impacts;
-        let advanced = model.set_external_force(force, rate).and_then(|()| {
-            model.advance_with(t + h, |impact| {
-                number += 1;
-                if events {
-                    log.event(describe(number, impact));
-                }
-            })
-        });
+        let advanced = model
+            .set_external_force(force, rate)
+            .and_then(|()| model.set_voltages(voltages, voltage_rates))
+            .and_then(|()| {
+                model.advance_with(t + h, |impact| {
+                    number += 1;
+                    if events {
+                        log.event(describe(number, impact));
+                    }
+                })
+            });
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
         self.external_force = force + rate * h;
+        self.voltages = [0, 1].map(|k| voltages[k] + voltage_rates[k] * h);
         Ok(())
     }
 

@@ -1,17 +1,20 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
 use fmi2_export::{StateError, StateReader, StateWriter};
-use videg_model::{Harvester as Model, NoiseModel, OutsideGap, Parameters, Pulse, PulseChange, Side, Snapshot, Totals};
+use videg_model::{
+    ContactLaw, ContactSnapshot, Harvester as Model, NoiseModel, OutsideGap, Parameters, Phase, Pulse, PulseChange,
+    Side, Snapshot, Totals,
+};
 
-use crate::slave::{ContactLaw, Harvester};
+use crate::slave::Harvester;
 
 impl Harvester {
     /// Parameters, inputs and, once it has a state of its own, the model.
     pub(crate) fn write(&self, out: &mut StateWriter) {
         write_parameters(&self.parameters, out);
-        out.bool(self.law == ContactLaw::Compliant);
-        out.bool(self.electrostatic_feedback);
-        write_all([self.external_force, self.external_force_rate, self.voltages[0], self.voltages[1]], out);
+        write_all([self.external_force, self.external_force_rate], out);
+        write_all(self.voltages, out);
+        write_all(self.voltage_rates, out);
         out.f64(self.start_time);
         out.bool(self.placed);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
@@ -25,17 +28,16 @@ impl Harvester {
     /// What [`Harvester::write`] wrote.
     pub(crate) fn read_from(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         let parameters = read_parameters(from)?;
-        let law = if from.bool()? { ContactLaw::Compliant } else { ContactLaw::Impulsive };
-        let electrostatic_feedback = from.bool()?;
-        let [external_force, external_force_rate, left, right, start_time] = finite(from)?;
+        let [external_force, external_force_rate] = finite(from)?;
+        let (voltages, voltage_rates) = (finite(from)?, finite(from)?);
+        let [start_time] = finite(from)?;
         let placed = from.bool()?;
         let mut slave = Self {
             parameters,
-            law,
-            electrostatic_feedback,
             external_force,
             external_force_rate,
-            voltages: [left, right],
+            voltages,
+            voltage_rates,
             start_time,
             placed,
             model: Model::new(&Parameters::default(), 0.0),
@@ -59,6 +61,9 @@ fn write_parameters(parameters: &Parameters, out: &mut StateWriter) {
     out.i32(parameters.seed);
     out.bool(parameters.noise_model == NoiseModel::Wiener);
     out.bool(parameters.outside_gap == OutsideGap::Free);
+    out.bool(parameters.contact_law == ContactLaw::Compliant);
+    out.bool(parameters.reaction);
+    out.bool(parameters.electrostatic_feedback);
 }
 
 fn read_parameters(from: &mut StateReader<'_>) -> Result<Parameters, StateError> {
@@ -69,6 +74,9 @@ fn read_parameters(from: &mut StateReader<'_>) -> Result<Parameters, StateError>
     parameters.seed = from.i32()?;
     parameters.noise_model = if from.bool()? { NoiseModel::Wiener } else { NoiseModel::Held };
     parameters.outside_gap = if from.bool()? { OutsideGap::Free } else { OutsideGap::Project };
+    parameters.contact_law = if from.bool()? { ContactLaw::Compliant } else { ContactLaw::Impulsive };
+    parameters.reaction = from.bool()?;
+    parameters.electrostatic_feedback = from.bool()?;
     Ok(parameters)
 }
 
@@ -78,7 +86,7 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
     write_all(snapshot.external, out);
     write_all(snapshot.ball, out);
     write_all(snapshot.flight, out);
-    out.u8(snapshot.resting.map_or(0, |side| if side == Side::Left { 1 } else { 2 }));
+    write_side(snapshot.resting, out);
     out.u64(snapshot.noise_sample);
     out.f64(snapshot.noise_walk);
     for pulses in &snapshot.pulses {
@@ -88,11 +96,14 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
             write_all([pulse.start, pulse.speed, pulse.peak, start, speed, peak], out);
         }
     }
+    write_contact(snapshot.contact.as_ref(), out);
+    snapshot.voltages.iter().for_each(|ramp| write_all(*ramp, out));
     let totals = &snapshot.totals;
     for count in [totals.impacts, totals.chatters, totals.releases] {
         out.u64(count);
     }
     write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
+    write_all(snapshot.ledger, out);
     write_all(snapshot.changes, out);
     out.f64(snapshot.second);
     out.u64(snapshot.second_events);
@@ -105,15 +116,12 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
         external: array(from)?,
         ball: array(from)?,
         flight: array(from)?,
-        resting: match from.u8()? {
-            0 => None,
-            1 => Some(Side::Left),
-            2 => Some(Side::Right),
-            other => return Err(StateError::Invalid(format!("{other} is no side"))),
-        },
+        resting: read_side(from)?,
         noise_sample: from.u64()?,
         noise_walk: from.f64()?,
         pulses: [read_pulses(from)?, read_pulses(from)?],
+        contact: read_contact(from)?,
+        voltages: [array(from)?, array(from)?],
         totals: Totals {
             impacts: from.u64()?,
             chatters: from.u64()?,
@@ -122,10 +130,48 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
             voltage_gain: from.f64()?,
             energy: from.f64()?,
         },
+        ledger: array(from)?,
         changes: array(from)?,
         second: from.f64()?,
         second_events: from.u64()?,
     })
+}
+
+fn write_side(side: Option<Side>, out: &mut StateWriter) {
+    out.u8(side.map_or(0, |side| if side == Side::Left { 1 } else { 2 }));
+}
+
+fn read_side(from: &mut StateReader<'_>) -> Result<Option<Side>, StateError> {
+    match from.u8()? {
+        0 => Ok(None),
+        1 => Ok(Some(Side::Left)),
+        2 => Ok(Some(Side::Right)),
+        other => Err(StateError::Invalid(format!("{other} is no side"))),
+    }
+}
+
+/// The branches of the membrane's force, in the order of their numbers in the state.
+const PHASES: [Phase; 3] = [Phase::Loading, Phase::Unloading, Phase::Held];
+
+fn write_contact(contact: Option<&ContactSnapshot>, out: &mut StateWriter) {
+    write_side(contact.map(|contact| contact.side), out);
+    let Some(ContactSnapshot { phase, since, largest, start, credited, proposal, .. }) = contact else { return };
+    out.u8(match phase {
+        Phase::Loading => 0,
+        Phase::Unloading => 1,
+        Phase::Held => 2,
+    });
+    write_all([*since, *largest, *credited, *proposal], out);
+    write_all(*start, out);
+}
+
+fn read_contact(from: &mut StateReader<'_>) -> Result<Option<ContactSnapshot>, StateError> {
+    let Some(side) = read_side(from)? else { return Ok(None) };
+    let number = from.u8()?;
+    let phase = PHASES.get(usize::from(number)).copied();
+    let phase = phase.ok_or_else(|| StateError::Invalid(format!("{number} is no branch of the force")))?;
+    let [since, largest, credited, proposal] = array(from)?;
+    Ok(Some(ContactSnapshot { side, phase, since, largest, start: array(from)?, credited, proposal }))
 }
 
 fn read_pulses(from: &mut StateReader<'_>) -> Result<Vec<Pulse>, StateError> {

@@ -2,9 +2,9 @@
 //! the model.
 
 use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
-use videg_model::{NoiseModel, OutsideGap, Parameters, Side};
+use videg_model::{ContactLaw, Energies, NoiseModel, OutsideGap, Parameters, Side};
 
-use crate::slave::{ContactLaw, Harvester};
+use crate::slave::Harvester;
 
 type V = Variable<Harvester>;
 
@@ -55,7 +55,7 @@ macro_rules! parameters {
 static PARAMETERS: [V; Parameters::TABLE.len()] = parameters!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21);
 
 /// Parameters that choose or count.
-static CHOICES: [V; 5] = [
+static CHOICES: [V; 6] = [
     V::integer_parameter("excitation.seed", 1, "Seed of the phase noise: equal seeds, equal noise")
         .access(|slave| slave.parameters.seed, |slave, value| slave.parameters.seed = value),
     V::enumeration_parameter("excitation.noiseModel", &NOISE_MODEL, 1, "How the phase noise is read, Section 5.2")
@@ -82,15 +82,23 @@ static CHOICES: [V; 5] = [
         "Law of the contact between ball and membrane, Section 3.2",
     )
     .access(
-        |slave| if slave.law == ContactLaw::Impulsive { 1 } else { 2 },
-        |slave, item| slave.law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
+        |slave| if slave.parameters.contact_law == ContactLaw::Impulsive { 1 } else { 2 },
+        |slave, item| {
+            slave.parameters.contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant };
+        },
     ),
     V::boolean_parameter(
         "contact.electrostaticFeedback",
         false,
         "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in Section 2.1",
     )
-    .access(|slave| slave.electrostatic_feedback, |slave, on| slave.electrostatic_feedback = on),
+    .access(|slave| slave.parameters.electrostatic_feedback, |slave, on| slave.parameters.electrostatic_feedback = on),
+    V::boolean_parameter(
+        "contact.reaction",
+        false,
+        "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: m / M is small",
+    )
+    .access(|slave| slave.parameters.reaction, |slave, on| slave.parameters.reaction = on),
 ];
 
 /// What follows from the parameters.
@@ -119,6 +127,7 @@ static INPUTS: [V; 3] = [
         2000.0,
         "U_DE: voltage across the left membrane; acts with contact.electrostaticFeedback",
     )
+    .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[0] = rate)
     .access(|slave| slave.voltages[0], |slave, voltage| slave.voltages[0] = voltage),
     V::input(
         "right.voltage",
@@ -126,6 +135,7 @@ static INPUTS: [V; 3] = [
         2000.0,
         "U_DE: voltage across the right membrane; acts with contact.electrostaticFeedback",
     )
+    .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[1] = rate)
     .access(|slave| slave.voltages[1], |slave, voltage| slave.voltages[1] = voltage),
 ];
 
@@ -237,6 +247,54 @@ static EVENTS: [V; 8] = [
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
 ];
 
+/// Reads one of the energies.
+fn energy(slave: &Harvester, value: fn(&Energies) -> f64) -> f64 {
+    slave.read(|model| value(&model.energies()))
+}
+
+/// The books of the mechanical energy: local variables, of which no directional derivatives are asked.
+static ENERGIES: [V; 8] = [
+    V::output("energy.kinetic", "J", "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical")
+        .local()
+        .nominal(1e-4)
+        .depends_on(&["cylinder.velocity", "ball.velocity"])
+        .get(|slave| energy(slave, |e| e.ball)),
+    V::output("energy.cylinderKinetic", "J", "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction")
+        .local()
+        .nominal(1e-3)
+        .depends_on(&["cylinder.velocity"])
+        .get(|slave| energy(slave, |e| e.cylinder)),
+    V::output("energy.elastic", "J", "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law")
+        .local()
+        .nominal(1e-4)
+        .depends_on(&[])
+        .get(|slave| energy(slave, |e| e.elastic)),
+    V::output("energy.impactLoss", "J", "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact")
+        .local()
+        .nominal(1e-4)
+        .depends_on(&[])
+        .get(|slave| energy(slave, |e| e.impact_loss)),
+    V::output("energy.excitation", "J", "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction")
+        .local()
+        .nominal(1e-3)
+        .depends_on(&["cylinder.velocity"])
+        .get(|slave| energy(slave, |e| e.excitation)),
+    V::output("energy.electrical", "J", "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC")
+        .local()
+        .nominal(1e-6)
+        .depends_on(&[])
+        .get(|slave| energy(slave, |e| e.electrical)),
+    V::output("energy.wall", "J", "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed")
+        .local()
+        .nominal(1e-4)
+        .depends_on(&["cylinder.velocity"])
+        .get(|slave| energy(slave, |e| e.wall)),
+    V::output("contact.time", "s", "Time in contact since the start under the compliant law; impacts of the impulsive law take none")
+        .local()
+        .depends_on(&[])
+        .get(|slave| slave.read(videg_model::Harvester::contact_time)),
+];
+
 /// Time derivatives of the continuous states, for model exchange.
 static DERIVATIVES: [V; 4] = [
     V::output("der(cylinder.position)", "m/s", "z_M': time derivative of cylinder.position")
@@ -274,8 +332,9 @@ const COUNT: usize = PARAMETERS.len()
     + RIGHT.len()
     + MOTION.len()
     + EVENTS.len()
+    + ENERGIES.len()
     + DERIVATIVES.len();
 
 /// The whole table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] =
-    concat(&[&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &DERIVATIVES]);
+    concat(&[&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &ENERGIES, &DERIVATIVES]);

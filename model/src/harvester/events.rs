@@ -6,7 +6,7 @@ use crate::cylinder::Drive;
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::noise;
-use crate::parameters::NoiseModel;
+use crate::parameters::{ContactLaw, NoiseModel};
 use crate::pulse::Pulse;
 
 /// Relative change of the wall's acceleration over the rest of a chattering sequence below which it counts as constant,
@@ -33,6 +33,10 @@ pub(super) enum Event {
     Release {
         time: f64,
     },
+    /// The contact changes: it turns, ends or goes on.
+    Touch {
+        time: f64,
+    },
     /// The phase noise takes its next sample.
     NoiseSample {
         time: f64,
@@ -42,7 +46,9 @@ pub(super) enum Event {
 impl Event {
     pub(super) fn time(self) -> f64 {
         match self {
-            Self::Impact { time, .. } | Self::Release { time } | Self::NoiseSample { time } => time,
+            Self::Impact { time, .. } | Self::Release { time } | Self::Touch { time } | Self::NoiseSample { time } => {
+                time
+            }
         }
     }
 }
@@ -89,6 +95,9 @@ impl Search {
 impl Harvester {
     /// A ball that starts on a membrane, at rest relative to it and pushed against it, rests without an impact.
     pub(super) fn rest_if_started_at_rest(&mut self) {
+        if self.parameters.contact_law == ContactLaw::Compliant {
+            return; // the search finds the instant from which on it is pressed in
+        }
         let dz = self.relative_displacement();
         let side = if dz > 0.0 { Side::Left } else { Side::Right };
         let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
@@ -100,6 +109,9 @@ impl Harvester {
 
     /// Takes cylinder and ball at `time` as the start of a new motion under `drive`.
     pub(super) fn restart(&mut self, time: f64, drive: Drive) {
+        if self.touch.is_some() {
+            return self.restart_touch(time, drive);
+        }
         let dz = self.relative_displacement_at(time);
         self.cylinder = self.cylinder.continued(time, drive);
         self.new_search(time, dz);
@@ -107,13 +119,18 @@ impl Harvester {
 
     /// Searches from `time` on, at which `z_M` - `z_m` is `dz`. That is handed on rather than computed from positions,
     /// so that a ball on a membrane is there to the last bit however far the cylinder has drifted.
-    fn new_search(&mut self, time: f64, dz: f64) {
+    pub(super) fn new_search(&mut self, time: f64, dz: f64) {
         let flight = Flight::new(&self.cylinder, time, dz, self.ball_velocity_at(time), self.half_travel());
         self.search = Search::new(flight);
     }
 
     /// The next event, if there is one before the search windows have passed `until`, s.
     pub(super) fn next_event(&mut self, until: f64) -> Option<Event> {
+        if let Some(touch) = &self.touch {
+            let end = touch.end();
+            let limit = self.noise_limit().filter(|limit| *limit <= end);
+            return Some(limit.map_or(Event::Touch { time: end }, |time| Event::NoiseSample { time }));
+        }
         let limit = self.noise_limit();
         let start = self.search.flight.start;
         let limit_elapsed = limit.map_or(f64::INFINITY, |time| time - start);
@@ -160,13 +177,18 @@ impl Harvester {
         match event {
             Event::Impact { time, side } => {
                 self.spend(time)?;
-                self.impact(time, side);
+                match self.parameters.contact_law {
+                    ContactLaw::Impulsive => self.impact(time, side),
+                    ContactLaw::Compliant => self.touch(time, side),
+                }
             }
+            Event::Touch { .. } => self.follow_touch()?,
             Event::Release { time } => {
                 self.spend(time)?;
                 let dz = self.relative_displacement_at(time);
                 self.tangent.ball = self.ball_change(time);
                 self.ball = self.ball_at(time);
+                self.book_release();
                 self.totals.releases += 1;
                 self.new_search(time, dz);
             }
@@ -183,10 +205,14 @@ impl Harvester {
         }
         self.second_events += 1;
         if self.second_events > EVENT_BUDGET {
-            let (travel, restitution) = (self.parameters.travel(), self.parameters.restitution);
-            return Err(ModelError::TooManyEvents { time, limit: EVENT_BUDGET, travel, restitution });
+            return Err(self.too_many_events(time));
         }
         Ok(())
+    }
+
+    pub(super) fn too_many_events(&self, time: f64) -> ModelError {
+        let (travel, restitution) = (self.parameters.travel(), self.parameters.restitution);
+        ModelError::TooManyEvents { time, limit: EVENT_BUDGET, travel, restitution }
     }
 
     /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
@@ -201,6 +227,7 @@ impl Harvester {
         self.totals.last_speed = speed;
         self.credit(excess);
         self.take_over(&change, excess);
+        self.book_impact(side, wall, speed);
         let rebound = self.parameters.restitution * speed;
         self.ball = Ball {
             since: time,
@@ -224,17 +251,19 @@ impl Harvester {
     /// Ends a chattering sequence at `time`, s.
     fn settle(&mut self, time: f64, side: Side) {
         self.totals.chatters += 1;
+        self.book_settling(time);
         self.rest(time, side);
     }
 
     /// From `time`, s, on the ball rests on the membrane at `side`.
     fn rest(&mut self, time: f64, side: Side) {
+        self.book_rest(time);
         self.ball.resting = Some(side);
         self.new_search(time, side.sign() * self.half_travel());
     }
 
     /// Adds impacts whose `C_3` / `C_2` - 1 sum to `excess`: Eqs. (12) and (13).
-    fn credit(&mut self, excess: f64) {
+    pub(super) fn credit(&mut self, excess: f64) {
         let bias = self.parameters.bias_voltage;
         self.totals.voltage_gain += bias * excess;
         self.totals.energy += 0.5 * bias * bias * self.membrane.rest_capacitance() * excess;

@@ -9,6 +9,7 @@ use super::{Ball, Harvester, finite};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
+use crate::parameters::ContactLaw;
 
 /// Gap, in units of s/2, below which an approaching ball meets the membrane: integrators find the instant from either
 /// side, to their tolerance.
@@ -23,13 +24,16 @@ impl Harvester {
     /// N. Nothing happens to them: an event waits for [`Harvester::handle_events`].
     ///
     /// # Errors
-    /// A value that is not finite.
+    /// A value that is not finite; the compliant law.
     pub fn place(&mut self, time: f64, states: [f64; 4], force: f64) -> Result<(), ModelError> {
         for value in states {
             finite("continuous state", value)?;
         }
         finite("time", time)?;
         finite("externalForce", force)?;
+        if self.parameters.contact_law == ContactLaw::Compliant {
+            return Err(ModelError::CompliantExchange);
+        }
         let [position, velocity, ball_position, ball_velocity] = states;
         let drive =
             Drive { external: force / self.parameters.cylinder_mass, external_rate: 0.0, ..self.cylinder.drive };
@@ -46,9 +50,9 @@ impl Harvester {
         [self.cylinder_position(), self.cylinder_velocity(), self.ball_position(), self.ball_velocity()]
     }
 
-    /// `z_m''`, m/s^2: that of the cylinder while the ball rests, else 0.
+    /// `z_m''`, m/s^2: that of the cylinder while the ball rests, that of the forces of a contact, else 0.
     pub fn ball_acceleration(&self) -> f64 {
-        if self.ball.resting.is_some() { self.cylinder_acceleration() } else { 0.0 }
+        if self.resting().is_some() { self.cylinder_acceleration() } else { self.touch_acceleration() }
     }
 
     /// Time derivatives of [`Harvester::states`]: Eq. (7), and a ball that is free or carried by the membrane.
@@ -94,6 +98,7 @@ impl Harvester {
         }
         self.spend(self.time)?;
         self.ball = self.ball_at(self.time);
+        self.book_release();
         self.totals.releases += 1;
         self.clear(side);
         Ok(true)

@@ -1,13 +1,15 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
+use super::energy::Ledger;
 use super::events::Search;
 use super::tangent::Tangent;
 use super::{Ball, Harvester, Noise, Totals, phase};
+use crate::compliant::{ContactSnapshot, Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::membrane::Membrane;
-use crate::parameters::Parameters;
+use crate::parameters::{ContactLaw, Parameters};
 use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
 
 /// Phase-noise samples that an integrator may be behind: it may pause at an event before the event is handled.
@@ -37,8 +39,15 @@ pub struct Snapshot {
     pub noise_walk: f64,
     /// Pulses under way on the left and on the right membrane, the largest peak first.
     pub pulses: [Vec<Pulse>; 2],
+    /// The present contact under the compliant law.
+    pub contact: Option<ContactSnapshot>,
+    /// Voltages across the left and the right membrane: time, s, value then, V, and rate, V/s.
+    pub voltages: [[f64; 3]; 2],
     /// Sums over all impacts so far.
     pub totals: Totals,
+    /// Work of the walls (at rest less the ball's kinetic energy) and of the Maxwell force, energy lost, J, and time in
+    /// contact, s, up to the last event.
+    pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
     /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy, J.
     pub changes: [f64; 6],
@@ -51,7 +60,7 @@ pub struct Snapshot {
 impl Harvester {
     /// The dynamic state.
     pub fn snapshot(&self) -> Snapshot {
-        let Self { cylinder, ball, noise, tangent, .. } = self;
+        let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
         let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
         Snapshot {
             time: self.time,
@@ -63,7 +72,10 @@ impl Harvester {
             noise_sample: noise.sample,
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
+            contact: self.touch.as_ref().map(Touch::snapshot),
+            voltages: self.voltages.map(|ramp| [ramp.start, ramp.value, ramp.rate]),
             totals: self.totals,
+            ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
             changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy],
             second: self.second,
             second_events: self.second_events,
@@ -78,7 +90,12 @@ impl Harvester {
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
         let mut harvester = Self::rebuild(parameters, snapshot, 0.0)?;
         harvester.placed = false;
-        harvester.search = Search::resumed(harvester.search.flight, snapshot.time);
+        harvester.search = if harvester.touch.is_some() {
+            Search::new(harvester.search.flight)
+        } else {
+            Search::resumed(harvester.search.flight, snapshot.time)
+        };
+        harvester.plan_touch();
         harvester.advance(snapshot.time)?;
         Ok(harvester)
     }
@@ -112,6 +129,7 @@ impl Harvester {
         let [since, position_change, velocity_change, totals @ ..] = snapshot.changes;
         let mut tangent = Tangent::of_force(since, p.cylinder_mass);
         (tangent.ball, tangent.totals) = ([position_change, velocity_change], totals);
+        let [wall, electrical, loss, contact_time] = snapshot.ledger;
         let [start, offset] = snapshot.flight;
         let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
         let flight = Flight::new(&cylinder, start, 0.0, ball_velocity, p.travel() / 2.0).with_offset(offset);
@@ -125,7 +143,10 @@ impl Harvester {
             noise,
             search: Search::none(flight),
             pulses: snapshot.pulses.clone().map(Pulses::from_inner),
+            touch: snapshot.contact.as_ref().map(Touch::restored),
+            voltages: snapshot.voltages.map(|[start, value, rate]| Ramp { start, value, rate }),
             totals: snapshot.totals,
+            ledger: Ledger { wall, electrical, loss, contact_time },
             tangent,
             placed: true,
             second: snapshot.second,
@@ -161,9 +182,24 @@ impl Snapshot {
         for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
             check("sum over the impacts", sum, sum.is_finite() && sum >= 0.0)?;
         }
+        for value in self.voltages.into_iter().flatten().chain(self.ledger) {
+            check("voltage or sum of work", value, value.is_finite())?;
+        }
+        self.contact.iter().try_for_each(|contact| validate_contact(contact, parameters, time))?;
         check("second", self.second, self.second.is_finite())?;
         self.pulses.iter().try_for_each(|pulses| validate_pulses(pulses, time))
     }
+}
+
+fn validate_contact(contact: &ContactSnapshot, parameters: &Parameters, time: f64) -> Result<(), ModelError> {
+    let ContactSnapshot { since, largest, start: [start, x, v], credited, proposal, .. } = *contact;
+    check("contact since", since, since <= start && parameters.contact_law == ContactLaw::Compliant)?;
+    check("start of a contact", start, start <= time && (time - start) * parameters.frequency <= 2.0)?;
+    check("deflection", x, x.is_finite())?;
+    check("rate of a deflection", v, v.is_finite())?;
+    check("largest deflection", largest, largest.is_finite() && largest >= 0.0)?;
+    check("credited excess", credited, credited.is_finite() && credited >= 0.0)?;
+    check("first step", proposal, proposal.is_finite() && proposal > 0.0)
 }
 
 fn validate_pulses(pulses: &[Pulse], time: f64) -> Result<(), ModelError> {

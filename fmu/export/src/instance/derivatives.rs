@@ -7,7 +7,7 @@ use super::model_exchange::states_and_derivatives;
 use super::values::variable;
 use super::{Call, Instance};
 use crate::call_state::CallState;
-use crate::error::CallError;
+use crate::error::{CallError, SlaveError};
 use crate::slave::Slave;
 use crate::variable::{Causality, Kind, Variability, Variable};
 
@@ -28,7 +28,13 @@ impl<S: Slave> Instance<S> {
         let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;
         for (i, unknown) in unknowns.into_iter().enumerate() {
             let terms = knowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
-            put(i, terms.map(|(known, seed)| self.partial_derivative(unknown, known) * seed).sum());
+            let sum: f64 = terms.map(|(known, seed)| self.partial_derivative(unknown, known) * seed).sum();
+            if sum.is_nan() {
+                let message =
+                    format!("there is no directional derivative of {} under these parameters", unknown.name());
+                return Err(SlaveError::error(message).into());
+            }
+            put(i, sum);
         }
         Ok(())
     }

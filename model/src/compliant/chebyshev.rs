@@ -1,0 +1,190 @@
+//! Chebyshev series: smooth functions on an interval, known from their values at the extrema of a Chebyshev polynomial.
+//!
+//! Collocation at these points needs no tables: nodes, integrals and zeros follow from formulas (Clenshaw and Curtis
+//! 1960).
+
+use core::f64::consts::PI;
+use std::sync::LazyLock;
+
+use crate::flight::bracketed_root;
+
+/// Degree of the series that is fitted to values.
+pub(super) const DEGREE: usize = 12;
+
+/// Number of nodes.
+pub(super) const NODES: usize = DEGREE + 1;
+
+/// Terms of a series: room for two integrations.
+const TERMS: usize = NODES + 2;
+
+/// One value for each node, the end of the interval first.
+pub(super) type Values = [f64; NODES];
+
+/// Nodes and what follows from them. Intervals are [-1, 1].
+pub(super) struct Grid {
+    pub(super) nodes: Values,
+    /// cos(j k pi / DEGREE).
+    cosines: [Values; NODES],
+    /// Values at the nodes of the double integral from -1, one row a node, against the values of the function.
+    pub(super) double_integral: [Values; NODES],
+}
+
+pub(super) static GRID: LazyLock<Grid> = LazyLock::new(Grid::new);
+
+impl Grid {
+    fn new() -> Self {
+        let cosines = core::array::from_fn(|j| {
+            core::array::from_fn(|k| (((j * k) % (2 * DEGREE)) as f64 * PI / DEGREE as f64).cos())
+        });
+        let nodes = core::array::from_fn(|j| (j as f64 * PI / DEGREE as f64).cos());
+        let mut grid = Self { nodes, cosines, double_integral: [[0.0; NODES]; NODES] };
+        for k in 0..NODES {
+            let unit = core::array::from_fn(|j| if j == k { 1.0 } else { 0.0 });
+            let integral = grid.fit(&unit).integral(1.0, 0.0).integral(1.0, 0.0);
+            for (row, node) in grid.double_integral.iter_mut().zip(nodes) {
+                row[k] = integral.value(node);
+            }
+        }
+        grid
+    }
+
+    /// The series that has these values at the nodes.
+    pub(super) fn fit(&self, values: &Values) -> Series {
+        let mut series = Series::default();
+        for (k, cosines) in self.cosines.iter().enumerate() {
+            let ends = 0.5 * (values[0] * cosines[0] + values[DEGREE] * cosines[DEGREE]);
+            let sum = (1..DEGREE).fold(ends, |sum, j| sum + values[j] * cosines[j]);
+            series.coefficients[k] = sum * if k == 0 || k == DEGREE { 1.0 } else { 2.0 } / DEGREE as f64;
+        }
+        series
+    }
+}
+
+/// A function on [-1, 1] as a sum of Chebyshev polynomials.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Series {
+    coefficients: [f64; TERMS],
+}
+
+impl Series {
+    pub(super) fn constant(value: f64) -> Self {
+        Self::default().plus(value)
+    }
+
+    #[must_use]
+    pub(super) fn plus(mut self, value: f64) -> Self {
+        self.coefficients[0] += value;
+        self
+    }
+
+    #[must_use]
+    pub(super) fn times(mut self, factor: f64) -> Self {
+        self.coefficients.iter_mut().for_each(|c| *c *= factor);
+        self
+    }
+
+    /// Value at `x` (Clenshaw's recurrence).
+    pub(super) fn value(&self, x: f64) -> f64 {
+        let [first, rest @ ..] = &self.coefficients;
+        let (mut b1, mut b2) = (0.0, 0.0);
+        for c in rest.iter().rev() {
+            (b1, b2) = (c + 2.0 * x * b1 - b2, b1);
+        }
+        first + x * b1 - b2
+    }
+
+    /// The integral that has the value `start` at -1, for an interval of length 2 `half_length`.
+    pub(super) fn integral(&self, half_length: f64, start: f64) -> Self {
+        let c = |k: usize| self.coefficients.get(k).copied().unwrap_or(0.0);
+        let mut integral = Self::default();
+        for k in 1..TERMS {
+            let below = if k == 1 { 2.0 * c(0) } else { c(k - 1) };
+            integral.coefficients[k] = half_length * (below - c(k + 1)) / (2.0 * k as f64);
+        }
+        let offset = integral.value(-1.0);
+        integral.plus(start - offset)
+    }
+
+    fn derivative(&self) -> Self {
+        let mut derivative = Self::default();
+        for k in (0..TERMS - 1).rev() {
+            let above = if k + 2 < TERMS { derivative.coefficients[k + 2] } else { 0.0 };
+            derivative.coefficients[k] = above + 2.0 * (k + 1) as f64 * self.coefficients[k + 1];
+        }
+        derivative.coefficients[0] *= 0.5;
+        derivative
+    }
+
+    /// Bound of the absolute value.
+    pub(super) fn bound(&self) -> f64 {
+        self.coefficients.iter().map(|c| c.abs()).sum()
+    }
+
+    /// The last two coefficients of a fit: what more terms would add is smaller.
+    pub(super) fn tail(&self) -> f64 {
+        self.coefficients[DEGREE].abs() + self.coefficients[DEGREE - 1].abs()
+    }
+
+    /// Where the function first falls below zero; falls by rounding, of numbers of the size `scale`, do not count.
+    ///
+    /// Intervals are halved until bounds of the derivatives show that the function has no zero there or is monotone, so
+    /// that no zero is missed.
+    pub(super) fn first_fall(&self, scale: f64) -> Option<f64> {
+        const NARROWEST: f64 = 1e-9;
+        let raised = self.plus(16.0 * f64::EPSILON * scale);
+        let slope = raised.derivative();
+        let (steepest, sharpest) = (slope.bound(), slope.derivative().bound());
+        let mut intervals = vec![(-1.0, 1.0)];
+        while let Some((from, to)) = intervals.pop() {
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            if raised.value(middle) > steepest * half {
+                continue;
+            }
+            if slope.value(middle).abs() > sharpest * half || half < NARROWEST {
+                if raised.value(to) < 0.0 {
+                    return Some(bracketed_root(from, to, |x| (raised.value(x), slope.value(x))));
+                }
+                continue;
+            }
+            intervals.extend([(middle, to), (from, middle)]);
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn fit(f: impl Fn(f64) -> f64) -> Series {
+        GRID.fit(&GRID.nodes.map(f))
+    }
+
+    #[test]
+    fn a_series_has_the_values_integrals_and_derivatives_of_its_function() {
+        let series = fit(|x| (0.7 * x).exp());
+        let double = series.integral(0.5, 2.0).integral(0.5, 3.0);
+        for k in 0..=20 {
+            let x = -1.0 + 0.1 * f64::from(k);
+            assert_relative_eq!(series.value(x), (0.7 * x).exp(), max_relative = 1e-14);
+            assert_relative_eq!(series.derivative().value(x), 0.7 * (0.7 * x).exp(), max_relative = 1e-11);
+            let (start, rate) = ((-0.7_f64).exp(), 0.5 / 0.7);
+            let tau = 0.5 * (x + 1.0);
+            let expected = 3.0 + 2.0 * tau + rate * (rate * ((0.7 * x).exp() - start) - start * tau);
+            assert_relative_eq!(double.value(x), expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_first_fall_is_found_next_to_a_graze() {
+        for depth in [-1e-9, 1e-9] {
+            // Touches zero at 0.3, to `depth`, and falls for good at 0.8.
+            let series = fit(|x| ((x - 0.3).powi(2) + depth) * (0.8 - x));
+            let expected = if depth < 0.0 { 0.3 - 1e-9_f64.sqrt() } else { 0.8 };
+            assert_relative_eq!(series.first_fall(1.0).unwrap(), expected, epsilon = 1e-8);
+        }
+        assert_eq!(fit(|x| x + 1.0).first_fall(1.0), None);
+        assert_eq!(fit(|x| (x + 1.0).powi(2)).first_fall(1.0), None);
+    }
+}
