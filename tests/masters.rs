@@ -145,3 +145,43 @@ fn couplings_that_make_no_sense_are_refused_by_name_and_bound() {
         assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
     }
 }
+
+const FEEDBACK: [&str; 6] =
+    ["--set", "contact.law=compliant", "--set", "contact.electrostaticFeedback=true", "--set", "contact.reaction=true"];
+
+/// With the Maxwell force both sides act on each other. The residual of the coupling is then an error of the energy balance.
+#[test]
+fn the_orders_of_the_masters_hold_when_the_circuit_acts_back_on_the_ball() {
+    for (master, claimed) in [("gauss-seidel", 2.0), ("jacobi", 2.0), ("plain", 1.0)] {
+        let residual = |step| {
+            let run = cosim(&[&FEEDBACK[..], &["--master", master, "--step", step]].concat());
+            coupling(&run, "residual").abs()
+        };
+        let found = (residual("5e-4") / residual("1.25e-4")).log2() / 2.0;
+        assert!((found - claimed).abs() < 0.35, "{master}: order {found} instead of {claimed}");
+    }
+}
+
+/// Work of the excitation = kinetic + elastic + lost in impacts + into load, Zener, diodes and field - from the supply.
+#[test]
+fn the_energy_of_harvester_and_circuit_balances_over_the_whole_run() {
+    std::thread::scope(|scope| {
+        for circuit in ["embedded", "fmu"] {
+            scope.spawn(move || {
+                let options = ["--until", "100", "--adaptive", "1e-5", "--circuit", circuit];
+                let run = run(&[&FEEDBACK[..], &options].concat()).unwrap();
+                let balance = |key: &str| run["balance"][key].as_f64().unwrap();
+                let given = balance("excitation");
+                assert!(given > 0.1, "{circuit}: the excitation gave {given} J only");
+                let taken = ["kinetic", "cylinder_kinetic", "elastic", "impact_loss"].map(balance).iter().sum::<f64>();
+                let energy = |key: &str| run["energy"][key].as_f64().unwrap();
+                let electrical =
+                    energy("load") + energy("zener") + energy("diode") + energy("stored") - energy("supply");
+                let residual = given - taken - electrical;
+                assert!(electrical > 0.02 * given, "{circuit}: {electrical} J of {given} J");
+                assert!(residual.abs() < 1e-6 * given, "{circuit}: {residual} J of {given} J");
+                assert!(balance("relative_residual") < 1e-6, "{circuit}: {}", balance("relative_residual"));
+            });
+        }
+    });
+}

@@ -12,8 +12,8 @@ use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
 use super::{Verdict, cosim_report, electrical, output, packaging, picture, settings};
 use crate::cosim::{
-    CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, FmuCircuit, HarvesterFmu,
-    Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
+    CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, EnergyBalance, FmuCircuit,
+    HarvesterFmu, Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
@@ -86,6 +86,8 @@ struct Output<'a> {
     #[serde(flatten)]
     summary: &'a CircuitSummary,
     coupling: CouplingSummary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balance: Option<EnergyBalance>,
     comparison: &'a [Compared],
 }
 
@@ -99,6 +101,8 @@ pub struct Finished {
     pub circuits: Vec<Compared>,
     /// The coupling of the harvester with the circuit asked for.
     pub coupling: CouplingSummary,
+    /// The energy balance, with electrostatic feedback.
+    pub balance: Option<EnergyBalance>,
     /// Supply voltage, V.
     pub supply_voltage: f64,
     /// What the user should know before believing the numbers.
@@ -150,12 +154,12 @@ fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, c
     let outcome = outcome
         .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
-    let Outcome { mechanics, circuits: samples, coupling } = outcome;
+    let Outcome { mechanics, circuits: samples, coupling, balance } = outcome;
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let svg = picture::cosim(&trace, &scenario)?;
     let supply_voltage = settings.circuit.supply_voltage;
-    Ok(Finished { scenario, mechanics, circuits, coupling, supply_voltage, warnings, svg })
+    Ok(Finished { scenario, mechanics, circuits, coupling, balance, supply_voltage, warnings, svg })
 }
 
 pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
@@ -227,7 +231,14 @@ fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result
 fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> anyhow::Result<Output<'a>> {
     let (first, comparison) = finished.circuits.split_first().context("a co-simulation without a circuit")?;
     let run = RunOutput::new(&finished.scenario, finished.mechanics, &finished.warnings, files);
-    Ok(Output { run, circuit: &first.label, summary: &first.summary, coupling: finished.coupling, comparison })
+    Ok(Output {
+        run,
+        circuit: &first.label,
+        summary: &first.summary,
+        coupling: finished.coupling,
+        balance: finished.balance,
+        comparison,
+    })
 }
 
 fn text(finished: &Finished, files: &[PathBuf]) -> String {
@@ -236,7 +247,7 @@ fn text(finished: &Finished, files: &[PathBuf]) -> String {
         text_table(&finished.scenario, &finished.mechanics),
         cosim_report::energy_table(finished),
         cosim_report::EXPLANATION.join("\n"),
-        cosim_report::coupling_line(&finished.coupling),
+        cosim_report::coupling_lines(finished),
         file_list(files),
     ];
     parts.join("\n\n")

@@ -2,7 +2,7 @@
 
 use super::cosim::{Compared, Finished};
 use super::{format, output, simulate};
-use crate::cosim::CouplingSummary;
+use crate::cosim::{CouplingSummary, EnergyBalance};
 use crate::report::{self, Column, Report, ReportError, Section, Table};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
@@ -68,8 +68,27 @@ pub fn energy_table(finished: &Finished) -> String {
     table.to_string()
 }
 
-/// What the coupling with the first circuit came to.
-pub fn coupling_line(coupling: &CouplingSummary) -> String {
+/// What the coupling with the first circuit came to, and where the energy of both went.
+pub fn coupling_lines(finished: &Finished) -> String {
+    let balance = finished.balance.as_ref().map(balance_line);
+    std::iter::once(coupling_line(&finished.coupling)).chain(balance).collect::<Vec<_>>().join("\n")
+}
+
+fn balance_line(balance: &EnergyBalance) -> String {
+    let work = |joule: f64| format::significant(1e3 * joule, DIGITS);
+    let EnergyBalance { wall, kinetic, elastic, impact_loss, converted, residual, relative_residual, .. } = *balance;
+    format!(
+        "balance: the walls gave {} mJ = kinetic {} + elastic {} + lost in impacts {} + to the circuit {} mJ; residual \
+         {residual:.1e} J, {relative_residual:.1e} of the energy moved",
+        work(wall),
+        work(kinetic),
+        work(elastic),
+        work(impact_loss),
+        work(converted),
+    )
+}
+
+fn coupling_line(coupling: &CouplingSummary) -> String {
     let work = |joule: f64| format::significant(1e3 * joule, DIGITS);
     let CouplingSummary { steps, rejected, circuit_work, harvester_work, residual, relative_residual, .. } = *coupling;
     format!(
@@ -102,7 +121,7 @@ pub fn html(finished: &Finished) -> Result<String, ReportError> {
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(result)
     .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies))
-    .section(Section::new("Coupling").text(coupling_line(&finished.coupling)))
+    .section(Section::new("Coupling").text(coupling_lines(finished)))
     .section(Section::new("Motion, capacitances, voltages and energies").figure(
         finished.svg.clone(),
         "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds of the run; (d) \

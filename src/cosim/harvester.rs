@@ -1,6 +1,7 @@
 //! The harvester FMU as the master sees it.
 
 use super::CosimError;
+use super::balance::MechanicalEnergies;
 use super::rollback::Kept;
 use crate::fmi::{Fmu, Instance, Logging, Status};
 use crate::scenario::{Scenario, Setting};
@@ -91,6 +92,8 @@ struct Feedback {
     takes_rates: bool,
     /// Reference of the electrical work, if the FMU sums it up.
     work: Option<u32>,
+    /// References of the mechanical energies, if the FMU has them.
+    energies: Option<[u32; MechanicalEnergies::NAMES.len()]>,
 }
 
 impl HarvesterFmu {
@@ -172,6 +175,17 @@ impl HarvesterFmu {
         Ok(Some(-work[0]))
     }
 
+    /// Mechanical energies, if the voltages act on the harvester and it has them.
+    ///
+    /// # Errors
+    /// What the FMU says.
+    pub fn energies(&self) -> Result<Option<MechanicalEnergies>, CosimError> {
+        let Some(references) = self.feedback.and_then(|feedback| feedback.energies) else { return Ok(None) };
+        let mut values = [0.0; MechanicalEnergies::NAMES.len()];
+        self.instance.get_real(&references, &mut values)?;
+        Ok(Some(MechanicalEnergies::new(values)))
+    }
+
     /// dC/dt of the membranes, left and right, F/s, at the communication point.
     ///
     /// # Errors
@@ -244,7 +258,14 @@ impl Feedback {
         }
         let mut trial = fmu.instantiate("trial", Logging::default())?;
         let takes_rates = trial.set_real_input_derivatives(voltages, &[1, 1], &[0.0, 0.0]).is_ok();
-        let work = description.variable(ELECTRICAL_WORK).ok().map(|variable| variable.value_reference);
-        Ok(Some(Self { takes_rates, work }))
+        let reference = |name| description.variable(name).ok().map(|variable| variable.value_reference);
+        let mut energies = Some([0; MechanicalEnergies::NAMES.len()]);
+        for (k, name) in MechanicalEnergies::NAMES.into_iter().enumerate() {
+            energies = energies.zip(reference(name)).map(|(mut all, one)| {
+                all[k] = one;
+                all
+            });
+        }
+        Ok(Some(Self { takes_rates, work: reference(ELECTRICAL_WORK), energies }))
     }
 }

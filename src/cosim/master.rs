@@ -4,7 +4,7 @@ use super::adaptive::StepControl;
 use super::coupling::Books;
 use super::signal::{Curve, Line};
 use super::{
-    CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, HarvesterFmu, HarvesterSample,
+    CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, EnergyBalance, HarvesterFmu, HarvesterSample,
     MechanicsSummary, Method, Schedule,
 };
 use crate::scenario::Scenario;
@@ -38,6 +38,8 @@ pub struct Outcome {
     pub circuits: Vec<CircuitSample>,
     /// The coupling of the harvester with the first circuit.
     pub coupling: CouplingSummary,
+    /// The energy balance of harvester and first circuit, with electrostatic feedback.
+    pub balance: Option<EnergyBalance>,
 }
 
 /// The master, ready to run.
@@ -122,6 +124,7 @@ impl Master {
     pub fn run(mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, CosimError> {
         let [from, to] = self.scenario.window;
         let mut point = self.start()?;
+        let energies_at_start = self.harvester.energies()?;
         let mut gains = [None; 2];
         loop {
             let harvester = &point.harvester;
@@ -141,6 +144,7 @@ impl Master {
         }
         let [start, end] = gains.map(Option::unwrap_or_default);
         let [impacts, events] = self.harvester.counts()?;
+        let energies = energies_at_start.zip(self.harvester.energies()?);
         self.harvester.terminate()?;
         let mechanics = MechanicsSummary {
             impacts,
@@ -151,7 +155,10 @@ impl Master {
             energy_eq13: point.harvester.energy_eq13(),
         };
         let coupling = self.books.summary(&self.coupling, self.steps, self.rejected);
-        Ok(Outcome { mechanics, circuits: point.circuits, coupling })
+        let balance = energies
+            .zip(point.circuits.first())
+            .map(|((start, end), circuit)| EnergyBalance::new(&start, &end, &circuit.ledger));
+        Ok(Outcome { mechanics, circuits: point.circuits, coupling, balance })
     }
 
     fn start(&self) -> Result<Point, CosimError> {

@@ -5,6 +5,7 @@
 //! compared. A circuit is whatever implements [`CircuitSlave`], in a file of its own.
 
 mod adaptive;
+mod balance;
 mod circuit;
 mod circuit_fmu;
 mod coupling;
@@ -19,6 +20,7 @@ mod schedule;
 mod signal;
 mod summary;
 
+pub use balance::{EnergyBalance, MechanicalEnergies};
 pub use circuit::{CircuitSample, CircuitSlave};
 pub use circuit_fmu::FmuCircuit;
 pub use coupling::{Coupling, CouplingSummary, Method};
