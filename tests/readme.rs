@@ -69,6 +69,28 @@ fn energy_table() -> String {
     table
 }
 
+/// Claims about fig14, by closed form, embedded solver and ngspice.
+fn crosscheck_table() -> String {
+    let result = run(&["crosscheck"]);
+    let mut table = String::from(
+        "\n| claim | unit | claimed | embedded | ngspice | in a circuit simulator |\n|---|---|---|---|---|---|\n",
+    );
+    for check in result["checks"].as_array().unwrap() {
+        let Some(says) = check["claim"]["says"].as_str() else { continue };
+        let (unit, factor) = match check["unit"].as_str().unwrap() {
+            "J" => ("mJ", 1e3),
+            "C" => ("uC", 1e6),
+            other => (other, 1.0),
+        };
+        let value = |value: &Value| value.as_f64().map_or_else(String::new, |value| format!("{:.4}", factor * value));
+        let values = &check["values"];
+        let (ours, theirs) = (value(&values["embedded_exponential"]), value(&values["ngspice_batch"]));
+        let verdict = if check["claim"]["holds"].as_bool().unwrap() { "holds" } else { "does not hold" };
+        writeln!(table, "| {says} | {unit} | {} | {ours} | {theirs} | {verdict} |", value(&check["analytic"])).unwrap();
+    }
+    table
+}
+
 /// Equal words, and numbers within the tolerance. A number before `%` is a deviation: the difference of two numbers.
 fn agree(written: &str, now: &str) -> bool {
     let (written, now): (Vec<_>, Vec<_>) = (written.split_whitespace().collect(), now.split_whitespace().collect());
@@ -105,4 +127,7 @@ fn check(name: &str, table: &str) {
 fn the_tables_are_what_the_commands_say() {
     check("paper", &paper_table());
     check("energy", &energy_table());
+    if videg::ngspice::Ngspice::find(None).is_ok() || std::env::var_os("CI").is_some() {
+        check("crosscheck", &crosscheck_table());
+    }
 }

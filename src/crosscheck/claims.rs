@@ -122,11 +122,16 @@ impl Findings<'_> {
         let agreement = Agreement::worst(pairs.into_iter().flatten());
         let own = format!("U_DE4, mean of {} pulses", pulses.order.len());
         if self.topology() == Topology::Isolated {
-            return vec![row(&own, "Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
+            return vec![row(&own, "U_DE4 by Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
         }
         vec![
-            row(&own, "on the shared node U_in (C3+C2)/(2 C2)", Topology::SharedNode, agreement),
-            row("the same by Eq. (12) as printed", "Eq. (12) on the shared node: U_in C3/C2", Topology::Isolated, None),
+            row(&own, "U_DE4 on the shared node: U_in (C3+C2)/(2 C2)", Topology::SharedNode, agreement),
+            row(
+                "the same by Eq. (12) as printed",
+                "U_DE4 by Eq. (12) on the shared node: U_in C3/C2",
+                Topology::Isolated,
+                None,
+            ),
         ]
     }
 

@@ -1,0 +1,57 @@
+//! The embedded circuit solver against ngspice on the same C(t), in one run: `cargo bench --bench circuit`.
+//!
+//! The accuracy of each is printed first: the largest relative deviation of supply and load energy from those with ideal
+//! diodes, which is what all of them stand for. ngspice is started anew for each run, as its users do; that takes some 10 ms.
+
+use std::hint::black_box;
+
+use anyhow::Context as _;
+use criterion::{Criterion, SamplingMode};
+use videg::cosim::HarvesterFmu;
+use videg::fmi::Fmu;
+use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
+use videg::package::{Options, build_all};
+use videg::scenario::Request;
+use videg_circuit::{DiodeParameters, Diodes, Ledger, Parameters};
+
+/// Duration, s: some sixty pulses.
+const UNTIL: f64 = 10.0;
+
+fn table() -> anyhow::Result<CapacitanceTable> {
+    let folder = tempfile::tempdir()?;
+    let paths = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() })?;
+    let fmu = Fmu::open(paths.first().context("no FMU")?)?;
+    let scenario = Request { case: Some("fig14".to_owned()), until: Some(UNTIL), ..Request::default() }.resolve()?;
+    let mut harvester = HarvesterFmu::new(&fmu, &scenario, &scenario.settings)?;
+    Ok(CapacitanceTable::from_harvester(&mut harvester, UNTIL, 1e-4)?)
+}
+
+fn deviation(found: &Ledger, exact: &Ledger) -> f64 {
+    let relative = |value: fn(&Ledger) -> f64| (value(found) / value(exact) - 1.0).abs();
+    relative(|ledger| ledger.supply).max(relative(|ledger| ledger.load))
+}
+
+fn main() -> anyhow::Result<()> {
+    let table = table()?;
+    let ideal = Parameters::default();
+    let exponential = Parameters { diodes: Diodes::Exponential(DiodeParameters::default()), ..ideal };
+    let (ngspice, elements) = (Ngspice::find(None)?, Elements::new(&ideal, table.growth())?);
+    let run = Run::new(table.until(), table.growth());
+    let exact = Waveforms::embedded(&ideal, &table)?.ledger();
+    let by_exponential = Waveforms::embedded(&exponential, &table)?.ledger();
+    let by_ngspice = ngspice.simulate(&elements, &table, &run)?.ledger();
+    println!("fig14, {UNTIL} s, {} ramps of C(t); deviation from ideal diodes:", table.len() - 1);
+    println!("  embedded, exponential diodes {:.1e}", deviation(&by_exponential, &exact));
+    println!("  ngspice {:.1e}", deviation(&by_ngspice, &exact));
+    let mut criterion = Criterion::default().configure_from_args();
+    let mut group = criterion.benchmark_group("10 s of fig14, shared node, series Zener");
+    group.sampling_mode(SamplingMode::Flat).sample_size(10);
+    group.bench_function("embedded, ideal diodes", |b| b.iter(|| Waveforms::embedded(black_box(&ideal), &table)));
+    group.bench_function("embedded, exponential diodes", |b| {
+        b.iter(|| Waveforms::embedded(black_box(&exponential), &table));
+    });
+    group.bench_function("ngspice, batch", |b| b.iter(|| ngspice.simulate(black_box(&elements), &table, &run)));
+    group.finish();
+    criterion.final_summary();
+    Ok(())
+}
