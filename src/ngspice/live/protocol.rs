@@ -14,7 +14,7 @@ pub struct Job {
     pub netlist: Vec<String>,
     /// Names of the external sources, in the order of [`Ramp::start`].
     pub sources: Vec<String>,
-    /// The vectors that a [`Reply`] holds after the time, in their order, as a netlist names them: `v(node)`, `i(source)`.
+    /// The vectors that each time point holds after the time, in their order, as a netlist names them: `v(node)`, `i(source)`.
     pub vectors: Vec<String>,
     /// Longest time step that ngspice may take, s.
     pub longest_step: f64,
