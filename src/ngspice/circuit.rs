@@ -341,8 +341,10 @@ mod tests {
                         elements.netlist(source, [15e-12; 2], &Run::new(pulse().until(), pulse().growth())).unwrap();
                     let text = netlist.text();
                     assert!(!text.contains('<') && text.ends_with(".end\n"), "{text}");
-                    assert_eq!(text.contains(".control"), source == CapacitanceSource::Table);
-                    assert!(text.contains(&elements.vectors().join(" ")));
+                    // A program that has loaded ngspice gives the commands and takes the vectors itself.
+                    let by_itself = source == CapacitanceSource::Table;
+                    assert_eq!(text.contains(".control"), by_itself);
+                    assert_eq!(text.contains(&elements.vectors().join(" ")), by_itself);
                 }
             }
         }
