@@ -38,6 +38,8 @@ pub struct Outcome {
     pub circuits: Vec<CircuitSample>,
     /// The coupling of the harvester with the first circuit.
     pub coupling: CouplingSummary,
+    /// What the harvester warned of, before and in the run.
+    pub warnings: Vec<String>,
 }
 
 /// The master, ready to run.
@@ -151,7 +153,7 @@ impl Master {
             energy_eq13: point.harvester.energy_eq13(),
         };
         let coupling = self.books.summary(&self.coupling, self.steps, self.rejected);
-        Ok(Outcome { mechanics, circuits: point.circuits, coupling })
+        Ok(Outcome { mechanics, circuits: point.circuits, coupling, warnings: self.harvester.warnings() })
     }
 
     fn start(&self) -> Result<Point, CosimError> {
