@@ -83,7 +83,8 @@ impl Membrane {
         let (stretch, field) = (self.stretch(deflection), self.field(deflection, voltage).abs());
         let exceeding = [
             (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch()).powi(2)),
-            (Limit::Field, field, breakdown_field(stretch)),
+            // Each step asks: no power is taken where even the unstretched film stands the field.
+            (Limit::Field, field, if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY }),
             (Limit::Tension, self.permittivity() * field * field, elastic_stress(stretch)),
         ];
         let above = exceeding.into_iter().filter(|(_, value, bound)| value > bound);
@@ -93,8 +94,11 @@ impl Membrane {
 
 /// Breakdown field at `stretch`, V/m.
 fn breakdown_field(stretch: f64) -> f64 {
+    if stretch >= BREAKDOWN_STRETCH {
+        return BREAKDOWN_STRETCHED;
+    }
     let exponent = (BREAKDOWN_STRETCHED / BREAKDOWN_UNSTRETCHED).ln() / BREAKDOWN_STRETCH.ln();
-    BREAKDOWN_UNSTRETCHED * stretch.min(BREAKDOWN_STRETCH).powf(exponent)
+    BREAKDOWN_UNSTRETCHED * stretch.powf(exponent)
 }
 
 /// Stress of the neo-Hookean film at `stretch` in both directions, Pa.

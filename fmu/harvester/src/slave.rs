@@ -138,7 +138,6 @@ impl Slave for Harvester {
                 })
             });
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        warned.check_present(model, log);
         self.external_force = force + rate * h;
         self.voltages = [0, 1].map(|k| voltages[k] + voltage_rates[k] * h);
         Ok(())
