@@ -84,9 +84,37 @@ fn the_saw_tooth_motion_has_the_gain_of_its_exact_orbit() {
 /// without those it is 0.0530 W at every step size.
 #[test]
 fn the_flashlight_gives_its_power_with_and_without_a_resting_ball() {
-    let power = |case| number(&simulate(case, &[]), "average_power_eq13");
+    let power = |case| {
+        let run = videg(&["simulate", "--json", "--case", case]);
+        number(&serde_json::from_str(&run.stdout).unwrap(), "average_power_eq13")
+    };
     assert_relative_eq!(power("table3-5hz"), 0.1321, max_relative = 1e-3);
     assert_relative_eq!(power("table3-2hz"), 0.0530, max_relative = 5e-3);
+}
+
+#[test]
+fn a_membrane_pressed_beyond_its_limits_warns_on_stderr_in_json_and_in_the_report() {
+    for arguments in [
+        &["simulate"][..],
+        &["simulate", "--set", "contact.law=compliant"],
+        &["cosim"],
+        &["cosim", "--adaptive", "1e-3"],
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let arguments = [arguments, &["--json", "--case", "table3-2hz", "--until", "5", "--output", "out"]].concat();
+        let run = run(&arguments, folder.path());
+        assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
+        let found: Value = serde_json::from_str(&run.stdout).unwrap();
+        let report = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+        for side in ["left", "right"] {
+            let warning = format!("{side} membrane: area ratio ");
+            let matching =
+                |texts: &[Value]| texts.iter().filter(|text| text.as_str().unwrap().contains(&warning)).count();
+            assert_eq!(matching(found["warnings"].as_array().unwrap()), 1, "{arguments:?}: {found}");
+            assert_eq!(run.stderr.matches(&warning).count(), 1, "{arguments:?}: {}", run.stderr);
+            assert!(report.contains(&warning), "{arguments:?}");
+        }
+    }
 }
 
 #[test]

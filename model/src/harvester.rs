@@ -4,10 +4,12 @@ mod contact;
 mod energy;
 mod events;
 mod exchange;
+mod occurrence;
 mod snapshot;
 mod tangent;
 
 pub use self::energy::Energies;
+pub use self::occurrence::{Impact, Occurrence, Peak};
 pub use self::snapshot::Snapshot;
 pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
 
@@ -49,19 +51,6 @@ impl Totals {
     pub fn events(&self) -> u64 {
         self.impacts + self.releases
     }
-}
-
-/// One impact, as [`Harvester::advance_with`] shows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Impact {
-    /// Time, s.
-    pub time: f64,
-    /// The membrane.
-    pub side: Side,
-    /// Relative speed before the impact, m/s.
-    pub speed: f64,
-    /// The ball comes to rest on the membrane.
-    pub rests: bool,
 }
 
 /// The ball since its last event: straight on while free, carried by the membrane while resting.
@@ -191,20 +180,20 @@ impl Harvester {
         self.advance_with(time, |_| {})
     }
 
-    /// Moves on as [`Harvester::advance`] does, and shows each impact to `on_impact`.
+    /// Moves on as [`Harvester::advance`] does, and shows each impact and each largest deflection to `show`.
     ///
     /// # Errors
     /// As [`Harvester::advance`].
-    pub fn advance_with(&mut self, time: f64, mut on_impact: impl FnMut(&Impact)) -> Result<(), ModelError> {
+    pub fn advance_with(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
         finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
         while let Some(event) = self.next_event(time).filter(|event| event.time() <= time) {
+            let turn = self.turn_at(event);
             self.process(event)?;
-            if let Event::Impact { time, side } = event {
-                on_impact(&Impact { time, side, speed: self.totals.last_speed, rests: self.ball.resting.is_some() });
-            }
+            let (impact, peak) = (self.impact_of(event), turn.or_else(|| self.peak_after(event)));
+            impact.map(Occurrence::Impact).iter().chain(&peak.map(Occurrence::Peak)).for_each(&mut show);
         }
         self.time = time;
         // Look one period ahead, so that the next impact is known; what is found does not depend on the steps.

@@ -21,6 +21,7 @@ mod cylinder;
 mod error;
 mod flight;
 mod harvester;
+mod limits;
 mod membrane;
 mod noise;
 mod parameters;
@@ -31,7 +32,10 @@ pub use compliant::{ContactSnapshot, Phase};
 pub use cylinder::{CylinderMotion, Drive};
 pub use error::ModelError;
 pub use flight::Side;
-pub use harvester::{Direction, Energies, GRAZING_SPEED, Harvester, Impact, Sensitivities, Snapshot, Totals};
+pub use harvester::{
+    Direction, Energies, GRAZING_SPEED, Harvester, Impact, Occurrence, Peak, Sensitivities, Snapshot, Totals,
+};
+pub use limits::{Excess, Limit};
 pub use membrane::Membrane;
 pub use parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
 pub use pulse::{Deflection, Pulse, PulseChange, PulseShape};

@@ -15,6 +15,8 @@ use crate::parameters::{Parameters, VACUUM_PERMITTIVITY};
 pub struct Membrane {
     radius: f64,
     thickness: f64,
+    prestretch: f64,
+    permittivity: f64,
     ball_radius: f64,
     rest_capacitance: f64,
     stiffness: f64,
@@ -36,11 +38,14 @@ impl Membrane {
     pub fn new(parameters: &Parameters) -> Self {
         let radius = parameters.membrane_radius();
         let thickness = parameters.membrane_thickness();
+        let permittivity = VACUUM_PERMITTIVITY * parameters.relative_permittivity;
         Self {
             radius,
             thickness,
+            prestretch: parameters.prestretch,
+            permittivity,
             ball_radius: parameters.ball_radius,
-            rest_capacitance: VACUUM_PERMITTIVITY * parameters.relative_permittivity * PI * radius * radius / thickness,
+            rest_capacitance: permittivity * PI * radius * radius / thickness,
             stiffness: parameters.stiffness,
             exponent: parameters.stiffness_exponent,
             ball_mass: parameters.ball_mass,
@@ -55,6 +60,16 @@ impl Membrane {
     /// `h_2`, m.
     pub fn thickness(&self) -> f64 {
         self.thickness
+    }
+
+    /// lambda: stretch of the flat membrane.
+    pub(crate) fn prestretch(&self) -> f64 {
+        self.prestretch
+    }
+
+    /// `eps_0` `eps_r`, F/m.
+    pub(crate) fn permittivity(&self) -> f64 {
+        self.permittivity
     }
 
     /// `C_2`, F: Eq. (1) at stage 2 of Table 1.
@@ -105,6 +120,16 @@ impl Membrane {
     /// Thickness `h_3`, m, at `deflection`, m: Table 1, constant volume.
     pub fn thickness_at(&self, deflection: f64) -> f64 {
         self.thickness / self.area_ratio(deflection)
+    }
+
+    /// lambda sqrt(`A_3` / `A_2`): the stretch, equal in both directions, of the area at `deflection`, m.
+    pub fn stretch(&self, deflection: f64) -> f64 {
+        self.prestretch * self.area_ratio(deflection).sqrt()
+    }
+
+    /// U / `h_3`, V/m: the electric field at `deflection`, m, under `voltage`, V.
+    pub fn field(&self, deflection: f64, voltage: f64) -> f64 {
+        voltage / self.thickness_at(deflection)
     }
 
     /// Capacitance, F, at `deflection`, m: Eq. (1) with constant volume, C = `C_2` (A / `A_2`)^2.

@@ -139,8 +139,7 @@ fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, c
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;
     let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratios.best)?;
-    let mut warnings = harvester.warnings();
-    warnings.extend(voltage_warning(&settings, harvester.bias_voltage()));
+    let voltage_warning = voltage_warning(&settings, harvester.bias_voltage());
     let circuits = circuits(backend, &scenario, &settings, ratios, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let master = Master::new(harvester, circuits, &scenario, coupling)?;
@@ -154,7 +153,8 @@ fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, c
     let outcome = outcome
         .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
-    let Outcome { mechanics, circuits: samples, coupling, balance } = outcome;
+    let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
+    warnings.extend(voltage_warning);
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let svg = picture::cosim(&trace, &scenario)?;

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::{Verdict, format, output, packaging, picture, settings};
-use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Trace};
+use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
 use crate::report::{self, Column, Report, Section};
 use crate::scenario::{Scenario, Setting};
 
@@ -75,22 +75,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let fmu = packaging::open("VibroImpactHarvester")?;
     let (mechanical, electrical) = settings::split(&fmu, &scenario)?;
     let harvester = HarvesterFmu::new(&fmu, &scenario, &mechanical)?;
-    let mut warnings = harvester.warnings();
     let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
-    if !circuit.is_empty() {
-        warnings.push(format!("{} left out: simulate runs no circuit, cosim does", circuit.join(", ")));
-    }
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
     let mut recorder = CsvRecorder::create(&output::partial(&csv), false)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
     let master = Master::new(harvester, Vec::new(), &scenario, Coupling::default())?;
-    let mechanics = master.run(&mut [&mut recorder, &mut trace, &mut bar])?.mechanics;
+    let Outcome { mechanics, mut warnings, .. } = master.run(&mut [&mut recorder, &mut trace, &mut bar])?;
+    if !circuit.is_empty() {
+        warnings.push(format!("{} left out: simulate runs no circuit, cosim does", circuit.join(", ")));
+    }
     bar.finish();
     recorder.finish()?;
     std::fs::rename(output::partial(&csv), &csv).with_context(|| format!("cannot write {}", csv.display()))?;
-    let files = write_files(&folder, &csv, &trace, &scenario, &mechanics)?;
+    let files = write_files(&folder, &csv, &trace, &scenario, &mechanics, &warnings)?;
     let result = RunOutput::new(&scenario, mechanics, &warnings, &files);
     let json = serde_json::to_string_pretty(&result)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -109,11 +108,13 @@ fn write_files(
     trace: &Trace,
     scenario: &Scenario,
     mechanics: &MechanicsSummary,
+    warnings: &[String],
 ) -> anyhow::Result<Vec<PathBuf>> {
     let svg = picture::simulate(trace, scenario)?;
     let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
     output::write(&figure, &svg)?;
-    let table = report_table(scenario, mechanics);
+    let result = Section::new("Result").table(report_table(scenario, mechanics));
+    let result = warnings.iter().cloned().fold(result, Section::warning);
     let page = Report::new(
         format!("Simulation of {}", scenario.name),
         format!(
@@ -123,7 +124,7 @@ fn write_files(
     )
     .command(output::command_line())
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
-    .section(Section::new("Result").table(table))
+    .section(result)
     .section(Section::new("Motion, capacitances and gains").figure(svg, figure_caption()));
     output::write(&html, &report::render_html(&page)?)?;
     Ok(vec![csv.to_owned(), figure, html, folder.join("result.json")])

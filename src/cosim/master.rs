@@ -40,6 +40,8 @@ pub struct Outcome {
     pub coupling: CouplingSummary,
     /// The energy balance of harvester and first circuit, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
+    /// What the harvester warned of, before and in the run.
+    pub warnings: Vec<String>,
 }
 
 /// The master, ready to run.
@@ -158,7 +160,8 @@ impl Master {
         let balance = energies
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(&start, &end, &circuit.ledger));
-        Ok(Outcome { mechanics, circuits: point.circuits, coupling, balance })
+        let warnings = self.harvester.warnings();
+        Ok(Outcome { mechanics, circuits: point.circuits, coupling, balance, warnings })
     }
 
     fn start(&self) -> Result<Point, CosimError> {

@@ -2,7 +2,7 @@
 
 use videg_circuit::formulas;
 
-use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Row};
+use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome, Row};
 use crate::fmi::Fmu;
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 use crate::scenario::{Scenario, Setting};
@@ -54,14 +54,13 @@ impl Case {
         bar: &mut dyn Observer,
     ) -> Result<Self, NgspiceError> {
         let mut harvester = HarvesterFmu::new(fmu, scenario, settings)?;
-        let warnings = harvester.warnings();
         let table = CapacitanceTable::from_harvester(&mut harvester, scenario.until, Self::TABLE_ERROR)?;
         let table = refined(&table, scenario.step.max(scenario.until / Self::GRID))?;
         let harvester = HarvesterFmu::new(fmu, scenario, settings)?;
         let bias_voltage = harvester.bias_voltage();
         let mut log = ImpactLog { bias: bias_voltage, gain: 0.0, impacts: Vec::new() };
         let master = Master::new(harvester, Vec::new(), scenario, Coupling::default())?;
-        let mechanics = master.run(&mut [&mut log, bar])?.mechanics;
+        let Outcome { mechanics, warnings, .. } = master.run(&mut [&mut log, bar])?;
         let least = |column: &[f64]| column.iter().copied().fold(f64::INFINITY, f64::min);
         let rest = [least(table.left()), least(table.right())];
         Ok(Self { table, mechanics, impacts: log.impacts, rest, bias_voltage, warnings })

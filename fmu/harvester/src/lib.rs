@@ -5,6 +5,7 @@
 //! in `variables.rs`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
+mod limits;
 mod sensitivity;
 mod slave;
 mod state;

@@ -4,8 +4,9 @@ use fmi2_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Parameters, PulseShape, Side};
+use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Occurrence, Parameters, Peak, PulseShape, Side};
 
+use crate::limits::Warned;
 use crate::variables::VARIABLES;
 
 /// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
@@ -23,6 +24,7 @@ pub struct Harvester {
     pub(crate) start_time: f64,
     /// The model runs under an integrator of the importer's: model exchange.
     pub(crate) placed: bool,
+    pub(crate) warned: Warned,
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, ModelError>,
 }
@@ -78,6 +80,7 @@ impl Slave for Harvester {
             voltage_rates: [0.0; 2],
             start_time: 0.0,
             placed: false,
+            warned: Warned::default(),
             model: Model::new(&parameters, 0.0),
         }
     }
@@ -114,18 +117,24 @@ impl Slave for Harvester {
         }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let (voltages, voltage_rates) = (self.voltages, core::mem::take(&mut self.voltage_rates));
+        let warned = self.warned.clone();
         let model = self.running()?;
+        let membrane = *model.membrane();
         let events = log.is_enabled(LogCategory::Events);
         let mut number = model.totals().impacts;
         let advanced = model
             .set_external_force(force, rate)
             .and_then(|()| model.set_voltages(voltages, voltage_rates))
             .and_then(|()| {
-                model.advance_with(t + h, |impact| {
-                    number += 1;
-                    if events {
-                        log.event(describe(number, impact));
+                warned.check_present(model, log);
+                model.advance_with(t + h, |shown| match shown {
+                    Occurrence::Impact(impact) => {
+                        number += 1;
+                        if events {
+                            log.event(describe(number, impact));
+                        }
                     }
+                    Occurrence::Peak(peak) => warned.check(&membrane, peak, log),
                 })
             });
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
@@ -149,13 +158,17 @@ impl Slave for Harvester {
     }
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
+        let (warned, voltages) = (self.warned.clone(), self.voltages);
         let model = self.running()?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if model.totals().impacts > impacts {
             let side = if model.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
             let (time, totals, rests) = (model.time(), model.totals(), model.resting().is_some());
-            log.event(describe(totals.impacts, &Impact { time, side, speed: totals.last_speed, rests }));
+            let speed = totals.last_speed;
+            log.event(describe(totals.impacts, &Impact { time, side, speed, rests }));
+            let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
+            warned.check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }

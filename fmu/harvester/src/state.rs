@@ -6,6 +6,7 @@ use videg_model::{
     Side, Snapshot, Totals,
 };
 
+use crate::limits::Warned;
 use crate::slave::Harvester;
 
 impl Harvester {
@@ -40,6 +41,7 @@ impl Harvester {
             voltage_rates,
             start_time,
             placed,
+            warned: Warned::default(),
             model: Model::new(&Parameters::default(), 0.0),
         };
         slave.model = if from.bool()? {

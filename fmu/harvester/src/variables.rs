@@ -295,6 +295,39 @@ static ENERGIES: [V; 8] = [
         .get(|slave| slave.read(videg_model::Harvester::contact_time)),
 ];
 
+/// What the film of a membrane bears: local variables, of which no directional derivatives are asked. `U` is the voltage at
+/// the communication point.
+macro_rules! membrane_loads {
+    ($side:expr, $field:literal, $stretch:literal, $voltage:literal, $which:literal) => {
+        [
+            V::output($field, "V/m", concat!("U / h_3: electric field in the ", $which, " membrane, Table 1"))
+                .local()
+                .nominal(1e7)
+                .depends_on(&[$voltage])
+                .get(|slave| {
+                    let voltage = slave.voltages[$side.index()];
+                    slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
+                }),
+            V::output(
+                $stretch,
+                "1",
+                concat!(
+                    "lambda sqrt(A_3 / A_2): stretch of the ",
+                    $which,
+                    " membrane's film, as if equal in both directions"
+                ),
+            )
+            .local()
+            .depends_on(&[])
+            .get(|slave| slave.read(|model| model.membrane().stretch(model.deflection($side).value))),
+        ]
+    };
+}
+
+static LEFT_LOADS: [V; 2] = membrane_loads!(Side::Left, "left.electricField", "left.stretch", "left.voltage", "left");
+static RIGHT_LOADS: [V; 2] =
+    membrane_loads!(Side::Right, "right.electricField", "right.stretch", "right.voltage", "right");
+
 /// Time derivatives of the continuous states, for model exchange.
 static DERIVATIVES: [V; 4] = [
     V::output("der(cylinder.position)", "m/s", "z_M': time derivative of cylinder.position")
@@ -333,8 +366,22 @@ const COUNT: usize = PARAMETERS.len()
     + MOTION.len()
     + EVENTS.len()
     + ENERGIES.len()
+    + LEFT_LOADS.len()
+    + RIGHT_LOADS.len()
     + DERIVATIVES.len();
 
 /// The whole table; the value reference of a variable is its index.
-pub static VARIABLES: [V; COUNT] =
-    concat(&[&PARAMETERS, &CHOICES, &CALCULATED, &INPUTS, &LEFT, &RIGHT, &MOTION, &EVENTS, &ENERGIES, &DERIVATIVES]);
+pub static VARIABLES: [V; COUNT] = concat(&[
+    &PARAMETERS,
+    &CHOICES,
+    &CALCULATED,
+    &INPUTS,
+    &LEFT,
+    &RIGHT,
+    &MOTION,
+    &EVENTS,
+    &ENERGIES,
+    &LEFT_LOADS,
+    &RIGHT_LOADS,
+    &DERIVATIVES,
+]);

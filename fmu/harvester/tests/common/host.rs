@@ -24,6 +24,7 @@ symbols! {
     fmi2GetInteger(fmi2Component, *const fmi2ValueReference, usize, *mut fmi2Integer) -> fmi2Status;
     fmi2GetBoolean(fmi2Component, *const fmi2ValueReference, usize, *mut fmi2Boolean) -> fmi2Status;
     fmi2SetReal(fmi2Component, *const fmi2ValueReference, usize, *const fmi2Real) -> fmi2Status;
+    fmi2SetInteger(fmi2Component, *const fmi2ValueReference, usize, *const fmi2Integer) -> fmi2Status;
     fmi2GetFMUstate(fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
     fmi2SetFMUstate(fmi2Component, fmi2FMUstate) -> fmi2Status;
     fmi2FreeFMUstate(fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
@@ -178,7 +179,19 @@ impl Host {
     }
 
     pub fn step(&self, t: f64, h: f64) {
-        ok(unsafe { fmi2DoStep(self.component, t, h, 0) });
+        self.step_warns(t, h);
+    }
+
+    /// Whether a step warns.
+    pub fn step_warns(&self, t: f64, h: f64) -> bool {
+        let status = unsafe { fmi2DoStep(self.component, t, h, 0) };
+        ok(status);
+        status == fmi2Warning
+    }
+
+    pub fn choose(&self, name: &str, item: i32) {
+        let reference = references(&[name]);
+        ok(unsafe { fmi2SetInteger(self.component, reference.as_ptr(), 1, &raw const item) });
     }
 
     /// d unknown / d known, or the status if that is no good.

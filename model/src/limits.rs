@@ -1,0 +1,148 @@
+//! What VHB 4910 stands: bounds of stretch, electric field and tension. Nothing in the motion depends on them.
+
+use core::fmt;
+
+use crate::membrane::Membrane;
+
+/// Stretch, equal in both directions and counted from the unstretched film, beyond which the film ruptures. The value
+/// commonly quoted for VHB; rupture as a limit of generators: Koh, Keplinger, Li, Bauer and Suo 2011, IEEE/ASME
+/// Transactions on Mechatronics 16, 33.
+const RUPTURE_STRETCH: f64 = 6.0;
+
+/// Breakdown field of the unstretched film, V/m, as commonly quoted from Kofod, Sommer-Larsen, Kornbluh and Pelrine
+/// 2003, Journal of Intelligent Material Systems and Structures 14, 787.
+const BREAKDOWN_UNSTRETCHED: f64 = 18e6;
+
+/// Breakdown field, V/m, of the film strained by 500 % in both directions, a stretch of [`BREAKDOWN_STRETCH`]; from the
+/// same place. No film is credited with more.
+const BREAKDOWN_STRETCHED: f64 = 218e6;
+
+/// Stretch at which [`BREAKDOWN_STRETCHED`] holds.
+const BREAKDOWN_STRETCH: f64 = 6.0;
+
+/// Shear modulus mu of the neo-Hookean film, Pa. The value commonly quoted for VHB; loss of tension as a limit of
+/// generators: Koh et al. 2011, as above.
+const SHEAR_MODULUS: f64 = 68e3;
+
+/// A bound of the material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// Area ratio `A_3` / `A_2`: the film ruptures.
+    Area,
+    /// Electric field `U` / `h_3`, V/m: the film breaks down.
+    Field,
+    /// Maxwell stress, Pa: the film wrinkles, as no tension is left.
+    Tension,
+}
+
+impl Limit {
+    /// Name of the quantity, its unit, and the bound's source.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Area => ["area ratio", "", "what VHB 4910 stands (Koh et al. 2011)"],
+            Self::Field => ["electric field", " V/m", "what VHB 4910 stands at this stretch (Kofod et al. 2003)"],
+            Self::Tension => {
+                ["Maxwell stress", " Pa", "the elastic stress of VHB 4910: loss of tension (Koh et al. 2011)"]
+            }
+        }
+    }
+}
+
+/// A quantity that is above its bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Excess {
+    /// Which.
+    pub limit: Limit,
+    /// Its value, in the unit of the limit.
+    pub value: f64,
+    /// The bound.
+    pub bound: f64,
+    /// When, s.
+    pub time: f64,
+}
+
+impl fmt::Display for Excess {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { limit, value, bound, time } = self;
+        let [name, unit, source] = limit.words();
+        let [value, bound] = [value, bound].map(|number| match limit {
+            Limit::Area => format!("{number:.3}"),
+            Limit::Field | Limit::Tension => format!("{number:.3e}"),
+        });
+        write!(out, "{name} {value}{unit} at {time:.6} s is above {bound}{unit}, {source}")
+    }
+}
+
+impl Membrane {
+    /// Limits that are exceeded at `deflection`, m, under `voltage`, V, at `time`, s.
+    ///
+    /// The breakdown field is the power of the stretch through its two measured values: that it grows as a power is the
+    /// finding of Huang, Shian, Diebold, Suo and Clarke 2012, Applied Physics Letters 101, 122905. Tension is lost where
+    /// the Maxwell stress eps E^2 is above mu (lambda^2 - lambda^-4).
+    pub fn excesses(&self, deflection: f64, voltage: f64, time: f64) -> impl Iterator<Item = Excess> {
+        let (stretch, field) = (self.stretch(deflection), self.field(deflection, voltage).abs());
+        let exceeding = [
+            (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch()).powi(2)),
+            // Each step asks: no power is taken where even the unstretched film stands the field.
+            (Limit::Field, field, if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY }),
+            (Limit::Tension, self.permittivity() * field * field, elastic_stress(stretch)),
+        ];
+        let above = exceeding.into_iter().filter(|(_, value, bound)| value > bound);
+        above.map(move |(limit, value, bound)| Excess { limit, value, bound, time })
+    }
+}
+
+/// Breakdown field at `stretch`, V/m.
+fn breakdown_field(stretch: f64) -> f64 {
+    if stretch >= BREAKDOWN_STRETCH {
+        return BREAKDOWN_STRETCHED;
+    }
+    let exponent = (BREAKDOWN_STRETCHED / BREAKDOWN_UNSTRETCHED).ln() / BREAKDOWN_STRETCH.ln();
+    BREAKDOWN_UNSTRETCHED * stretch.powf(exponent)
+}
+
+/// Stress of the neo-Hookean film at `stretch` in both directions, Pa.
+fn elastic_stress(stretch: f64) -> f64 {
+    SHEAR_MODULUS * (stretch.powi(2) - stretch.powi(-4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{Parameters, VACUUM_PERMITTIVITY};
+    use approx::assert_relative_eq;
+
+    fn exceeded(membrane: &Membrane, deflection: f64, voltage: f64) -> Vec<Limit> {
+        membrane.excesses(deflection, voltage, 0.0).map(|excess| excess.limit).collect()
+    }
+
+    #[test]
+    fn the_breakdown_field_has_its_measured_values_and_grows_no_further() {
+        assert_relative_eq!(breakdown_field(1.0), 18e6);
+        assert_relative_eq!(breakdown_field(6.0), 218e6, max_relative = 1e-14); // rounding of ln, exp
+        assert!(breakdown_field(2.0) > 18e6 && breakdown_field(2.0) < 218e6);
+        assert_eq!(breakdown_field(12.0), breakdown_field(6.0));
+    }
+
+    #[test]
+    fn each_limit_is_exceeded_just_above_its_bound_only() {
+        let membrane = Membrane::new(&Parameters::default());
+        // lambda = 2, h_2 = 0.25 mm
+        let breakdown = breakdown_field(2.0) * 0.25e-3;
+        assert_eq!(exceeded(&membrane, 0.0, 0.999 * breakdown), []);
+        assert_eq!(exceeded(&membrane, 0.0, -1.001 * breakdown), [Limit::Field]);
+        let slack = (68e3 * (4.0 - 1.0 / 16.0) / (VACUUM_PERMITTIVITY * 3.4)).sqrt() * 0.25e-3;
+        assert_eq!(exceeded(&membrane, 0.0, 0.999 * slack), [Limit::Field]);
+        assert_eq!(exceeded(&membrane, 0.0, 1.001 * slack), [Limit::Field, Limit::Tension]);
+        let deepest = (1..10_000).map(|k| 1e-5 * f64::from(k)).find(|x| membrane.area_ratio(*x) > 9.0).unwrap();
+        assert_eq!(exceeded(&membrane, deepest, 0.0), [Limit::Area]);
+        assert_eq!(exceeded(&membrane, deepest - 1e-5, 0.0), []);
+    }
+
+    #[test]
+    fn a_warning_names_quantity_value_time_bound_and_source() {
+        let excess = Excess { limit: Limit::Area, value: 40.1, bound: 9.0, time: 12.3 };
+        let text = "area ratio 40.100 at 12.300000 s is above 9.000, what VHB 4910 stands (Koh et al. 2011)";
+        assert_eq!(excess.to_string(), text);
+    }
+}
