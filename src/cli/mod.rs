@@ -21,6 +21,10 @@ mod picture;
 mod progress;
 mod settings;
 mod simulate;
+mod simulate_both;
+mod simulate_both_report;
+mod simulate_contacts;
+mod simulate_law;
 mod ssp;
 mod worker;
 

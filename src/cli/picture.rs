@@ -5,12 +5,13 @@ use crate::report::{Figure, Panel, ReportError, Series, render_svg};
 use crate::scenario::Scenario;
 
 /// Points of one curve: time and value.
-type Points = Vec<(f64, f64)>;
+pub type Points = Vec<(f64, f64)>;
 
 /// Length of the detail, s: some periods of the paper's 2 Hz.
 pub const DETAIL: f64 = 2.0;
 
-fn points(trace: &[TracePoint], value: impl Fn(&TracePoint) -> f64) -> Points {
+/// One curve of a trace.
+pub fn points(trace: &[TracePoint], value: impl Fn(&TracePoint) -> f64) -> Points {
     trace.iter().map(|point| (point.time, value(point))).collect()
 }
 
@@ -54,11 +55,13 @@ impl Mechanics {
     }
 }
 
-fn detail_range(trace: &Trace, scenario: &Scenario) -> [f64; 2] {
+/// Ends of the detail, s.
+pub fn detail_range(trace: &Trace, scenario: &Scenario) -> [f64; 2] {
     [trace.detail.first().map_or(0.0, |point| point.time), scenario.until]
 }
 
-fn title(scenario: &Scenario) -> String {
+/// Title of the figure.
+pub fn title(scenario: &Scenario) -> String {
     format!("{}: {}", scenario.name, scenario.description)
 }
 

@@ -8,8 +8,11 @@ use serde::Serialize;
 
 use super::options::RunOptions;
 use super::progress::TimeBar;
-use super::{Verdict, format, output, packaging, picture, settings};
+use super::simulate_contacts::Contacts;
+use super::simulate_law::{self, Law};
+use super::{Verdict, format, output, packaging, picture, settings, simulate_both};
 use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
+use crate::fmi::Fmu;
 use crate::report::{self, Column, Report, Section};
 use crate::scenario::{Scenario, Setting};
 
@@ -18,6 +21,10 @@ use crate::scenario::{Scenario, Setting};
 pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,
+    /// Law of the contact between ball and membrane, the same as --set contact.law=LAW; both: run one after the other and
+    /// compare [default: impulsive]
+    #[arg(long, value_enum)]
+    law: Option<Law>,
 }
 
 /// What `--json` says of every run: what was run, and the mechanics.
@@ -68,27 +75,29 @@ struct Paper {
     average_power: Option<f64>,
 }
 
+/// A run of the harvester alone.
+pub struct Mechanics {
+    /// What it came to.
+    pub summary: MechanicsSummary,
+    /// What a figure shows.
+    pub trace: Trace,
+    /// How long the membranes were deflected, and how far.
+    pub contacts: Contacts,
+    /// What the user should know before believing the numbers.
+    pub warnings: Vec<String>,
+}
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
-    let scenario = options.scenario()?;
+    let scenario = simulate_law::scenario(arguments.law, options)?;
+    if arguments.law == Some(Law::Both) {
+        return simulate_both::run(options, &scenario);
+    }
     let fmu = packaging::open("VibroImpactHarvester")?;
-    let (mechanical, electrical) = settings::split(&fmu, &scenario)?;
-    let harvester = HarvesterFmu::new(&fmu, &scenario, &mechanical)?;
-    let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let mut recorder = CsvRecorder::create(&output::partial(&csv), false)?;
-    let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
-    let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
-    let master = Master::new(harvester, Vec::new(), &scenario, Coupling::default())?;
-    let Outcome { mechanics, mut warnings, .. } = master.run(&mut [&mut recorder, &mut trace, &mut bar])?;
-    if !circuit.is_empty() {
-        warnings.push(format!("{} left out: simulate runs no circuit, cosim does", circuit.join(", ")));
-    }
-    bar.finish();
-    recorder.finish()?;
-    std::fs::rename(output::partial(&csv), &csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    let Mechanics { summary: mechanics, trace, warnings, .. } = follow(&fmu, &scenario, &csv)?;
     let files = write_files(&folder, &csv, &trace, &scenario, &mechanics, &warnings)?;
     let result = RunOutput::new(&scenario, mechanics, &warnings, &files);
     let json = serde_json::to_string_pretty(&result)?;
@@ -100,6 +109,28 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     }
     output::warn(&warnings);
     Ok(Verdict::Passed)
+}
+
+/// Runs the harvester alone and writes the time series to `csv`.
+pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mechanics> {
+    let (mechanical, electrical) = settings::split(fmu, scenario)?;
+    let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
+    let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
+    let mut recorder = CsvRecorder::create(&output::partial(csv), false)?;
+    let detail = picture::DETAIL.min(scenario.until);
+    let mut trace = Trace::new(scenario.until, detail);
+    let mut contacts = Contacts::new(scenario.until - detail);
+    let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
+    let master = Master::new(harvester, Vec::new(), scenario, Coupling::default())?;
+    let Outcome { mechanics: summary, mut warnings, .. } =
+        master.run(&mut [&mut recorder, &mut trace, &mut contacts, &mut bar])?;
+    if !circuit.is_empty() {
+        warnings.push(format!("{} left out: simulate runs no circuit, cosim does", circuit.join(", ")));
+    }
+    bar.finish();
+    recorder.finish()?;
+    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
+    Ok(Mechanics { summary, trace, contacts, warnings })
 }
 
 fn write_files(

@@ -53,6 +53,11 @@ impl HarvesterSample {
         [self.0[0], self.0[1]]
     }
 
+    /// Deflections of the membranes, left and right, m.
+    pub fn deflection(&self) -> [f64; 2] {
+        [self.0[2], self.0[3]]
+    }
+
     /// `z_M` - `z_m`, m.
     pub fn relative_displacement(&self) -> f64 {
         self.0[10]

@@ -1,0 +1,102 @@
+//! `videg simulate --law both`: the harvester FMU under the impulsive and under the compliant law, side by side.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use serde::Serialize;
+
+use super::options::RunOptions;
+use super::simulate::{Mechanics, RunOutput, file_list, follow, heading};
+use super::simulate_contacts::ContactSummary;
+use super::simulate_law::Law;
+use super::{Verdict, output, packaging, simulate_both_report};
+use crate::cosim::MechanicsSummary;
+use crate::fmi::Fmu;
+use crate::scenario::Scenario;
+
+/// What a law comes to.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct LawResult {
+    /// Impacts and gains.
+    #[serde(flatten)]
+    pub mechanics: MechanicsSummary,
+    /// Contacts.
+    #[serde(flatten)]
+    pub contacts: ContactSummary,
+}
+
+impl LawResult {
+    fn new(run: &Mechanics) -> Self {
+        Self { mechanics: run.summary, contacts: run.contacts.summary() }
+    }
+}
+
+/// Both laws, by name.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Laws {
+    /// Impacts take no time.
+    pub impulsive: LawResult,
+    /// Impacts take time.
+    pub compliant: LawResult,
+}
+
+/// What `--json` says: the run under the impulsive law, and both laws.
+#[derive(Serialize)]
+struct Output<'a> {
+    #[serde(flatten)]
+    run: RunOutput<'a>,
+    laws: &'a Laws,
+}
+
+/// Runs both laws.
+pub fn run(options: &RunOptions, scenario: &Scenario) -> anyhow::Result<Verdict> {
+    let fmu = packaging::open("VibroImpactHarvester")?;
+    let folder = output::folder(options.output.as_deref(), "simulate", scenario)?;
+    let (impulsive, impulsive_csv) = under(Law::Impulsive, &fmu, scenario, &folder)?;
+    let (compliant, compliant_csv) = under(Law::Compliant, &fmu, scenario, &folder)?;
+    let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
+    let warnings = warnings([&impulsive, &compliant], &laws);
+    let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
+    let svg = simulate_both_report::figure([&impulsive, &compliant], scenario)?;
+    output::write(&figure, &svg)?;
+    output::write(&html, &simulate_both_report::html(scenario, &laws, &warnings, svg)?)?;
+    let files = [impulsive_csv, compliant_csv, figure, html, folder.join("result.json")];
+    let run = RunOutput::new(scenario, impulsive.summary, &warnings, &files);
+    let json = serde_json::to_string_pretty(&Output { run, laws: &laws })?;
+    output::write(&folder.join("result.json"), &json)?;
+    if options.json {
+        output::print(&json)?;
+    } else {
+        let table = simulate_both_report::text_table(&laws);
+        let words = simulate_both_report::words(scenario, &laws).join("\n");
+        output::print(&[heading("simulate", scenario), table, words, file_list(&files)].join("\n\n"))?;
+    }
+    output::warn(&warnings);
+    Ok(Verdict::Passed)
+}
+
+/// The run under `law`, and its time series.
+fn under(law: Law, fmu: &Fmu, scenario: &Scenario, folder: &Path) -> anyhow::Result<(Mechanics, PathBuf)> {
+    let mut scenario = scenario.clone();
+    scenario.settings.push(law.setting());
+    let csv = folder.join(format!("timeseries-{}.csv", law.name()));
+    let run = follow(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
+    Ok((run, csv))
+}
+
+/// Warnings of both runs, those that they share once, and what durations do not tell.
+fn warnings([impulsive, compliant]: [&Mechanics; 2], laws: &Laws) -> Vec<String> {
+    let new = compliant.warnings.iter().filter(|warning| !impulsive.warnings.contains(warning));
+    let shared = impulsive.warnings.iter().chain(new).cloned();
+    let overlaps = [("impulsive", &laws.impulsive), ("compliant", &laws.compliant)].map(|(law, found)| {
+        let (impacts, contacts) = (found.mechanics.impacts, found.contacts.contacts);
+        // The last contact of each membrane may not have ended.
+        (i64::from(impacts) > i64::from(contacts) + 2).then(|| {
+            format!(
+                "{law} law: {contacts} contacts ended in {impacts} impacts, since pulses overlap (the slower an impact, the \
+                 longer its pulse); the durations are those of series of impacts, not of single ones"
+            )
+        })
+    });
+    shared.chain(overlaps.into_iter().flatten()).collect()
+}

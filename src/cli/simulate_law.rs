@@ -1,0 +1,62 @@
+//! `--law` of `videg simulate`.
+
+use clap::ValueEnum;
+
+use super::options::RunOptions;
+use crate::scenario::{Scenario, Setting};
+
+/// The variable that the option stands for.
+const VARIABLE: &str = "contact.law";
+
+/// Laws to choose from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Law {
+    /// An impact takes no time, Eqs. (10) and (11)
+    Impulsive,
+    /// The membrane is a nonlinear spring with losses
+    Compliant,
+    /// One after the other, side by side
+    Both,
+}
+
+impl Law {
+    /// Name of the item of `contact.law`, and of the option.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Impulsive => "impulsive",
+            Self::Compliant => "compliant",
+            Self::Both => "both",
+        }
+    }
+
+    /// The setting that chooses the law.
+    pub fn setting(self) -> Setting {
+        Setting { name: VARIABLE.to_owned(), value: self.name().to_owned() }
+    }
+
+    /// Whether `value` of `contact.law`, a name or a number, means this law.
+    fn is(self, value: &str) -> bool {
+        match self {
+            Self::Impulsive => ["impulsive", "1"].contains(&value),
+            Self::Compliant => ["compliant", "2"].contains(&value),
+            Self::Both => false,
+        }
+    }
+}
+
+/// What the options ask for under `law`; with both laws, what is common to them.
+///
+/// # Errors
+/// Whatever in the options makes no sense, or settings that ask for another law.
+pub fn scenario(law: Option<Law>, options: &RunOptions) -> anyhow::Result<Scenario> {
+    let scenario = options.scenario()?;
+    let Some(law) = law else { return Ok(scenario) };
+    match scenario.settings.iter().rfind(|setting| setting.name == VARIABLE) {
+        Some(Setting { value, .. }) if !law.is(value) => {
+            let name = law.name();
+            anyhow::bail!("--law {name}: {VARIABLE} = {value} is set as well; leave one of the two out")
+        }
+        None if law != Law::Both => Ok(options.scenario_with(vec![law.setting()])?),
+        _ => Ok(scenario),
+    }
+}
