@@ -155,6 +155,7 @@ fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, c
     std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
     warnings.extend(voltage_warning);
+    warnings.extend(coupling_warning(&coupling));
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let svg = picture::cosim(&trace, &scenario)?;
@@ -169,6 +170,21 @@ pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
         format!(
             "{name} = {supply} V differs from biasVoltage = {bias} V: Eqs. (12) to (15) are evaluated at the latter, the \
              circuit runs at the former"
+        )
+    })
+}
+
+/// A coupling that makes or loses more than this part of the energy moved deserves no trust in its surplus.
+const LARGEST_RESIDUAL: f64 = 1e-2;
+
+fn coupling_warning(coupling: &CouplingSummary) -> Option<String> {
+    let residual = coupling.relative_residual;
+    (residual > LARGEST_RESIDUAL).then(|| {
+        format!(
+            "the coupling makes or loses {:.1} % of the energy moved, more than {:.0} %: a smaller --step, or --adaptive, is \
+             needed to believe the energies",
+            100.0 * residual,
+            100.0 * LARGEST_RESIDUAL
         )
     })
 }
