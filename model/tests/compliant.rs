@@ -6,7 +6,7 @@ mod common;
 use approx::assert_relative_eq;
 use common::averages;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngSeed, TestRunner};
 use videg_model::{Case, ContactLaw, Harvester, Membrane, ModelError, Occurrence, Parameters, Side};
 
 fn compliant(p: Parameters) -> Parameters {
@@ -125,7 +125,8 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    // The same sets in every run: a failure shows on every machine.
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn the_energy_of_the_ball_balances_and_losses_never_fall(

@@ -131,13 +131,15 @@ impl Series {
     /// that no zero is missed.
     pub(super) fn first_fall(&self, scale: f64) -> Option<f64> {
         const NARROWEST: f64 = 1e-9;
-        let raised = self.plus(16.0 * f64::EPSILON * scale);
+        let rounding = 16.0 * f64::EPSILON * scale;
+        let raised = self.plus(rounding);
         let slope = raised.derivative();
         let (steepest, sharpest) = (slope.bound(), slope.derivative().bound());
         let mut intervals = vec![(-1.0, 1.0)];
         while let Some((from, to)) = intervals.pop() {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            if raised.value(middle) > steepest * half {
+            // A function that is nothing but rounding has no zero worth looking for: halving it would never end.
+            if raised.value(middle) + rounding >= steepest * half {
                 continue;
             }
             if slope.value(middle).abs() > sharpest * half || half < NARROWEST {
@@ -159,6 +161,14 @@ mod tests {
 
     fn fit(f: impl Fn(f64) -> f64) -> Series {
         GRID.fit(&GRID.nodes.map(f))
+    }
+
+    #[test]
+    fn a_function_of_rounding_has_no_fall_and_is_not_searched_for_ever() {
+        for f in [Series::constant(0.0), fit(|x| 1e-16 * (40.0 * x).sin()), fit(|x| -1e-16 * x)] {
+            assert_eq!(f.first_fall(1.0), None);
+        }
+        assert_eq!(Series::constant(0.0).first_fall(0.0), None);
     }
 
     #[test]
