@@ -51,10 +51,11 @@ class Program:
         return run.stdout.splitlines()
 
     def values(self, commands: list[str]) -> list[str]:
-        """The values that a new process reads, as written to the last bit; every call must be OK."""
+        """The values that a new process reads, as written to the last bit; a call may warn, of a membrane that tears."""
         lines = self.run(commands)
         statuses = [line for line in lines if line.startswith("status")]
-        assert len(statuses) == len(commands) and set(statuses) == {"status fmi2OK"}, lines
+        assert len(statuses) == len(commands), lines
+        assert set(statuses) <= {"status fmi2OK", "status fmi2Warning"}, lines
         return [line for line in lines if line.startswith("values")]
 
 
