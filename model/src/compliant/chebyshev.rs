@@ -27,6 +27,8 @@ pub(super) struct Grid {
     cosines: [Values; NODES],
     /// Values at the nodes of the double integral from -1, one row a node, against the values of the function.
     pub(super) double_integral: [Values; NODES],
+    /// What a series is on [-1, 0] and on [0, 1].
+    halves: [Half; 2],
 }
 
 pub(super) static GRID: LazyLock<Grid> = LazyLock::new(Grid::new);
@@ -37,7 +39,7 @@ impl Grid {
             core::array::from_fn(|k| (((j * k) % (2 * DEGREE)) as f64 * PI / DEGREE as f64).cos())
         });
         let nodes = core::array::from_fn(|j| (j as f64 * PI / DEGREE as f64).cos());
-        let mut grid = Self { nodes, cosines, double_integral: [[0.0; NODES]; NODES] };
+        let mut grid = Self { nodes, cosines, double_integral: [[0.0; NODES]; NODES], halves: [half(-1.0), half(1.0)] };
         for k in 0..NODES {
             let unit = core::array::from_fn(|j| if j == k { 1.0 } else { 0.0 });
             let integral = grid.fit(&unit).integral(1.0, 0.0).integral(1.0, 0.0);
@@ -125,33 +127,64 @@ impl Series {
         self.coefficients[DEGREE].abs() + self.coefficients[DEGREE - 1].abs()
     }
 
+    /// The function on one half of the interval, as a function on [-1, 1].
+    fn on(&self, half: &Half) -> Self {
+        let mut part = Self::default();
+        for (c, row) in self.coefficients.iter().zip(half) {
+            part.coefficients.iter_mut().zip(row).for_each(|(sum, weight)| *sum += c * weight);
+        }
+        part
+    }
+
     /// Where the function first falls below zero; falls by rounding, of numbers of the size `scale`, do not count.
     ///
     /// Intervals are halved until bounds of the derivatives show that the function has no zero there or is monotone, so
-    /// that no zero is missed.
+    /// that no zero is missed. The bounds are those of the part looked at: a function that starts as x^k has only one
+    /// part in doubt on each level.
     pub(super) fn first_fall(&self, scale: f64) -> Option<f64> {
         const NARROWEST: f64 = 1e-9;
         let rounding = 16.0 * f64::EPSILON * scale;
-        let raised = self.plus(rounding);
-        let slope = raised.derivative();
-        let (steepest, sharpest) = (slope.bound(), slope.derivative().bound());
-        let mut intervals = vec![(-1.0, 1.0)];
-        while let Some((from, to)) = intervals.pop() {
-            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let halves = &GRID.halves;
+        let mut parts = vec![(self.plus(rounding), -1.0, 1.0)];
+        while let Some((part, from, to)) = parts.pop() {
+            let slope = part.derivative();
             // A function that is nothing but rounding has no zero worth looking for: halving it would never end.
-            if raised.value(middle) + rounding >= steepest * half {
+            if part.value(0.0) + rounding >= slope.bound() {
                 continue;
             }
-            if slope.value(middle).abs() > sharpest * half || half < NARROWEST {
-                if raised.value(to) < 0.0 {
-                    return Some(bracketed_root(from, to, |x| (raised.value(x), slope.value(x))));
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            if slope.value(0.0).abs() > slope.derivative().bound() || half < NARROWEST {
+                if part.value(1.0) < 0.0 {
+                    return Some(middle + half * bracketed_root(-1.0, 1.0, |x| (part.value(x), slope.value(x))));
                 }
                 continue;
             }
-            intervals.extend([(middle, to), (from, middle)]);
+            parts.extend([(part.on(&halves[1]), middle, to), (part.on(&halves[0]), from, middle)]);
         }
         None
     }
+}
+
+/// The Chebyshev polynomials T_k((x - 1)/2) or T_k((x + 1)/2) as series in x, one row a k.
+type Half = [[f64; TERMS]; TERMS];
+
+/// T_k((x + `shift`)/2), by T_{k+1}(y) = 2 y T_k(y) - T_{k-1}(y).
+fn half(shift: f64) -> Half {
+    let mut half = [[0.0; TERMS]; TERMS];
+    half[0][0] = 1.0;
+    half[1][..2].copy_from_slice(&[0.5 * shift, 0.5]);
+    for k in 1..TERMS - 1 {
+        for j in 0..=k + 1 {
+            let below = match j {
+                0 => 0.0,
+                1 => half[k][0],
+                _ => 0.5 * half[k][j - 1],
+            };
+            let above = if j < k { 0.5 * half[k][j + 1] } else { 0.0 };
+            half[k + 1][j] = below + above + shift * half[k][j] - half[k - 1][j];
+        }
+    }
+    half
 }
 
 #[cfg(test)]
@@ -183,6 +216,29 @@ mod tests {
             let tau = 0.5 * (x + 1.0);
             let expected = 3.0 + 2.0 * tau + rate * (rate * ((0.7 * x).exp() - start) - start * tau);
             assert_relative_eq!(double.value(x), expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_halves_of_a_series_are_the_same_function() {
+        let series = fit(|x| (0.7 * x).exp()).integral(1.0, 0.0).integral(1.0, 0.0);
+        for k in 0..=20 {
+            let x = -1.0 + 0.1 * f64::from(k);
+            for (half, shift) in GRID.halves.iter().zip([-1.0, 1.0]) {
+                assert_relative_eq!(series.on(half).value(x), series.value(0.5 * (x + shift)), epsilon = 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn functions_that_start_flat_are_not_searched_for_long() {
+        for exponent in 1..=12 {
+            let far_below = fit(|x| 1e-6 * (x + 1.0).powi(exponent));
+            let before = std::time::Instant::now();
+            assert_eq!(far_below.first_fall(1.0), None);
+            assert!(before.elapsed().as_millis() < 20, "x^{exponent}");
+            let falling = fit(|x| (x + 1.0).powi(exponent) * (0.5 - x));
+            assert_relative_eq!(falling.first_fall(1.0).unwrap(), 0.5, epsilon = 1e-9);
         }
     }
 

@@ -84,6 +84,9 @@ impl Step {
         let forces = law.push_size(from.time) + (largest(&spring) + largest(&maxwell)) / law.mass();
         let scale = largest(&v) + FLOOR * length * forces;
         let error = length * push.tail() / DEGREE as f64 / scale.max(f64::MIN_POSITIVE);
+        if !error.is_finite() {
+            return Err(TooLong { proposal: 0.3 * length }); // forces overflow
+        }
         let proposal = length * (0.9 * (TOLERANCE / error).powf(1.0 / DEGREE as f64)).clamp(0.2, 4.0);
         if error > TOLERANCE {
             return Err(TooLong { proposal });
@@ -141,7 +144,8 @@ fn collocate(law: &Law<'_>, phase: Phase, from: &Point, half: f64, pushes: &Valu
             size = size.max(next.abs());
             x[j] = next;
         }
-        if !size.is_finite() {
+        // Overflowing forces can cancel to NaN, which no maximum shows.
+        if !x.iter().all(|x| x.is_finite()) {
             return None;
         }
         if change <= 4.0 * f64::EPSILON * size {
