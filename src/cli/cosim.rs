@@ -59,7 +59,7 @@ impl From<Order> for Method {
 
 /// What solves the circuit.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Backend {
+pub enum Backend {
     /// The exact solver, called directly
     Embedded,
     /// ngspice's shared library, in step with the harvester
@@ -134,7 +134,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 }
 
 /// Runs the co-simulation and writes the time series to `csv`.
-fn couple(backend: Backend, coupling: Coupling, fmu: &Fmu, scenario: Scenario, csv: &Path) -> anyhow::Result<Finished> {
+pub fn couple(
+    backend: Backend,
+    coupling: Coupling,
+    fmu: &Fmu,
+    scenario: Scenario,
+    csv: &Path,
+) -> anyhow::Result<Finished> {
     let (mechanical, of_circuit) = settings::split(fmu, &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;

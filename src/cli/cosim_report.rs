@@ -99,16 +99,21 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
     )
 }
 
+/// What the figure shows.
+pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
+    of the run; (d) energies of the first circuit since its start.";
+
+/// The energy table in an HTML report.
+pub fn table(finished: &Finished) -> Table {
+    let columns = headings(finished).into_iter().enumerate();
+    let columns = columns.map(|(k, heading)| if k == 0 { Column::words(heading) } else { Column::numbers(heading) });
+    cells(finished).into_iter().fold(Table::new(columns), Table::row)
+}
+
 /// The HTML report.
 pub fn html(finished: &Finished) -> Result<String, ReportError> {
     let scenario = &finished.scenario;
     let [from, to] = scenario.window;
-    let columns = headings(finished).into_iter().enumerate();
-    let mut energies =
-        Table::new(columns.map(|(k, heading)| if k == 0 { Column::words(heading) } else { Column::numbers(heading) }));
-    for cells in cells(finished) {
-        energies = energies.row(cells);
-    }
     let mut result = Section::new("Result").table(simulate::report_table(scenario, &finished.mechanics));
     for warning in &finished.warnings {
         result = result.warning(warning.clone());
@@ -120,12 +125,8 @@ pub fn html(finished: &Finished) -> Result<String, ReportError> {
     .command(output::command_line())
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(result)
-    .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies))
+    .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(table(finished)))
     .section(Section::new("Coupling").text(coupling_lines(finished)))
-    .section(Section::new("Motion, capacitances, voltages and energies").figure(
-        finished.svg.clone(),
-        "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds of the run; (d) \
-         energies of the first circuit since its start.",
-    ));
+    .section(Section::new("Motion, capacitances, voltages and energies").figure(finished.svg.clone(), FIGURE_CAPTION));
     report::render_html(&report)
 }

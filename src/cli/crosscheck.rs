@@ -18,6 +18,7 @@ use crate::crosscheck::{
     Agreement, Bench, Case, Check, Compared, Findings, Pulses, Solver, Sweep, Task, Values, checks, comparison_checks,
     conclusion, export, in_parallel,
 };
+use crate::fmi::Fmu;
 use crate::ngspice::{Elements, Ngspice, NgspiceError, Run, Waveforms};
 use crate::scenario::{Scenario, Setting};
 
@@ -143,14 +144,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     );
     let ngspice = Ngspice::find(None)?;
     let fmu = packaging::open("VibroImpactHarvester")?;
-    let (mechanical, electrical) = settings::split(&fmu, &scenario)?;
-    let mut bar = TimeBar::new(format!("{}: mechanics", scenario.name), scenario.until);
-    let case = Case::new(&fmu, &scenario, &mechanical, &mut bar)?;
-    bar.finish();
-    let circuit = electrical::resolve(&electrical, case.bias_voltage, case.best_ratio())?;
-    Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth())?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
-    let finished = solve(scenario, case, circuit, &ngspice, arguments.sweep)?;
+    let finished = follow(&fmu, scenario, &ngspice, arguments.sweep)?;
     let mut written = files::write(&folder, &finished)?;
     if let Some(folder) = &arguments.export {
         written.extend(files::export(folder, &finished)?);
@@ -161,6 +156,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     output::warn(&finished.warnings);
     let failed = finished.checks.iter().any(Check::failed);
     Ok(if failed { Verdict::Failed } else { Verdict::Passed })
+}
+
+/// Runs the mechanics of `scenario`, and its circuit in every solver.
+pub fn follow(fmu: &Fmu, scenario: Scenario, ngspice: &Ngspice, sweep: bool) -> anyhow::Result<Finished> {
+    let (mechanical, electrical) = settings::split(fmu, &scenario)?;
+    let mut bar = TimeBar::new(format!("{}: mechanics", scenario.name), scenario.until);
+    let case = Case::new(fmu, &scenario, &mechanical, &mut bar)?;
+    bar.finish();
+    let circuit = electrical::resolve(&electrical, case.bias_voltage, case.best_ratio())?;
+    Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth())?;
+    solve(scenario, case, circuit, ngspice, sweep)
 }
 
 /// What one task finds out.

@@ -13,6 +13,15 @@ use crate::crosscheck::{Compared, Curve, Solver, export as folder_for_ngspice};
 
 /// Writes everything into `folder`; the list has a place for `result.json`, which is written last.
 pub fn write(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {
+    let (mut written, figures) = write_data(folder, finished)?;
+    let html = folder.join("report.html");
+    output::write(&html, &page::html(finished, figures)?)?;
+    written.extend([html, folder.join("result.json")]);
+    Ok(written)
+}
+
+/// Writes data and figures into `folder`; returns the files, and the figures as SVG.
+pub fn write_data(folder: &Path, finished: &Finished) -> anyhow::Result<(Vec<PathBuf>, Vec<String>)> {
     let mut written = vec![folder.join("waveforms.csv"), folder.join("checks.csv"), folder.join("impacts.csv")];
     waveforms(&written[0], finished)?;
     checks(&written[1], finished)?;
@@ -27,10 +36,7 @@ pub fn write(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>>
         output::write(&svg, &figures[1])?;
         written.extend([csv, svg]);
     }
-    let html = folder.join("report.html");
-    output::write(&html, &page::html(finished, figures)?)?;
-    written.extend([html, folder.join("result.json")]);
-    Ok(written)
+    Ok((written, figures))
 }
 
 /// Writes rows into a file that appears when it is whole.

@@ -195,6 +195,17 @@ fn html_table(headings: &[impl AsRef<str>], words: &[usize], rows: Vec<Vec<Strin
 /// The HTML report; `figures` are the overlay and, if there is a sweep, that of the sweep.
 pub fn html(finished: &Finished, figures: Vec<String>) -> Result<String, ReportError> {
     let scenario = &finished.scenario;
+    let report = Report::new(
+        format!("Crosscheck of {}", scenario.name),
+        format!("{}; 0 to {} s; circuit: {}.", scenario.description, scenario.until, finished.label),
+    )
+    .command(output::command_line())
+    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")));
+    report::render_html(&sections(finished, figures).into_iter().fold(report, Report::section))
+}
+
+/// The sections of the report.
+pub fn sections(finished: &Finished, figures: Vec<String>) -> Vec<Section> {
     let mut result = Section::new("Conclusion");
     for warning in &finished.warnings {
         result = result.warning(warning.clone());
@@ -203,22 +214,18 @@ pub fn html(finished: &Finished, figures: Vec<String>) -> Result<String, ReportE
     let checks = html_table(&HEADINGS, &[0, 1, 7, 8], finished.checks.iter().map(cells).collect());
     let compared = html_table(&comparison_headings(), &[0, 1], comparison_rows(&finished.compared));
     let mut figures = figures.into_iter();
-    let mut report = Report::new(
-        format!("Crosscheck of {}", scenario.name),
-        format!("{}; 0 to {} s; circuit: {}.", scenario.description, scenario.until, finished.label),
-    )
-    .command(output::command_line())
-    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
-    .section(result)
-    .section(Section::new("Claim by claim").text(LEGEND).table(checks))
-    .section(Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(compared))
-    .section(Section::new("Embedded solver and ngspice").figure(figures.next().unwrap_or_default(), OVERLAY_CAPTION))
-    .section(Section::new("Mechanics").table(simulate::report_table(scenario, &finished.case.mechanics)));
+    let mut sections = vec![
+        result,
+        Section::new("Claim by claim").text(LEGEND).table(checks),
+        Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(compared),
+        Section::new("Embedded solver and ngspice").figure(figures.next().unwrap_or_default(), OVERLAY_CAPTION),
+        Section::new("Mechanics").table(simulate::report_table(&finished.scenario, &finished.case.mechanics)),
+    ];
     if let Some((rows, figure)) = sweep_rows(finished).zip(figures.next()) {
         let section = Section::new("Net gain over voltage of release and load").table(html_table(&SWEEP, &[0], rows));
-        report = report.section(section.figure(figure, SWEEP_CAPTION));
+        sections.push(section.figure(figure, SWEEP_CAPTION));
     }
-    report::render_html(&report)
+    sections
 }
 
 const LEGEND: &str = "All solvers get the same piecewise linear C(t). Solvers: the pair that uses up most of its tolerance, \

@@ -19,6 +19,9 @@ mod output;
 mod packaging;
 mod picture;
 mod progress;
+mod reproduce;
+mod reproduce_files;
+mod reproduce_report;
 mod settings;
 mod simulate;
 mod simulate_both;
@@ -48,6 +51,8 @@ enum Verb {
     Crosscheck(crosscheck::Arguments),
     /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
     Simulate(simulate::Arguments),
+    /// Reproduce the tables and figures of the paper, as data, pictures and one report
+    Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs
     Fmu(fmu::Arguments),
     /// Package both FMUs, connected and with the parameters of a case, as Harvester.ssp (SSP 1.0)
@@ -77,6 +82,7 @@ pub fn main() -> ExitCode {
         Verb::Cosim(arguments) => cosim::run(&arguments),
         Verb::Crosscheck(arguments) => crosscheck::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
+        Verb::Reproduce(arguments) => reproduce::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Ssp(arguments) => ssp::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),

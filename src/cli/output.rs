@@ -18,7 +18,7 @@ pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::
 }
 
 /// Writes a file under another name first, so that a reader never sees half of it.
-pub fn write(path: &Path, content: &str) -> anyhow::Result<()> {
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let part = partial(path);
     let written = std::fs::write(&part, content).and_then(|()| std::fs::rename(&part, path));
     written.with_context(|| format!("cannot write {}", path.display()))

@@ -1,9 +1,13 @@
 //! Progress on a terminal; silence elsewhere.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cosim::{CosimError, Observer, Row};
 use crate::crosscheck::Watch;
+use crate::paper;
 
 /// Parts into which the bar divides a run.
 const PARTS: u64 = 1000;
@@ -54,7 +58,7 @@ impl TaskBar {
         let bar = ProgressBar::new(1);
         let style = ProgressStyle::with_template("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
-        bar.enable_steady_tick(std::time::Duration::from_millis(500));
+        bar.enable_steady_tick(Duration::from_millis(500));
         Self { bar, name }
     }
 
@@ -73,9 +77,68 @@ impl Watch for TaskBar {
     }
 }
 
+/// A bar that follows items of unlike length, and the parts of the present one. Where nobody looks at a terminal, a line
+/// for each item that is done goes to stderr: it may take minutes.
+pub struct ItemBar {
+    bar: ProgressBar,
+    items: usize,
+    begun: AtomicUsize,
+}
+
+impl ItemBar {
+    /// A bar for so many items.
+    pub fn new(items: usize) -> Self {
+        let bar = ProgressBar::new(1);
+        let style = ProgressStyle::with_template("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Self { bar, items, begun: AtomicUsize::new(0) }
+    }
+
+    /// An item begins.
+    pub fn begin(&self, name: &str, title: &str) {
+        let number = self.begun.fetch_add(1, Ordering::Relaxed) + 1;
+        self.bar.set_prefix(format!("{number}/{}", self.items));
+        self.bar.set_message(format!("{name}: {title}"));
+        self.bar.set_length(1);
+        self.bar.set_position(0);
+    }
+
+    /// It is done.
+    pub fn end(&self, name: &str, took: Duration) {
+        let line = format!("videg: {name} made in {:.1} s", took.as_secs_f64());
+        if self.bar.is_hidden() {
+            eprintln!("{line}");
+        } else {
+            self.bar.println(line);
+        }
+    }
+
+    /// Does `work` as an item.
+    pub fn during<T>(&self, name: &str, title: &str, work: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
+        let started = Instant::now();
+        self.begin(name, title);
+        let result = work()?;
+        self.end(name, started.elapsed());
+        Ok(result)
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl paper::Watch for ItemBar {
+    fn show(&self, done: usize, total: usize) {
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+    }
+}
+
 /// A spinner for work of unknown length.
 pub fn spinner(message: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
-    spinner.enable_steady_tick(std::time::Duration::from_millis(100));
+    spinner.enable_steady_tick(Duration::from_millis(100));
     spinner
 }

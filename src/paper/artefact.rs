@@ -1,5 +1,7 @@
 //! What making a table or figure comes to.
 
+use serde::{Serialize, Serializer};
+
 use crate::report::{Drawing, Figure, ReportError, Table};
 
 /// A table or figure, reproduced.
@@ -18,7 +20,7 @@ pub struct Artefact {
 }
 
 /// One number of the paper beside ours.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Finding {
     /// Where the paper has it, e.g. `Table 2, Figure 14`.
     pub place: String,
@@ -49,6 +51,25 @@ pub enum Verdict {
     Differs,
     /// The paper prints no number.
     Beyond,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::WithinEnsemble => "within ensemble",
+            Self::Explained => "explained",
+            Self::Differs => "differs",
+            Self::Beyond => "beyond the paper",
+        }
+    }
+}
+
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.words())
+    }
 }
 
 /// Columns of numbers that become a CSV file.

@@ -6,6 +6,12 @@
 
 mod artefact;
 mod error;
+mod fig4;
+mod fig7;
+mod peak;
+mod stepping;
+mod table1;
+mod table3;
 mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
@@ -23,4 +29,9 @@ pub struct Item {
 }
 
 /// All items, in the order of the report.
-pub const ITEMS: &[Item] = &[];
+pub const ITEMS: &[Item] = &[
+    Item { name: "table1", title: "Table 1", make: table1::make },
+    Item { name: "fig4", title: "Figure 4", make: fig4::make },
+    Item { name: "fig7", title: "Figure 7", make: fig7::make },
+    Item { name: "table3", title: "Table 3", make: table3::make },
+];

@@ -1,0 +1,203 @@
+//! `videg reproduce`: the tables and figures of the paper, as data, pictures and one report.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::Context as _;
+use clap::Args;
+use serde::Serialize;
+
+use super::progress::ItemBar;
+use super::reproduce_report::{self as page, Chapter};
+use super::{Verdict, cosim, crosscheck, crosscheck_files, format, output, packaging, reproduce_files as files};
+use crate::cosim::Coupling;
+use crate::fmi::{Fmu, nearest_name};
+use crate::ngspice::Ngspice;
+use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Verdict as Of, Workshop};
+use crate::scenario::Request;
+
+/// Arguments of the verb.
+#[derive(Args)]
+pub struct Arguments {
+    /// What to make, e.g. table2 fig14; all: everything there is [default: all]
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Folder for data, pictures and report
+    #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
+    output: PathBuf,
+    /// Make the large ensembles with a tenth of the samples, for a look
+    #[arg(long)]
+    quick: bool,
+    /// Print one JSON object on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is made beside the items of the paper: where the energy goes, and what ngspice says of it.
+const AUDIT: &str = "audit";
+const CROSSCHECK: &str = "crosscheck";
+
+/// An item that was made, for `--json`.
+#[derive(Serialize)]
+struct Made<'a> {
+    name: &'a str,
+    title: &'a str,
+    findings: Vec<Row<'a>>,
+    files: &'a [PathBuf],
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    #[serde(flatten)]
+    finding: &'a Finding,
+    /// videg / paper - 1.
+    deviation: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    quick: bool,
+    /// Whether no number differs from the paper's for a reason that is not known.
+    passed: bool,
+    items: Vec<Made<'a>>,
+    warnings: &'a [String],
+    report: PathBuf,
+}
+
+/// Everything made so far.
+struct Book<'a> {
+    folder: &'a Path,
+    chapters: Vec<Chapter>,
+    warnings: Vec<String>,
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    let wanted = Wanted::new(&arguments.names)?;
+    let folder = &arguments.output;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
+    let fmu = packaging::open("VibroImpactHarvester")?;
+    let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
+    let mut book = Book { folder, chapters: Vec::new(), warnings: Vec::new() };
+    let bar = ItemBar::new(wanted.count());
+    for item in ITEMS.iter().filter(|item| wanted.has(item.name)) {
+        let started = Instant::now();
+        bar.begin(item.name, item.title);
+        let artefact = (item.make)(&Workshop { fmu: &fmu, effort, watch: &bar })
+            .with_context(|| format!("cannot make {}", item.name))?;
+        book.add(item, artefact)?;
+        bar.end(item.name, started.elapsed());
+    }
+    if wanted.has(AUDIT) {
+        bar.during(AUDIT, "where the energy goes", || book.audit(&fmu))?;
+    }
+    if wanted.has(CROSSCHECK) {
+        bar.during(CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK)))?;
+    }
+    bar.finish();
+    let passed = !book.findings().any(|finding| finding.verdict == Of::Differs);
+    let report = page::write(folder, &book.chapters, &book.warnings, &fmu, arguments.quick)?;
+    files::summary(&folder.join("summary.csv"), book.findings())?;
+    let json = serde_json::to_string_pretty(&book.json(arguments.quick, passed, &report))?;
+    output::write(&folder.join("result.json"), &json)?;
+    output::print(&if arguments.json { json } else { book.text(&report) })?;
+    output::warn(&book.warnings);
+    Ok(if passed { Verdict::Passed } else { Verdict::Failed })
+}
+
+/// What is to be made.
+struct Wanted {
+    names: Vec<String>,
+}
+
+impl Wanted {
+    fn new(names: &[String]) -> anyhow::Result<Self> {
+        let known: Vec<&str> = ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK, "all"]).collect();
+        if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            let hint = nearest_name(unknown, known.iter().copied());
+            let hint = hint.map_or_else(String::new, |nearest| format!("did you mean {nearest}? "));
+            anyhow::bail!("reproduce {unknown}: no such table or figure; {hint}there are: {}", known.join(", "));
+        }
+        Ok(Self { names: names.to_vec() })
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.names.is_empty() || self.names.iter().any(|wanted| wanted == name || wanted == "all")
+    }
+
+    /// Whether it is asked for by its name.
+    fn names_it(&self, name: &str) -> bool {
+        self.names.iter().any(|wanted| wanted == name)
+    }
+
+    fn count(&self) -> usize {
+        ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK]).filter(|name| self.has(name)).count()
+    }
+}
+
+impl Book<'_> {
+    fn add(&mut self, item: &Item, artefact: Artefact) -> anyhow::Result<()> {
+        let files = files::write(self.folder, &artefact)?;
+        self.chapters.push(Chapter::new(item.name, item.title, artefact, files));
+        Ok(())
+    }
+
+    /// Fig. 14 coupled with the paper's circuit and with better ones.
+    fn audit(&mut self, fmu: &Fmu) -> anyhow::Result<()> {
+        let folder = self.folder.join(AUDIT);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
+        let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
+        let finished = cosim::couple(cosim::Backend::Embedded, Coupling::default(), fmu, scenario, &csv)?;
+        output::write(&svg, &finished.svg)?;
+        self.warnings.extend(finished.warnings.iter().cloned());
+        self.chapters.push(Chapter::audit(AUDIT, &finished, vec![csv, svg]));
+        Ok(())
+    }
+
+    /// All claims in ngspice, if it is there. Where it was asked for by name, it must be there.
+    fn crosscheck(&mut self, fmu: &Fmu, must: bool) -> anyhow::Result<()> {
+        let ngspice = match Ngspice::find(None) {
+            Ok(ngspice) => ngspice,
+            Err(error) if must => return Err(error.into()),
+            Err(error) => {
+                self.warnings.push(format!("the crosscheck is left out: {error}"));
+                return Ok(());
+            }
+        };
+        let folder = self.folder.join(CROSSCHECK);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
+        let finished = crosscheck::follow(fmu, scenario, &ngspice, false)?;
+        let (files, figures) = crosscheck_files::write_data(&folder, &finished)?;
+        self.warnings.extend(finished.warnings.iter().cloned());
+        self.chapters.push(Chapter::crosscheck(CROSSCHECK, &finished, figures, files));
+        Ok(())
+    }
+
+    fn findings(&self) -> impl Iterator<Item = &Finding> {
+        self.chapters.iter().flat_map(|chapter| &chapter.findings)
+    }
+
+    fn json<'b>(&'b self, quick: bool, passed: bool, report: &Path) -> Output<'b> {
+        let row = |finding: &'b Finding| Row { finding, deviation: finding.paper.map(|p| finding.videg / p - 1.0) };
+        let made = |chapter: &'b Chapter| Made {
+            name: chapter.name,
+            title: chapter.title,
+            findings: chapter.findings.iter().map(row).collect(),
+            files: &chapter.files,
+        };
+        let items = self.chapters.iter().map(made).collect();
+        Output { quick, passed, items, warnings: &self.warnings, report: report.to_owned() }
+    }
+
+    fn text(&self, report: &Path) -> String {
+        let mut table = format::table(&["where and what", "unit", "paper", "videg", "deviation", "verdict"]);
+        for finding in self.findings() {
+            let [place, quantity, unit, paper, videg, deviation, verdict, _] = page::cells(finding);
+            table.add_row(format::row(&[format!("{place}: {quantity}"), unit, paper, videg, deviation, verdict]));
+        }
+        let files: usize = self.chapters.iter().map(|chapter| chapter.files.len()).sum();
+        format!("{table}\n\n{files} files with data and pictures, and the report: {}", report.display())
+    }
+}

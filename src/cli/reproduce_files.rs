@@ -1,0 +1,59 @@
+//! The files of `videg reproduce`: data as CSV, pictures as SVG and PNG.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+
+use super::{output, reproduce_report as page};
+use crate::paper::{Artefact, Finding, Sheet};
+use crate::report::render_png;
+
+/// Pixels of a PNG for each px of the figure.
+const DENSITY: f32 = 2.0;
+
+/// Writes data and pictures of `artefact` into `folder`; returns the files.
+pub fn write(folder: &Path, artefact: &Artefact) -> anyhow::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for sheet in &artefact.sheets {
+        let path = folder.join(&sheet.name).with_extension("csv");
+        output::write(&path, &csv(sheet)?)?;
+        files.push(path);
+    }
+    for picture in &artefact.pictures {
+        let path = folder.join(&picture.name);
+        let (svg, png) = (path.with_extension("svg"), path.with_extension("png"));
+        output::write(&svg, &picture.drawing.svg)?;
+        output::write(&png, render_png(&picture.drawing.svg, DENSITY)?)?;
+        files.extend([svg, png]);
+    }
+    Ok(files)
+}
+
+/// Numbers as short as they can be without losing a bit.
+fn csv(sheet: &Sheet) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&sheet.columns)?;
+    for row in &sheet.rows {
+        let cell = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
+        writer.write_record(row.iter().map(cell))?;
+    }
+    text(writer).with_context(|| format!("sheet {}", sheet.name))
+}
+
+/// Writes the summary table to `path`.
+pub fn summary<'a>(path: &Path, findings: impl Iterator<Item = &'a Finding>) -> anyhow::Result<()> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(page::HEADINGS)?;
+    for finding in findings {
+        let mut cells = page::cells(finding);
+        cells[3] = finding.paper.map(|paper| format!("{paper:?}")).unwrap_or_default();
+        cells[4] = format!("{:?}", finding.videg);
+        writer.write_record(cells)?;
+    }
+    output::write(path, &text(writer)?)
+}
+
+fn text(writer: csv::Writer<Vec<u8>>) -> anyhow::Result<String> {
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    Ok(String::from_utf8(bytes)?)
+}

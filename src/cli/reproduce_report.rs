@@ -1,0 +1,126 @@
+//! The report of `videg reproduce`: one page with the summary first, then each table and figure.
+
+use std::path::{Path, PathBuf};
+
+use super::{cosim, cosim_report, crosscheck, crosscheck_report, format, output};
+use crate::fmi::Fmu;
+use crate::paper::{Artefact, Finding};
+use crate::report::{self, Column, Report, Section, Table};
+
+/// One table or figure in the report.
+pub struct Chapter {
+    /// What the command line calls it.
+    pub name: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Its numbers beside the paper's.
+    pub findings: Vec<Finding>,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+    sections: Vec<Section>,
+}
+
+impl Chapter {
+    /// A table or figure of the paper.
+    pub fn new(name: &'static str, title: &'static str, artefact: Artefact, files: Vec<PathBuf>) -> Self {
+        let Artefact { findings, text, tables, pictures, .. } = artefact;
+        let section = text.into_iter().fold(Section::new(title).id(name), Section::text);
+        let section = tables.into_iter().fold(section, Section::table);
+        let section =
+            pictures.into_iter().fold(section, |section, picture| section.drawing(picture.drawing, picture.caption));
+        Self { name, title, findings, files, sections: vec![section] }
+    }
+
+    /// Where the energy goes.
+    pub fn audit(name: &'static str, finished: &cosim::Finished, files: Vec<PathBuf>) -> Self {
+        let title = "Energy audit of Figure 14";
+        let section = Section::new(title)
+            .id(name)
+            .text(cosim_report::EXPLANATION.join(" "))
+            .text(cosim_report::coupling_lines(finished))
+            .table(cosim_report::table(finished))
+            .figure(finished.svg.clone(), cosim_report::FIGURE_CAPTION);
+        Self { name, title, findings: Vec::new(), files, sections: vec![section] }
+    }
+
+    /// What ngspice says.
+    pub fn crosscheck(
+        name: &'static str,
+        finished: &crosscheck::Finished,
+        figures: Vec<String>,
+        files: Vec<PathBuf>,
+    ) -> Self {
+        let title = "Crosscheck with ngspice";
+        let lead = format!("{}; circuit: {}.", finished.scenario.description, finished.label);
+        let mut sections = vec![Section::new(title).id(name).text(lead)];
+        sections.extend(crosscheck_report::sections(finished, figures));
+        Self { name, title, findings: Vec::new(), files, sections }
+    }
+}
+
+/// Headings of the summary table.
+pub const HEADINGS: [&str; 8] = ["where", "quantity", "unit", "paper", "videg", "deviation", "verdict", "reason"];
+
+/// The row of a finding in the summary table.
+pub fn cells(finding: &Finding) -> [String; 8] {
+    let deviation = |paper: f64| if paper == 0.0 { String::new() } else { format::deviation(finding.videg, paper) };
+    [
+        finding.place.clone(),
+        finding.quantity.clone(),
+        finding.unit.clone(),
+        finding.paper.map(|paper| format!("{paper}")).unwrap_or_default(),
+        format::significant(finding.videg, 6),
+        finding.paper.map(deviation).unwrap_or_default(),
+        finding.verdict.words().to_owned(),
+        finding.reason.clone(),
+    ]
+}
+
+/// Writes the report into `folder`; returns its path.
+pub fn write(
+    folder: &Path,
+    chapters: &[Chapter],
+    warnings: &[String],
+    fmu: &Fmu,
+    quick: bool,
+) -> anyhow::Result<PathBuf> {
+    let mut report = Report::new(
+        "The paper, reproduced",
+        "Every table and figure of \"Energy harvesting from a DE-based dynamic vibro-impact system\", computed through the \
+         FMI 2.0 co-simulation interface of VibroImpactHarvester.fmu, and what lies beyond the paper.",
+    )
+    .command(output::command_line())
+    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
+    .section(summary(chapters, warnings, quick));
+    for section in chapters.iter().flat_map(|chapter| &chapter.sections) {
+        report = report.section(section.clone());
+    }
+    let path = folder.join("report.html");
+    output::write(&path, &report::render_html(&report.section(versions(fmu)))?)?;
+    Ok(path)
+}
+
+fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
+    let columns = HEADINGS
+        .iter()
+        .enumerate()
+        .map(|(k, heading)| if (3..=5).contains(&k) { Column::numbers(*heading) } else { Column::words(*heading) });
+    let findings = chapters.iter().flat_map(|chapter| &chapter.findings);
+    let table = findings.fold(Table::new(columns), |table, finding| table.row(cells(finding)));
+    let mut section = Section::new("Summary").id("summary").table(table);
+    if quick {
+        section = section.warning("Made with --quick: the large ensembles have a tenth of their samples.");
+    }
+    warnings.iter().cloned().fold(section, Section::warning)
+}
+
+fn versions(fmu: &Fmu) -> Section {
+    let description = fmu.description();
+    let table = [
+        ["videg".to_owned(), env!("CARGO_PKG_VERSION").to_owned()],
+        [format!("{}.fmu", description.model_name), format!("FMI 2.0, guid {}", description.guid)],
+        ["platform".to_owned(), format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)],
+    ];
+    let rows = Table::new([Column::words("what"), Column::words("version")]);
+    Section::new("Versions").id("versions").table(table.into_iter().fold(rows, Table::row))
+}

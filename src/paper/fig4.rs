@@ -1,0 +1,115 @@
+//! Figure 4: the fitted force law, Eq. (2), and the force that the ball feels in the FMU.
+
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use crate::report::{Figure, Panel, Series, Style};
+use crate::scenario::Setting;
+
+/// Speed of the ball when it meets the membrane, m/s: it presses it in by some 7 mm.
+const SPEED: f64 = 1.0;
+/// Distance in time of the samples, s.
+const SAMPLING: f64 = 2e-4;
+/// K and n as printed under Eq. (2).
+const PRINTED: [f64; 2] = [4.0847e5, 2.6];
+
+/// Deflection, m, and force, N.
+type Point = (f64, f64);
+
+/// Makes the figure.
+pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let elastic = contact(workshop, 1.0)?;
+    let lossy = contact(workshop, 0.6)?;
+    let fitted = fit(&elastic);
+    let law = |(x, _): &Point| (*x, PRINTED[0] * x.powf(PRINTED[1]));
+    let findings = ["K, fitted to the force in the FMU", "n, fitted to the force in the FMU"].iter().enumerate().map(
+        |(k, name)| Finding {
+            place: "Eq. (2)".to_owned(),
+            quantity: (*name).to_owned(),
+            unit: ["N/m^n", "1"][k].to_owned(),
+            paper: Some(PRINTED[k]),
+            videg: fitted[k],
+            verdict: if (fitted[k] / PRINTED[k] - 1.0).abs() < 1e-6 { Verdict::Agrees } else { Verdict::Differs },
+            reason: String::new(),
+        },
+    );
+    let text = vec![
+        "The paper's measured points are not printed, so the picture shows its fit, and the force on the ball in the FMU \
+         under contact.law = compliant in a cylinder at rest: ball.mass times der(ball.velocity) against the deflection. \
+         Loading follows Eq. (2); unloading follows r^2 K x^n, which gives the rebound of Eq. (11). The paper itself uses \
+         Eq. (2) for the depth of an impact only, whose time it neglects."
+            .to_owned(),
+    ];
+    let sheet = Sheet {
+        name: "fig4".to_owned(),
+        columns: ["deflection (m)", "force, r = 1 (N)", "K x^n (N)"].map(str::to_owned).to_vec(),
+        rows: elastic.iter().map(|point| vec![point.0, point.1, law(point).1]).collect(),
+    };
+    let hysteresis = Sheet {
+        name: "fig4-hysteresis".to_owned(),
+        columns: ["deflection (m)", "force, r = 0.6 (N)"].map(str::to_owned).to_vec(),
+        rows: lossy.iter().map(|point| vec![point.0, point.1]).collect(),
+    };
+    let picture = picture(&elastic, &lossy, law)?;
+    Ok(Artefact {
+        findings: findings.collect(),
+        text,
+        pictures: vec![picture],
+        sheets: vec![sheet, hysteresis],
+        ..Artefact::default()
+    })
+}
+
+/// The contact of a ball that flies into the membrane of a cylinder at rest, sampled.
+fn contact(workshop: &Workshop<'_>, restitution: f64) -> Result<Vec<Point>, PaperError> {
+    let set = |name: &str, value: String| Setting { name: name.to_owned(), value };
+    let instance = &mut workshop.start(&[
+        set("contact.law", "compliant".to_owned()),
+        set("excitation.amplitude", "0".to_owned()),
+        set("initial.ballPosition", "0".to_owned()),
+        set("initial.ballVelocity", format!("{SPEED:?}")),
+        set("membrane.restitution", format!("{restitution:?}")),
+    ])?;
+    let [travel, mass] = workshop.reals(instance, ["ball.travel", "ball.mass"])?;
+    let mut time = travel / 2.0 / SPEED;
+    instance.do_step(0.0, time)?;
+    let mut points = Vec::new();
+    loop {
+        instance.do_step(time, SAMPLING)?;
+        time += SAMPLING;
+        let [deflection, acceleration] = workshop.reals(instance, ["right.deflection", "der(ball.velocity)"])?;
+        if deflection <= 0.0 {
+            break;
+        }
+        points.push((deflection, mass * acceleration.abs()));
+    }
+    instance.terminate()?;
+    Ok(points)
+}
+
+/// K and n of F = K x^n by least squares of the logarithms.
+fn fit(points: &[Point]) -> [f64; 2] {
+    let logs: Vec<Point> = points.iter().map(|(x, force)| (x.ln(), force.ln())).collect();
+    let mean = |value: fn(&Point) -> f64| logs.iter().map(value).sum::<f64>() / logs.len() as f64;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let slope =
+        logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>();
+    [(y - slope * x).exp(), slope]
+}
+
+fn picture(elastic: &[Point], lossy: &[Point], law: impl Fn(&Point) -> Point) -> Result<Picture, PaperError> {
+    let in_mm = |points: &[Point]| points.iter().map(|(x, force)| (1e3 * x, *force)).collect::<Vec<_>>();
+    let deepest = elastic.iter().map(|point| point.0).fold(0.0, f64::max);
+    let curve: Vec<_> = (0..=200).map(|k| law(&(deepest * f64::from(k) / 200.0, 0.0))).collect();
+    let (curve, elastic, lossy) = (in_mm(&curve), in_mm(elastic), in_mm(lossy));
+    let panel = Panel::new("", "deflection (mm)", "force (N)")
+        .height(300.0)
+        .series(Series::points("Eq. (2)", &curve).color(6))
+        .series(Series::points("in the FMU, r = 1", &elastic).style(Style::Markers).color(0))
+        .series(Series::points("in the FMU, r = 0.6", &lossy).style(Style::Crosses).color(1));
+    let figure = Figure::new("Figure 4: force against deflection of the membrane").panel(panel);
+    let caption = format!(
+        "Eq. (2), f(x) = K x^n with K = {:e} N/m^n and n = {}, and the force on the ball in the FMU under the compliant law; \
+         m = 3.5 g at {SPEED} m/s against a wall at rest.",
+        PRINTED[0], PRINTED[1]
+    );
+    Ok(Picture::new("fig4", &figure, caption)?)
+}

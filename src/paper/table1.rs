@@ -1,0 +1,158 @@
+//! Table 1: the stages of a membrane, with numbers.
+
+use std::f64::consts::PI;
+
+use videg_model::VACUUM_PERMITTIVITY;
+
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop, peak};
+use crate::report::{Column, Figure, Panel, Series, Style, Table};
+
+/// Whose largest impact makes stage 3, and when, s: the averages of the paper begin there, and twenty periods show all.
+const CASE: &str = "fig14";
+const WHEN: [f64; 2] = [50.0, 60.0];
+
+/// A stage in numbers, SI.
+struct Stage {
+    radius: Option<f64>,
+    area: f64,
+    thickness: f64,
+    capacitance: f64,
+    voltage: f64,
+    charge: f64,
+}
+
+/// Makes the table.
+pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let stages = stages(workshop)?;
+    let [first, second, third, fourth] = &stages;
+    let printed = |quantity: &str, paper: f64, videg: f64| Finding {
+        place: "Section 2.2".to_owned(),
+        quantity: quantity.to_owned(),
+        unit: "mm".to_owned(),
+        paper: Some(paper),
+        videg,
+        verdict: if (videg - paper).abs() < 1e-9 { Verdict::Agrees } else { Verdict::Differs },
+        reason: String::new(),
+    };
+    let mut findings = vec![
+        printed("R_2 = lambda R_1", 6.3, 1e3 * second.radius.unwrap_or(f64::NAN)),
+        printed("h_2 = h_1 / lambda^2", 0.25, 1e3 * second.thickness),
+    ];
+    findings.push(Finding {
+        place: "Table 1".to_owned(),
+        quantity: "largest U_DE4 of fig14, Eq. (12)".to_owned(),
+        unit: "V".to_owned(),
+        paper: None,
+        videg: fourth.voltage,
+        verdict: Verdict::Beyond,
+        reason: "the paper's table has symbols only".to_owned(),
+    });
+    let volume_kept =
+        [second, third].iter().all(|s| (s.area * s.thickness / (first.area * first.thickness) - 1.0).abs() < 1e-9);
+    let text = vec![
+        format!(
+            "Stage 3 is the largest impact of {CASE} between {} and {} s, as the FMU gives it (deflection, area ratio and \
+             capacitance at the peak). The volume A h is the same in all stages{}.",
+            WHEN[0],
+            WHEN[1],
+            if volume_kept { " to nine digits" } else { ", but not here" },
+        ),
+        format!(
+            "Capacitances use the vacuum permittivity of CODATA 2022, {VACUUM_PERMITTIVITY:e} F/m, where the paper has \
+             8.85e-12 F/m (0.05 % less), and the relative permittivity 3.4 that it gives in Section 5.3 only. Voltages do \
+             not depend on either."
+        ),
+    ];
+    Ok(Artefact {
+        findings,
+        text,
+        tables: vec![table(&stages)],
+        pictures: vec![picture(&stages)?],
+        sheets: vec![sheet(&stages)],
+    })
+}
+
+fn stages(workshop: &Workshop<'_>) -> Result<[Stage; 4], PaperError> {
+    let instance = workshop.start(&workshop.case(CASE)?)?;
+    let [r1, h1, r2, h2, c2, permittivity, bias] = workshop.reals(
+        &instance,
+        [
+            "membrane.initialRadius",
+            "membrane.initialThickness",
+            "membrane.radius",
+            "membrane.thickness",
+            "membrane.restCapacitance",
+            "membrane.relativePermittivity",
+            "biasVoltage",
+        ],
+    )?;
+    let peak = peak::largest(workshop, CASE, WHEN)?;
+    let stage = |radius: Option<f64>, area: f64, thickness: f64, capacitance: f64, voltage: f64| Stage {
+        radius,
+        area,
+        thickness,
+        capacitance,
+        voltage,
+        charge: capacitance * voltage,
+    };
+    let (a1, a2) = (PI * r1 * r1, PI * r2 * r2);
+    Ok([
+        stage(Some(r1), a1, h1, VACUUM_PERMITTIVITY * permittivity * a1 / h1, 0.0),
+        stage(Some(r2), a2, h2, c2, bias),
+        stage(None, peak.area_ratio * a2, h2 / peak.area_ratio, peak.capacitance, bias),
+        stage(Some(r2), a2, h2, c2, peak.capacitance / c2 * bias),
+    ])
+}
+
+/// What the columns are: heading with unit, and the value in it.
+const COLUMNS: [(&str, fn(&Stage) -> f64); 6] = [
+    ("radius (mm)", |s| 1e3 * s.radius.unwrap_or(f64::NAN)),
+    ("area (mm^2)", |s| 1e6 * s.area),
+    ("thickness (mm)", |s| 1e3 * s.thickness),
+    ("capacitance (pF)", |s| 1e12 * s.capacitance),
+    ("voltage (V)", |s| s.voltage),
+    ("charge (nC)", |s| 1e9 * s.charge),
+];
+
+fn table(stages: &[Stage; 4]) -> Table {
+    let columns = std::iter::once(Column::words("stage")).chain(COLUMNS.iter().map(|(name, _)| Column::numbers(*name)));
+    let names = ["1: as made", "2: pre-stretched, at U_in", "3: pressed in, at U_in", "4: recovered, charge kept"];
+    stages.iter().zip(names).fold(Table::new(columns), |table, (stage, name)| {
+        let cell = |value: f64| if value.is_nan() { String::new() } else { format!("{value:.4}") };
+        table.row(std::iter::once(name.to_owned()).chain(COLUMNS.iter().map(|(_, value)| cell(value(stage)))))
+    })
+}
+
+fn sheet(stages: &[Stage; 4]) -> Sheet {
+    let columns = std::iter::once("stage").chain(COLUMNS.iter().map(|(name, _)| *name));
+    let row = |(k, stage): (usize, &Stage)| {
+        std::iter::once(k as f64 + 1.0).chain(COLUMNS.iter().map(|(_, value)| value(stage))).collect()
+    };
+    Sheet {
+        name: "table1".to_owned(),
+        columns: columns.map(str::to_owned).collect(),
+        rows: stages.iter().enumerate().map(row).collect(),
+    }
+}
+
+fn picture(stages: &[Stage; 4]) -> Result<Picture, PaperError> {
+    let points = COLUMNS.map(|(_, value)| {
+        stages.iter().enumerate().map(|(k, stage)| (k as f64 + 1.0, value(stage))).collect::<Vec<_>>()
+    });
+    let panels = [2, 3, 4, 5];
+    let mut figure = Figure::new("Table 1: the stages of a membrane").columns(2);
+    for (k, column) in panels.into_iter().enumerate() {
+        let letter = ["(a)", "(b)", "(c)", "(d)"][k];
+        figure = figure.panel(
+            Panel::new(letter, "stage", COLUMNS[column].0)
+                .x_range(0.5, 4.5)
+                .series(Series::points("", &points[column]).style(Style::Dashed).color(0))
+                .series(Series::points("", &points[column]).style(Style::Markers).color(0)),
+        );
+    }
+    let caption = format!(
+        "Thickness, capacitance, voltage and charge of a membrane at the stages of Table 1; stage 3 is the largest impact \
+         of {CASE}. Between 3 and 4 the charge is kept, so the voltage rises as the capacitance falls: Eq. (12)."
+    );
+    Ok(Picture::new("table1", &figure, caption)?)
+}
