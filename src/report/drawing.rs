@@ -20,8 +20,3 @@ impl Drawing {
         Ok(Self { svg: render_svg(figure)? })
     }
 }
-
-/// stub
-pub fn render_png(_svg: &str, _density: f32) -> Result<Vec<u8>, ReportError> {
-    Ok(Vec::new())
-}

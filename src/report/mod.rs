@@ -30,7 +30,7 @@ mod reduce;
 mod svg;
 mod trace;
 
-pub use drawing::{Drawing, render_png};
+pub use drawing::Drawing;
 pub use error::ReportError;
 pub use figure::{Band, Bars, Data, Figure, HeatMap, Panel, ReferenceLine, Scale, Series, Style};
 pub use html::render_html;

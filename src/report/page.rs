@@ -64,18 +64,6 @@ impl Section {
         Self { heading: heading.into(), ..Self::default() }
     }
 
-    /// stub
-    #[must_use]
-    pub fn id(self, _id: &str) -> Self {
-        self
-    }
-
-    /// stub
-    #[must_use]
-    pub fn drawing(self, drawing: super::Drawing, caption: impl Into<String>) -> Self {
-        self.figure(drawing.svg, caption)
-    }
-
     /// Adds a paragraph of plain text.
     #[must_use]
     pub fn text(mut self, paragraph: impl Into<String>) -> Self {
