@@ -113,6 +113,18 @@ pub enum ReportError {
         /// Title of the panel.
         panel: String,
     },
+    /// A picture too small, too large or too fine.
+    #[error("{what} is {value}, allowed are {min} to {max}")]
+    InvalidScale {
+        /// Which size.
+        what: String,
+        /// The size asked for.
+        value: f64,
+        /// Smallest size allowed.
+        min: f64,
+        /// Largest size allowed.
+        max: f64,
+    },
     /// An SVG document that cannot be turned into pixels.
     #[error("making a PNG failed: {0}")]
     Png(String),
@@ -139,6 +151,22 @@ pub enum ReportError {
         found: usize,
         /// Columns of the table.
         expected: usize,
+    },
+    /// An id that no link can lead to.
+    #[error("section `{section}`: id `{id}` is taken, or has more than small letters, digits, `.`, `-` and `_`")]
+    InvalidId {
+        /// Heading of the section.
+        section: String,
+        /// The id.
+        id: String,
+    },
+    /// A link to a section that does not exist.
+    #[error("section `{section}`: a link leads to `{target}`, but no section has this id")]
+    BrokenLink {
+        /// Heading of the section.
+        section: String,
+        /// Where it leads.
+        target: String,
     },
     /// An illustration that is not a plain SVG element: it is copied into the page as it is.
     #[error("section `{section}`: the figure is not a passive SVG element ({reason})")]

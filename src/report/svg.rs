@@ -40,11 +40,20 @@ struct Head<'a> {
 /// A figure without panels, a series whose columns differ in length, a range or a reference line that is not finite,
 /// a size beyond bounds, a map that does not fit its axes, limits out of order, a logarithmic axis without values.
 pub fn render_svg(figure: &Figure) -> Result<String, ReportError> {
+    let figure = prepared(figure)?;
+    document(&figure, &plan(&figure)?)
+}
+
+/// The figure, checked, with texts that any document can carry.
+pub(super) fn prepared<'a>(figure: &Figure<'a>) -> Result<Figure<'a>, ReportError> {
     check(figure)?;
-    let figure = cleaned(figure);
-    let plan = plan(&figure)?;
+    Ok(cleaned(figure))
+}
+
+/// The SVG element of a figure laid out.
+pub(super) fn document(figure: &Figure, plan: &Plan) -> Result<String, ReportError> {
     plan.panels.iter().try_for_each(|panel| check_height(panel.panel, panel.height))?;
-    Ok(head(&figure, &plan)? + "\n" + &draw(&plan)? + "</svg>\n")
+    Ok(head(figure, plan)? + "\n" + &draw(plan)? + "</svg>\n")
 }
 
 fn head(figure: &Figure, plan: &Plan) -> Result<String, ReportError> {
@@ -55,8 +64,7 @@ fn head(figure: &Figure, plan: &Plan) -> Result<String, ReportError> {
     Ok(Head { view, size, title, description: &figure.caption }.render()?)
 }
 
-/// The figure with texts that any document can carry.
-pub(super) fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
+fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
     let mut figure = figure.clone();
     figure.title = clean(&figure.title);
     figure.caption = clean(&figure.caption);
@@ -78,7 +86,7 @@ pub(super) fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::{HeatMap, Panel, Series, Style};
+    use super::super::figure::{Panel, Series, Style};
     use super::*;
     use quick_xml::events::Event;
 

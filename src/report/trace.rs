@@ -78,6 +78,12 @@ impl Space {
         if self.log_y { logarithm(value) } else { cut(value) }
     }
 
+    /// Back to the data.
+    pub(super) fn data(self, x: f64, y: f64) -> Point {
+        let back = |value: f64, log| if log { 10_f64.powf(value) } else { value };
+        (back(x, self.log_x), back(y, self.log_y))
+    }
+
     /// The points of a series; some may be gaps.
     pub(super) fn points<'d>(self, data: &'d Data<'_>) -> impl Iterator<Item = Point> + 'd {
         data.iter().map(move |(x, y)| (self.x(x), self.y(y)))
