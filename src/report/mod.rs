@@ -17,23 +17,37 @@
 //! # Ok::<(), videg::report::ReportError>(())
 //! ```
 
+mod axes;
 mod axis;
+mod band;
+mod cells;
+mod check;
 mod clip;
+mod colors;
 mod draw;
 mod drawing;
 mod error;
 mod figure;
 mod html;
+mod labels;
 mod layout;
+mod legend;
+mod marks;
 mod page;
+mod plotly;
+mod png;
+mod policy;
 mod reduce;
 mod svg;
+mod table;
 mod trace;
 
 pub use drawing::Drawing;
 pub use error::ReportError;
 pub use figure::{Band, Bars, Data, Figure, HeatMap, Panel, ReferenceLine, Scale, Series, Style};
 pub use html::render_html;
-pub use page::{Align, Column, Illustration, Note, NoteKind, Report, Section, Table};
+pub use page::{Illustration, Note, NoteKind, Report, Section};
+pub use png::render_png;
 pub use reduce::reduce;
 pub use svg::render_svg;
+pub use table::{Align, Cell, Column, Table, Tone};

@@ -1,5 +1,8 @@
 //! What a report holds: sections of text, tables, figures and notes.
 
+use super::drawing::Drawing;
+use super::table::Table;
+
 /// A page, rendered by [`render_html`](super::render_html).
 #[derive(Debug, Clone, Default)]
 pub struct Report {
@@ -43,17 +46,19 @@ impl Report {
     }
 }
 
-/// One heading and what stands under it: notes, text, table, figure, in this order.
+/// One heading and what stands under it: notes, text, tables, figures, in this order.
 #[derive(Debug, Clone, Default)]
 pub struct Section {
     /// The heading.
     pub heading: String,
     /// Paragraphs of plain text.
     pub text: Vec<String>,
-    /// A table.
-    pub table: Option<Table>,
-    /// A figure.
-    pub figure: Option<Illustration>,
+    /// Name that links lead to; empty for a number.
+    pub id: String,
+    /// Tables, one below the other.
+    pub tables: Vec<Table>,
+    /// Figures, one below the other.
+    pub figures: Vec<Illustration>,
     /// Remarks and warnings, set off from the text.
     pub notes: Vec<Note>,
 }
@@ -71,17 +76,32 @@ impl Section {
         self
     }
 
-    /// Sets the table.
+    /// Sets the name that links lead to: small letters, digits, `.`, `-` and `_`.
     #[must_use]
-    pub fn table(mut self, table: Table) -> Self {
-        self.table = Some(table);
+    pub fn id(mut self, id: impl Into<String>) -> Self {
+        self.id = id.into();
         self
     }
 
-    /// Sets the figure: the output of [`render_svg`](super::render_svg) and a caption.
+    /// Adds a table.
+    #[must_use]
+    pub fn table(mut self, table: Table) -> Self {
+        self.tables.push(table);
+        self
+    }
+
+    /// Adds a figure: the output of [`render_svg`](super::render_svg) and a caption.
     #[must_use]
     pub fn figure(mut self, svg: impl Into<String>, caption: impl Into<String>) -> Self {
-        self.figure = Some(Illustration { svg: svg.into(), caption: caption.into() });
+        self.figures.push(Illustration { svg: svg.into(), chart: None, caption: caption.into() });
+        self
+    }
+
+    /// Adds a figure that a reader can look into: the page then carries the script of the charts, some 4.7 MB.
+    #[must_use]
+    pub fn drawing(mut self, drawing: Drawing, caption: impl Into<String>) -> Self {
+        let Drawing { svg, chart } = drawing;
+        self.figures.push(Illustration { svg, chart: Some(chart), caption: caption.into() });
         self
     }
 
@@ -100,72 +120,13 @@ impl Section {
     }
 }
 
-/// A table; every row has one cell for each column.
-#[derive(Debug, Clone, Default)]
-pub struct Table {
-    /// From left to right.
-    pub columns: Vec<Column>,
-    /// From top to bottom.
-    pub rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    /// A table without rows.
-    pub fn new(columns: impl IntoIterator<Item = Column>) -> Self {
-        Self { columns: columns.into_iter().collect(), rows: Vec::new() }
-    }
-
-    /// Adds a row at the bottom.
-    #[must_use]
-    pub fn row<C: Into<String>>(mut self, cells: impl IntoIterator<Item = C>) -> Self {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
-        self
-    }
-}
-
-/// A column of a table.
-#[derive(Debug, Clone)]
-pub struct Column {
-    /// The heading.
-    pub heading: String,
-    /// Where its cells stand.
-    pub align: Align,
-}
-
-impl Column {
-    /// A column of words, set to the left.
-    pub fn words(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), align: Align::Left }
-    }
-
-    /// A column of numbers, set to the right in figures of equal width.
-    pub fn numbers(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), align: Align::Right }
-    }
-}
-
-/// Alignment of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Align {
-    /// Words.
-    #[default]
-    Left,
-    /// Numbers.
-    Right,
-}
-
-impl Align {
-    /// Whether the column holds numbers.
-    pub fn is_right(self) -> bool {
-        self == Self::Right
-    }
-}
-
 /// A figure in a report.
 #[derive(Debug, Clone)]
 pub struct Illustration {
     /// An SVG element, copied into the page as it is: without scripts and links.
     pub svg: String,
+    /// The data of an interactive chart, see [`Drawing::chart`].
+    pub chart: Option<String>,
     /// Text below the figure.
     pub caption: String,
 }

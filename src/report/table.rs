@@ -1,0 +1,125 @@
+//! Tables of a report.
+
+/// A table; every row has one cell for each column.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    /// From left to right.
+    pub columns: Vec<Column>,
+    /// From top to bottom.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(columns: impl IntoIterator<Item = Column>) -> Self {
+        Self { columns: columns.into_iter().collect(), rows: Vec::new() }
+    }
+
+    /// Adds a row at the bottom.
+    #[must_use]
+    pub fn row<C: Into<Cell>>(mut self, cells: impl IntoIterator<Item = C>) -> Self {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+        self
+    }
+}
+
+/// A column of a table.
+#[derive(Debug, Clone)]
+pub struct Column {
+    /// The heading.
+    pub heading: String,
+    /// Where its cells stand.
+    pub align: Align,
+}
+
+impl Column {
+    /// A column of words, set to the left.
+    pub fn words(heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), align: Align::Left }
+    }
+
+    /// A column of numbers, set to the right in figures of equal width.
+    pub fn numbers(heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), align: Align::Right }
+    }
+}
+
+/// Alignment of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Align {
+    /// Words.
+    #[default]
+    Left,
+    /// Numbers.
+    Right,
+}
+
+impl Align {
+    /// Whether the column holds numbers.
+    pub fn is_right(self) -> bool {
+        self == Self::Right
+    }
+}
+
+/// What stands in a row under one heading.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Cell {
+    /// Plain text.
+    pub text: String,
+    /// Set as a badge of this colour.
+    pub tone: Option<Tone>,
+    /// Links to the section of this id.
+    pub target: Option<String>,
+}
+
+impl Cell {
+    /// A word that stands out, such as a verdict.
+    pub fn badge(word: impl Into<String>, tone: Tone) -> Self {
+        Self { text: word.into(), tone: Some(tone), target: None }
+    }
+
+    /// Text that leads to the section with the id `target`.
+    pub fn link(text: impl Into<String>, target: impl Into<String>) -> Self {
+        Self { text: text.into(), tone: None, target: Some(target.into()) }
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self { text, ..Self::default() }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        text.to_owned().into()
+    }
+}
+
+/// What a badge says, besides its word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tone {
+    /// As it should be: green.
+    Good,
+    /// As it should be, within limits: blue.
+    Near,
+    /// Not as expected, for a reason that is known: amber.
+    Noted,
+    /// Not as it should be: red.
+    Bad,
+    /// Nothing to compare with: grey.
+    Neutral,
+}
+
+impl Tone {
+    /// The class that the style sheet knows.
+    pub(super) fn class(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Near => "near",
+            Self::Noted => "noted",
+            Self::Bad => "bad",
+            Self::Neutral => "neutral",
+        }
+    }
+}
