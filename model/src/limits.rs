@@ -46,7 +46,7 @@ impl Limit {
             Self::Tension => [
                 "Maxwell stress",
                 " Pa",
-                "the elastic stress by the shear modulus commonly quoted for VHB 4910: loss of tension (Koh et al. 2011)",
+                "the elastic stress commonly quoted for VHB 4910: loss of tension (Koh et al. 2011)",
             ],
         }
     }

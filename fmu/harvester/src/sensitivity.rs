@@ -10,8 +10,8 @@
 //!
 //! Under the compliant law there are none.
 //!
-//! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do work
-//! on the ball.
+//! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
+//! work on the ball.
 
 use videg_model::{ContactLaw, Direction, Harvester as Model, Sensitivities, Side};
 

@@ -140,9 +140,10 @@ static INPUTS: [V; 3] = [
 ];
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
-// Communication Point", on states and inputs. But for the electric fields, which follow the voltages, no output depends on an
-// input of the same point, which would make loops of connections algebraic; how the force of a step acts on the outputs at its
-// end is no dependency in this sense, and directional derivatives in co-simulation give it all the same.
+// Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
+// connections algebraic, but for the electric fields, which follow the voltages and drive nothing; how the force of a
+// step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
+// it all the same.
 
 /// The outputs of the membrane at one side, and the names of the three. They depend on time and past impacts only.
 macro_rules! membrane_outputs {

@@ -195,6 +195,8 @@ fn derivatives_in_model_exchange_agree_with_central_differences() {
         let discrete: Vec<_> = unknowns().into_iter().filter(is_discrete).collect();
         // They have been set by events before, or will be by one that is still ahead.
         assert_eq!(table(&discrete), [[0.0; 5]; 4]);
+        let fields = host.derivatives(&["left.electricField", "right.electricField"], "left.voltage");
+        assert_eq!(fields, [1.0 / host.get("membrane.thickness"), 0.0]);
     }
     assert!(resting >= 20, "{resting}");
 }

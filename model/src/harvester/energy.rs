@@ -97,8 +97,8 @@ impl Harvester {
         self.change_by_settling([slip, self.tangent.ball[1] - wall_change], [wall, wall_change]);
     }
 
-    /// The wall, whose velocity changes by `wall_change`, m/s, begins to carry the ball: its work is the gain of kinetic
-    /// energy.
+    /// The wall begins to carry the ball: its work is the gain of kinetic energy. Its velocity changes by
+    /// `wall_change`, m/s.
     pub(super) fn book_rest(&mut self, time: f64, wall_change: f64) {
         let wall = self.cylinder.velocity(time);
         self.ledger.wall -= self.kinetic(wall);

@@ -49,8 +49,8 @@ pub struct Snapshot {
     /// contact, s, up to the last event.
     pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
-    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy, J;
-    /// changes of the work of the walls and of the energy lost, J, as the ledger has them.
+    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
+    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them.
     pub changes: [f64; 8],
     /// Number of the second in which events are being counted.
     pub second: f64,

@@ -75,6 +75,7 @@ pub(super) struct Tangent {
     pub(super) ball: [f64; 2],
     /// Of the sums in [`Totals`](super::Totals): relative speed of the last impact, m/s; voltage gain, V; energy, J.
     pub(super) totals: [f64; 3],
+    /// Of the books of the energy.
     pub(super) ledger: LedgerChange,
     parameters: Option<ParameterChange>,
 }

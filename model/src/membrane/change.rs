@@ -64,14 +64,14 @@ impl Membrane {
         by_area + change.map_or(0.0, |change| change.prestretch * root)
     }
 
-    /// Change of 1 / `h_3`, 1/m, at `deflection`, m, when that changes by `deflection_change`, m: of the field per volt.
+    /// Change of 1 / `h_3`, 1/m, the field per volt, at `deflection`, m, when that changes by `deflection_change`, m.
     pub fn field_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
         let by_area = self.area_change(deflection, deflection_change, change) / self.thickness;
         by_area - change.map_or(0.0, |change| change.log_thickness / self.thickness_at(deflection))
     }
 
-    /// The change of `A_3` / `A_2` at a given deflection. Eq. (5), `R_2` sin(alpha) - (delta - `r_b`) cos(alpha) = `r_b`, gives the change of
-    /// alpha; `A_3` / `A_2` depends on cos(alpha) and, besides, on both radii.
+    /// The change of `A_3` / `A_2` at a given deflection. Eq. (5), `R_2` sin(alpha) - (delta - `r_b`) cos(alpha) = `r_b`,
+    /// gives the change of alpha; `A_3` / `A_2` depends on cos(alpha) and, besides, on both radii.
     fn area_change_by_geometry(&self, deflection: f64, change: &MembraneChange) -> f64 {
         let (radius, ball) = (self.radius, self.ball_radius);
         let Tangent { cos, versine, .. } = self.tangent(deflection);

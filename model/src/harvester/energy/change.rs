@@ -1,4 +1,4 @@
-//! First-order changes of the books under the impulsive law. A value stands with its change, as a pair.
+//! First-order changes of the books under the impulsive law. A value and its change go as a pair.
 
 use super::{Energies, Harvester};
 use crate::harvester::tangent::{Hit, bounded};
@@ -21,7 +21,7 @@ impl Harvester {
         kinetic([self.parameters.ball_mass, self.tangent.ball_mass()], velocity)
     }
 
-    /// Change of the ball's momentum at this velocity, times that of the wall, m/s.
+    /// Change of m v V: the work of a wall at velocity V, m/s, that gives the ball this velocity, m/s.
     fn work_change(&self, [velocity, change]: [f64; 2], [wall, wall_change]: [f64; 2]) -> f64 {
         let (mass, heavier) = (self.parameters.ball_mass, self.tangent.ball_mass());
         mass * (change * wall + velocity * wall_change) + heavier * velocity * wall
@@ -45,7 +45,8 @@ impl Harvester {
         self.tangent.ledger.loss += bounded(self.kinetic_change(slip));
     }
 
-    /// Changes of [`Harvester::energies`]. Membranes store nothing under the impulsive law, and the Maxwell force does no work.
+    /// Changes of [`Harvester::energies`]. Under the impulsive law membranes store nothing and the Maxwell force
+    /// does no work.
     pub(in crate::harvester) fn energies_change(&self) -> Energies {
         let (p, LedgerChange { wall, loss }) = (&self.parameters, self.tangent.ledger);
         let [[_, ball_change], [_, cylinder_change]] = [self.ball_change(self.time), self.cylinder_change(self.time)];
