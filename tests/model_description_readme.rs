@@ -71,7 +71,7 @@ fn symbol(about: &str) -> Option<&str> {
     let (symbol, _) = about.split_once(": ")?;
     // An index may be a word: U_out.
     let words = symbol.split(|c: char| !c.is_alphanumeric() && c != '_').filter_map(|word| word.split('_').next());
-    let is_part = |word: &str| word.len() < 3 || ["lambda", "epsilon", "sigma", "delta", "abs"].contains(&word);
+    let is_part = |word: &str| word.len() < 3 || ["lambda", "epsilon", "sigma", "delta", "abs", "sqrt"].contains(&word);
     words.into_iter().all(is_part).then_some(symbol)
 }
 
@@ -98,6 +98,7 @@ fn equations(about: &str) -> String {
 fn symbols_and_places_are_told_from_words() {
     assert_eq!(symbol("R_2 = lambda R_1: radius"), Some("R_2 = lambda R_1"));
     assert_eq!(symbol("z_M'(0): position"), Some("z_M'(0)"));
+    assert_eq!(symbol("lambda sqrt(A_3 / A_2): stretch"), Some("lambda sqrt(A_3 / A_2)"));
     assert_eq!(symbol("U_out: voltage across the load"), Some("U_out"));
     assert_eq!(symbol("Seed of the phase noise: equal seeds"), None);
     assert_eq!(symbol("Current through the load"), None);

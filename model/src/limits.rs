@@ -39,11 +39,15 @@ impl Limit {
     /// Name of the quantity, its unit, and the bound's source.
     fn words(self) -> [&'static str; 3] {
         match self {
-            Self::Area => ["area ratio", "", "what VHB 4910 stands (Koh et al. 2011)"],
-            Self::Field => ["electric field", " V/m", "what VHB 4910 stands at this stretch (Kofod et al. 2003)"],
-            Self::Tension => {
-                ["Maxwell stress", " Pa", "the elastic stress of VHB 4910: loss of tension (Koh et al. 2011)"]
+            Self::Area => ["area ratio", "", "commonly quoted for VHB 4910 (Koh et al. 2011)"],
+            Self::Field => {
+                ["electric field", " V/m", "commonly quoted for VHB 4910 at this stretch (Kofod et al. 2003)"]
             }
+            Self::Tension => [
+                "Maxwell stress",
+                " Pa",
+                "the elastic stress commonly quoted for VHB 4910: loss of tension (Koh et al. 2011)",
+            ],
         }
     }
 }
@@ -142,7 +146,10 @@ mod tests {
     #[test]
     fn a_warning_names_quantity_value_time_bound_and_source() {
         let excess = Excess { limit: Limit::Area, value: 40.1, bound: 9.0, time: 12.3 };
-        let text = "area ratio 40.100 at 12.300000 s is above 9.000, what VHB 4910 stands (Koh et al. 2011)";
+        let text = "area ratio 40.100 at 12.300000 s is above 9.000, commonly quoted for VHB 4910 (Koh et al. 2011)";
         assert_eq!(excess.to_string(), text);
+        for limit in [Limit::Field, Limit::Tension] {
+            assert!(Excess { limit, ..excess }.to_string().contains("commonly quoted for VHB 4910"));
+        }
     }
 }

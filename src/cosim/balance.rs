@@ -3,7 +3,7 @@
 use serde::Serialize;
 use videg_circuit::Ledger;
 
-/// Energies of the harvester, J, from its local variables `energy.*`.
+/// Energies of the harvester, J, from its outputs `energy.*`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MechanicalEnergies {
     /// Kinetic energy of the ball.

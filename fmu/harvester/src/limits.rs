@@ -14,10 +14,10 @@ pub(crate) struct Warned(Arc<AtomicU8>);
 impl Warned {
     const ALL: u8 = 0b11_1111;
 
-    /// Warns of limits that the membranes exceed at present.
-    pub(crate) fn check_present(&self, model: &Model, log: &Logger) {
+    /// Warns of limits that the membranes exceed at present under these voltages, V.
+    pub(crate) fn check_present(&self, model: &Model, voltages: [f64; 2], log: &Logger) {
         for side in [Side::Left, Side::Right] {
-            let (deflection, voltage) = (model.deflection(side).value, model.voltage(side));
+            let (deflection, voltage) = (model.deflection(side).value, voltages[side.index()]);
             self.check(model.membrane(), &Peak { time: model.time(), side, deflection, voltage }, log);
         }
     }

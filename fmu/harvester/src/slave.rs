@@ -126,7 +126,7 @@ impl Slave for Harvester {
             .set_external_force(force, rate)
             .and_then(|()| model.set_voltages(voltages, voltage_rates))
             .and_then(|()| {
-                warned.check_present(model, log);
+                warned.check_present(model, voltages, log);
                 model.advance_with(t + h, |shown| match shown {
                     Occurrence::Impact(impact) => {
                         number += 1;
@@ -171,6 +171,14 @@ impl Slave for Harvester {
             warned.check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
+    }
+
+    /// Each step checks the point that it starts from; the last point starts none.
+    fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
+        if let Some(model) = self.model().filter(|_| !self.placed) {
+            self.warned.check_present(model, self.voltages, log);
+        }
+        Ok(())
     }
 
     fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {

@@ -141,8 +141,9 @@ static INPUTS: [V; 3] = [
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
 // Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
-// connections algebraic; how the force of a step acts on the outputs at its end is no dependency in this sense, and
-// directional derivatives in co-simulation give it all the same.
+// connections algebraic, but for the electric fields, which follow the voltages and drive nothing; how the force of a
+// step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
+// it all the same.
 
 /// The outputs of the membrane at one side, and the names of the three. They depend on time and past impacts only.
 macro_rules! membrane_outputs {
@@ -252,62 +253,62 @@ fn energy(slave: &Harvester, value: fn(&Energies) -> f64) -> f64 {
     slave.read(|model| value(&model.energies()))
 }
 
-/// The books of the mechanical energy: local variables, of which no directional derivatives are asked.
+/// The books of the mechanical energy.
 static ENERGIES: [V; 8] = [
     V::output("energy.kinetic", "J", "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical")
-        .local()
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .get(|slave| energy(slave, |e| e.ball)),
     V::output("energy.cylinderKinetic", "J", "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction")
-        .local()
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
         .get(|slave| energy(slave, |e| e.cylinder)),
     V::output("energy.elastic", "J", "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law")
-        .local()
         .nominal(1e-4)
         .depends_on(&[])
         .get(|slave| energy(slave, |e| e.elastic)),
     V::output("energy.impactLoss", "J", "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact")
-        .local()
         .nominal(1e-4)
         .depends_on(&[])
         .get(|slave| energy(slave, |e| e.impact_loss)),
     V::output("energy.excitation", "J", "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction")
-        .local()
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
         .get(|slave| energy(slave, |e| e.excitation)),
     V::output("energy.electrical", "J", "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC")
-        .local()
         .nominal(1e-6)
         .depends_on(&[])
         .get(|slave| energy(slave, |e| e.electrical)),
     V::output("energy.wall", "J", "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed")
-        .local()
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity"])
         .get(|slave| energy(slave, |e| e.wall)),
     V::output("contact.time", "s", "Time in contact since the start under the compliant law; impacts of the impulsive law take none")
-        .local()
         .depends_on(&[])
         .get(|slave| slave.read(videg_model::Harvester::contact_time)),
 ];
 
-/// What the film of a membrane bears: local variables, of which no directional derivatives are asked. `U` is the voltage at
-/// the communication point.
+/// What the film of a membrane bears. `U` is the voltage at the communication point.
 macro_rules! membrane_loads {
     ($side:expr, $field:literal, $stretch:literal, $voltage:literal, $which:literal) => {
         [
-            V::output($field, "V/m", concat!("U / h_3: electric field in the ", $which, " membrane, Table 1"))
-                .local()
-                .nominal(1e7)
-                .depends_on(&[$voltage])
-                .get(|slave| {
-                    let voltage = slave.voltages[$side.index()];
-                    slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
-                }),
+            V::output(
+                $field,
+                "V/m",
+                concat!(
+                    "U / h_3: electric field in the ",
+                    $which,
+                    " membrane, Table 1; U is ",
+                    $voltage,
+                    ", which does not follow biasVoltage"
+                ),
+            )
+            .nominal(1e7)
+            .depends_on(&[$voltage])
+            .get(|slave| {
+                let voltage = slave.voltages[$side.index()];
+                slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
+            }),
             V::output(
                 $stretch,
                 "1",
@@ -317,7 +318,6 @@ macro_rules! membrane_loads {
                     " membrane's film, as if equal in both directions"
                 ),
             )
-            .local()
             .depends_on(&[])
             .get(|slave| slave.read(|model| model.membrane().stretch(model.deflection($side).value))),
         ]

@@ -48,6 +48,16 @@ fn a_voltage_beyond_a_bound_warns_once() {
 }
 
 #[test]
+fn voltages_set_at_the_last_point_are_checked_when_the_run_ends() {
+    for (voltage, warns) in [(50e3, true), (2e3, false)] {
+        let host = Host::stepping(&[]);
+        assert!(!host.step_warns(0.0, 1e-3));
+        host.set("left.voltage", voltage);
+        assert_eq!(host.terminate_warns(), warns, "{voltage} V");
+    }
+}
+
+#[test]
 fn a_step_that_is_tried_again_does_not_warn_again() {
     let host = Host::stepping(&[]);
     let state = host.save();

@@ -165,10 +165,10 @@ impl Series {
     }
 }
 
-/// The Chebyshev polynomials T_k((x - 1)/2) or T_k((x + 1)/2) as series in x, one row a k.
+/// The Chebyshev polynomials `T_k((x - 1)/2)` or `T_k((x + 1)/2)` as series in x, one row a k.
 type Half = [[f64; TERMS]; TERMS];
 
-/// T_k((x + `shift`)/2), by T_{k+1}(y) = 2 y T_k(y) - T_{k-1}(y).
+/// `T_k((x + shift)/2)`, by `T_{k+1}(y) = 2 y T_k(y) - T_{k-1}(y)`.
 fn half(shift: f64) -> Half {
     let mut half = [[0.0; TERMS]; TERMS];
     half[0][0] = 1.0;

@@ -3,6 +3,10 @@
 //! For the ball, from any time to any other: kinetic + elastic + impact loss = what they were + wall + electrical. For the
 //! cylinder: kinetic = what it was + excitation, minus the work of the wall if there is reaction.
 
+mod change;
+
+pub(super) use self::change::LedgerChange;
+
 use super::Harvester;
 use crate::flight::Side;
 
@@ -84,21 +88,26 @@ impl Harvester {
         self.ledger.loss += (1.0 - r * r) * self.kinetic(speed);
     }
 
-    /// The ball takes on the velocity of the wall.
-    pub(super) fn book_settling(&mut self, time: f64) {
+    /// The ball takes on the velocity of the wall, which changes by `wall_change`, m/s.
+    pub(super) fn book_settling(&mut self, time: f64, wall_change: f64) {
         let wall = self.cylinder.velocity(time);
         let slip = self.ball.velocity - wall;
         self.ledger.wall -= self.parameters.ball_mass * slip * wall;
         self.ledger.loss += self.kinetic(slip);
+        self.change_by_settling([slip, self.tangent.ball[1] - wall_change], [wall, wall_change]);
     }
 
-    /// The wall begins to carry the ball: its work is the gain of kinetic energy.
-    pub(super) fn book_rest(&mut self, time: f64) {
-        self.ledger.wall -= self.kinetic(self.cylinder.velocity(time));
+    /// The wall begins to carry the ball: its work is the gain of kinetic energy. Its velocity changes by
+    /// `wall_change`, m/s.
+    pub(super) fn book_rest(&mut self, time: f64, wall_change: f64) {
+        let wall = self.cylinder.velocity(time);
+        self.ledger.wall -= self.kinetic(wall);
+        self.tangent.ledger.wall -= self.kinetic_change([wall, wall_change]);
     }
 
     /// The wall lets the ball go.
     pub(super) fn book_release(&mut self) {
         self.ledger.wall += self.kinetic(self.ball.velocity);
+        self.tangent.ledger.wall += self.kinetic_change([self.ball.velocity, self.tangent.ball[1]]);
     }
 }

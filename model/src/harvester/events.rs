@@ -103,7 +103,8 @@ impl Harvester {
         let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
         let at_rest = self.cylinder.velocity == self.ball.velocity;
         if touching && at_rest && self.end_of_bounces(self.time, side, 0.0, self.cylinder_acceleration()).is_some() {
-            self.rest(self.time, side);
+            let [_, wall_change] = self.cylinder_change(self.time);
+            self.rest(self.time, side, wall_change);
         }
     }
 
@@ -241,23 +242,23 @@ impl Harvester {
                 let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
                 self.credit(excess);
                 self.take_over_tail(speed, excess);
-                self.settle(time, side);
+                self.settle(time, side, change.wall);
             }
-            Some(Tail::Unresolved) => self.settle(time, side),
+            Some(Tail::Unresolved) => self.settle(time, side, change.wall),
             None => {}
         }
     }
 
-    /// Ends a chattering sequence at `time`, s.
-    fn settle(&mut self, time: f64, side: Side) {
+    /// Ends a chattering sequence at `time`, s, when the velocity of the wall changes by `wall_change`, m/s.
+    fn settle(&mut self, time: f64, side: Side, wall_change: f64) {
         self.totals.chatters += 1;
-        self.book_settling(time);
-        self.rest(time, side);
+        self.book_settling(time, wall_change);
+        self.rest(time, side, wall_change);
     }
 
-    /// From `time`, s, on the ball rests on the membrane at `side`.
-    fn rest(&mut self, time: f64, side: Side) {
-        self.book_rest(time);
+    /// From `time`, s, on the ball rests on the membrane at `side`, whose velocity then changes by `wall_change`, m/s.
+    fn rest(&mut self, time: f64, side: Side, wall_change: f64) {
+        self.book_rest(time, wall_change);
         self.ball.resting = Some(side);
         self.new_search(time, side.sign() * self.half_travel());
     }

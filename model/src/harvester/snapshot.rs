@@ -1,6 +1,6 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
-use super::energy::Ledger;
+use super::energy::{Ledger, LedgerChange};
 use super::events::Search;
 use super::tangent::Tangent;
 use super::{Ball, Harvester, Noise, Totals, phase};
@@ -49,8 +49,9 @@ pub struct Snapshot {
     /// contact, s, up to the last event.
     pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
-    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy, J.
-    pub changes: [f64; 6],
+    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
+    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them.
+    pub changes: [f64; 8],
     /// Number of the second in which events are being counted.
     pub second: f64,
     /// Events counted in it.
@@ -62,6 +63,7 @@ impl Harvester {
     pub fn snapshot(&self) -> Snapshot {
         let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
         let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
+        let LedgerChange { wall, loss } = tangent.ledger;
         Snapshot {
             time: self.time,
             cylinder: [cylinder.start, cylinder.position, cylinder.velocity],
@@ -76,7 +78,7 @@ impl Harvester {
             voltages: self.voltages.map(|ramp| [ramp.start, ramp.value, ramp.rate]),
             totals: self.totals,
             ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
-            changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy],
+            changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy, wall, loss],
             second: self.second,
             second_events: self.second_events,
         }
@@ -126,9 +128,11 @@ impl Harvester {
         let cylinder = CylinderMotion::new(start, position, velocity, drive);
         let [since, position, velocity] = snapshot.ball;
         let ball = Ball { since, position, velocity, resting: snapshot.resting };
-        let [since, position_change, velocity_change, totals @ ..] = snapshot.changes;
+        let [since, position_change, velocity_change, last_speed, voltage_gain, energy, wall, loss] = snapshot.changes;
         let mut tangent = Tangent::of_force(since, p.cylinder_mass);
-        (tangent.ball, tangent.totals) = ([position_change, velocity_change], totals);
+        tangent.ball = [position_change, velocity_change];
+        tangent.totals = [last_speed, voltage_gain, energy];
+        tangent.ledger = LedgerChange { wall, loss };
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
         let [start, offset] = snapshot.flight;
         let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };

@@ -6,8 +6,9 @@
 //! the impacts change with the relative speed that it then has. A ball at rest moves with the wall. A release comes
 //! where the acceleration of both is the same, zero, or at a jump of it, so that its time does not matter to first order.
 
+use super::energy::LedgerChange;
 use super::events::Event;
-use super::{Harvester, Side};
+use super::{Energies, Harvester, Side};
 use crate::cylinder::DriveChange;
 use crate::membrane::MembraneChange;
 use crate::parameters::Parameters;
@@ -55,6 +56,8 @@ struct ParameterChange {
     cylinder: [f64; 2],
     drive: DriveChange,
     half_travel: f64,
+    cylinder_mass: f64,
+    ball_mass: f64,
     restitution: f64,
     bias: f64,
     membrane: MembraneChange,
@@ -72,6 +75,8 @@ pub(super) struct Tangent {
     pub(super) ball: [f64; 2],
     /// Of the sums in [`Totals`](super::Totals): relative speed of the last impact, m/s; voltage gain, V; energy, J.
     pub(super) totals: [f64; 3],
+    /// Of the books of the energy.
+    pub(super) ledger: LedgerChange,
     parameters: Option<ParameterChange>,
 }
 
@@ -90,6 +95,10 @@ pub(super) struct Hit {
 #[derive(Default)]
 pub(super) struct HitChange {
     pub(super) pulse: PulseChange,
+    /// Of `z_M'` at the time of the impact.
+    pub(super) wall: f64,
+    /// Of what the impact adds to the books.
+    ledger: LedgerChange,
     /// Of `C_3` / `C_2` - 1.
     excess: f64,
     /// Of `z_m` and `z_m'` at the time of the impact, after it.
@@ -109,6 +118,10 @@ pub struct Sensitivities {
     pub deflection: [f64; 2],
     /// Of `A_3` / `A_2`.
     pub area_ratio: [f64; 2],
+    /// Of lambda sqrt(`A_3` / `A_2`).
+    pub stretch: [f64; 2],
+    /// Of 1 / `h_3`, the electric field per volt.
+    pub field_per_volt: [f64; 2],
     /// Of the capacitances.
     pub capacitance: [f64; 2],
     /// Of the relative speed of the last impact.
@@ -117,6 +130,8 @@ pub struct Sensitivities {
     pub voltage_gain: f64,
     /// Of the sum of W.
     pub energy: f64,
+    /// Of [`Harvester::energies`].
+    pub energies: Energies,
     /// Of [`Harvester::next_impact`]; 0 if there is none.
     pub next_impact: f64,
     /// Of [`Harvester::next_knot`]; 0 if there is none.
@@ -128,14 +143,15 @@ fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {
     speed <= 0.0 || (speed < GRAZING_SPEED && side.sign() * acceleration <= 0.0)
 }
 
-fn bounded(change: f64) -> f64 {
+pub(super) fn bounded(change: f64) -> f64 {
     change.clamp(-LIMIT, LIMIT)
 }
 
 impl Tangent {
     /// One more newton from `since`, s, on.
     pub(super) fn of_force(since: f64, cylinder_mass: f64) -> Self {
-        Self { since, push: 1.0 / cylinder_mass, ball: [0.0; 2], totals: [0.0; 3], parameters: None }
+        let (ball, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
+        Self { since, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
     }
 
     /// The start of `harvester` under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of
@@ -157,6 +173,8 @@ impl Tangent {
             cylinder: [d.cylinder_position, d.cylinder_velocity],
             drive,
             half_travel,
+            cylinder_mass: d.cylinder_mass,
+            ball_mass: d.ball_mass,
             restitution: d.restitution,
             bias: d.bias_voltage,
             membrane: MembraneChange::new(p, d),
@@ -167,6 +185,7 @@ impl Tangent {
             push: (direction.force - force * heavier) / p.cylinder_mass,
             ball: [ball_position, d.ball_velocity],
             totals: [0.0; 3],
+            ledger: LedgerChange::default(),
             parameters: Some(change),
         }
     }
@@ -178,6 +197,23 @@ impl Tangent {
     fn membrane(&self) -> Option<&MembraneChange> {
         self.parameters.as_ref().map(|change| &change.membrane)
     }
+
+    pub(super) fn cylinder_mass(&self) -> f64 {
+        self.parameters.map_or(0.0, |change| change.cylinder_mass)
+    }
+
+    pub(super) fn ball_mass(&self) -> f64 {
+        self.parameters.map_or(0.0, |change| change.ball_mass)
+    }
+
+    pub(super) fn restitution(&self) -> f64 {
+        self.parameters.map_or(0.0, |change| change.restitution)
+    }
+
+    /// Of `z_M'` at the start, m/s.
+    pub(super) fn initial_velocity(&self) -> f64 {
+        self.parameters.map_or(0.0, |change| change.cylinder[1])
+    }
 }
 
 impl Harvester {
@@ -188,7 +224,7 @@ impl Harvester {
     }
 
     /// Of `z_M` and `z_M'` at `time`, s.
-    fn cylinder_change(&self, time: f64) -> [f64; 2] {
+    pub(super) fn cylinder_change(&self, time: f64) -> [f64; 2] {
         let Tangent { since, push, .. } = self.tangent;
         let elapsed = time - since;
         let by_force = [0.5 * push * elapsed * elapsed, push * elapsed];
@@ -218,12 +254,12 @@ impl Harvester {
     pub(super) fn change_of(&self, hit: &Hit) -> HitChange {
         let Hit { time, side, speed, peak, wall, acceleration } = *hit;
         let ball = self.ball_change(time);
+        let [position, velocity] = self.cylinder_change(time);
         if grazes(side, speed, acceleration) {
-            return HitChange { ball, ..HitChange::default() };
+            return HitChange { ball, wall: velocity, ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
         let delay = self.delay(time, side, speed);
-        let [position, velocity] = self.cylinder_change(time);
         let wall_change = velocity + acceleration * delay;
         let speed_change = sign * (wall_change - ball[1]);
         let rebound_change = self.rebound_change(speed, speed_change);
@@ -231,6 +267,8 @@ impl Harvester {
         let rebounded = wall + sign * restitution * speed;
         HitChange {
             pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
+            wall: bounded(wall_change),
+            ledger: self.ledger_change(hit, bounded(speed_change), bounded(wall_change)),
             excess: self.membrane.excess_change(peak, peak_change, self.tangent.membrane()),
             ball: [
                 position + (wall - rebounded) * delay - sign * self.tangent.half_travel(),
@@ -241,21 +279,22 @@ impl Harvester {
     }
 
     fn rebound_change(&self, speed: f64, speed_change: f64) -> f64 {
-        let by_restitution = self.tangent.parameters.map_or(0.0, |change| change.restitution * speed);
-        self.parameters.restitution * speed_change + by_restitution
+        self.parameters.restitution * speed_change + self.tangent.restitution() * speed
     }
 
     /// Carries the changes over an impact with this `excess`.
     pub(super) fn take_over(&mut self, change: &HitChange, excess: f64) {
         self.tangent.ball = change.ball;
         self.tangent.totals[0] = change.pulse.speed;
+        self.tangent.ledger.wall += change.ledger.wall;
+        self.tangent.ledger.loss += change.ledger.loss;
         self.credit_change(excess, change.excess);
     }
 
     /// The same for the endless rest of a chattering sequence behind an impact at relative `speed`.
     pub(super) fn take_over_tail(&mut self, speed: f64, excess: f64) {
         let restitution = self.parameters.restitution;
-        let by_restitution = self.tangent.parameters.map_or(0.0, |change| change.restitution);
+        let by_restitution = self.tangent.restitution();
         let rebound_change = self.rebound_change(speed, self.tangent.totals[0]);
         let membrane = self.tangent.membrane();
         let rebound = restitution * speed;
@@ -301,10 +340,13 @@ impl Harvester {
             relative_displacement: cylinder[0] - ball[0],
             deflection,
             area_ratio: [0, 1].map(|k| self.membrane.area_change(values[k], deflection[k], membrane)),
+            stretch: [0, 1].map(|k| self.membrane.stretch_change(values[k], deflection[k], membrane)),
+            field_per_volt: [0, 1].map(|k| self.membrane.field_change(values[k], deflection[k], membrane)),
             capacitance: [0, 1].map(|k| self.membrane.capacitance_change(values[k], deflection[k], membrane)),
             last_speed,
             voltage_gain,
             energy,
+            energies: self.energies_change(),
             next_impact,
             next_knot: self.next_knot_change(next_impact),
         }

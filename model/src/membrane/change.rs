@@ -16,6 +16,10 @@ pub struct MembraneChange {
     pub log_deflection: f64,
     /// Of n.
     pub exponent: f64,
+    /// Of lambda.
+    pub prestretch: f64,
+    /// Of the logarithm of `h_2`.
+    pub log_thickness: f64,
 }
 
 impl MembraneChange {
@@ -33,6 +37,8 @@ impl MembraneChange {
             rest_capacitance: Membrane::new(p).rest_capacitance() * capacitance,
             log_deflection: (d.ball_mass / p.ball_mass - d.stiffness / p.stiffness) / (p.stiffness_exponent + 1.0),
             exponent: d.stiffness_exponent,
+            prestretch: d.prestretch,
+            log_thickness: d.initial_thickness / p.initial_thickness - 2.0 * stretch,
         }
     }
 }
@@ -51,8 +57,21 @@ impl Membrane {
         by_deflection + change.map_or(0.0, |change| self.area_change_by_geometry(deflection, change))
     }
 
-    /// The same at a given deflection. Eq. (5), `R_2` sin(alpha) - (delta - `r_b`) cos(alpha) = `r_b`, gives the change of
-    /// alpha; `A_3` / `A_2` depends on cos(alpha) and, besides, on both radii.
+    /// Change of lambda sqrt(`A_3` / `A_2`) at `deflection`, m, when that changes by `deflection_change`, m.
+    pub fn stretch_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
+        let root = self.area_ratio(deflection).sqrt();
+        let by_area = 0.5 * self.prestretch / root * self.area_change(deflection, deflection_change, change);
+        by_area + change.map_or(0.0, |change| change.prestretch * root)
+    }
+
+    /// Change of 1 / `h_3`, 1/m, the field per volt, at `deflection`, m, when that changes by `deflection_change`, m.
+    pub fn field_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
+        let by_area = self.area_change(deflection, deflection_change, change) / self.thickness;
+        by_area - change.map_or(0.0, |change| change.log_thickness / self.thickness_at(deflection))
+    }
+
+    /// The change of `A_3` / `A_2` at a given deflection. Eq. (5), `R_2` sin(alpha) - (delta - `r_b`) cos(alpha) = `r_b`,
+    /// gives the change of alpha; `A_3` / `A_2` depends on cos(alpha) and, besides, on both radii.
     fn area_change_by_geometry(&self, deflection: f64, change: &MembraneChange) -> f64 {
         let (radius, ball) = (self.radius, self.ball_radius);
         let Tangent { cos, versine, .. } = self.tangent(deflection);
@@ -111,9 +130,9 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// Deflection, area, capacitance and the sum over a chattering sequence, and their changes when all parameters of the
-    /// membrane and the speed change at once.
-    fn values_and_changes(p: &Parameters, d: &Parameters, speed: f64, speed_change: f64) -> [[f64; 2]; 4] {
+    /// Deflection, area, capacitance, stretch, field of one volt and the sum over a chattering sequence, and their changes
+    /// when all parameters of the membrane and the speed change at once.
+    fn values_and_changes(p: &Parameters, d: &Parameters, speed: f64, speed_change: f64) -> [[f64; 2]; 6] {
         let (membrane, change) = (Membrane::new(p), MembraneChange::new(p, d));
         let change = Some(&change);
         let peak = membrane.deflection(speed);
@@ -123,6 +142,8 @@ mod tests {
             [peak, peak_change],
             [membrane.area_ratio(peak), membrane.area_change(peak, peak_change, change)],
             [membrane.capacitance(peak), membrane.capacitance_change(peak, peak_change, change)],
+            [membrane.stretch(peak), membrane.stretch_change(peak, peak_change, change)],
+            [membrane.field(peak, 1.0), membrane.field_change(peak, peak_change, change)],
             [
                 membrane.excess_of_chatter(speed, r),
                 membrane.excess_of_chatter_change(speed, r, speed_change, d.restitution, change),

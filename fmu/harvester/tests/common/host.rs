@@ -36,6 +36,7 @@ symbols! {
     fmi2SetRealInputDerivatives(fmi2Component, *const fmi2ValueReference, usize, *const fmi2Integer, *const fmi2Real)
         -> fmi2Status;
     fmi2DoStep(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) -> fmi2Status;
+    fmi2Terminate(fmi2Component) -> fmi2Status;
     fmi2NewDiscreteStates(fmi2Component, *mut fmi2EventInfo) -> fmi2Status;
     fmi2EnterEventMode(fmi2Component) -> fmi2Status;
     fmi2EnterContinuousTimeMode(fmi2Component) -> fmi2Status;
@@ -185,6 +186,13 @@ impl Host {
     /// Whether a step warns.
     pub fn step_warns(&self, t: f64, h: f64) -> bool {
         let status = unsafe { fmi2DoStep(self.component, t, h, 0) };
+        ok(status);
+        status == fmi2Warning
+    }
+
+    /// Whether the end of the run warns.
+    pub fn terminate_warns(&self) -> bool {
+        let status = unsafe { fmi2Terminate(self.component) };
         ok(status);
         status == fmi2Warning
     }
