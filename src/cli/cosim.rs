@@ -17,6 +17,7 @@ use crate::cosim::{
 };
 use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
+use crate::report::Drawing;
 use crate::scenario::Scenario;
 
 /// Arguments of the verb.
@@ -108,7 +109,7 @@ pub struct Finished {
     /// What the user should know before believing the numbers.
     pub warnings: Vec<String>,
     /// The figure.
-    pub svg: String,
+    pub drawing: Drawing,
 }
 
 /// Runs the verb.
@@ -164,9 +165,9 @@ pub fn couple(
     warnings.extend(coupling_warning(&coupling));
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
-    let svg = picture::cosim(&trace, &scenario)?;
+    let drawing = picture::cosim(&trace, &scenario)?;
     let supply_voltage = settings.circuit.supply_voltage;
-    Ok(Finished { scenario, mechanics, circuits, coupling, balance, supply_voltage, warnings, svg })
+    Ok(Finished { scenario, mechanics, circuits, coupling, balance, supply_voltage, warnings, drawing })
 }
 
 pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {
@@ -245,7 +246,7 @@ pub fn label(settings: &Settings) -> String {
 
 fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {
     let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
-    output::write(&figure, &finished.svg)?;
+    output::write(&figure, &finished.drawing.svg)?;
     output::write(&html, &cosim_report::html(finished)?)?;
     Ok(vec![csv.to_owned(), figure, html, folder.join("result.json")])
 }

@@ -127,6 +127,9 @@ pub fn html(finished: &Finished) -> Result<String, ReportError> {
     .section(result)
     .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(table(finished)))
     .section(Section::new("Coupling").text(coupling_lines(finished)))
-    .section(Section::new("Motion, capacitances, voltages and energies").figure(finished.svg.clone(), FIGURE_CAPTION));
+    .section(
+        Section::new("Motion, capacitances, voltages and energies")
+            .figure(finished.drawing.svg.clone(), FIGURE_CAPTION),
+    );
     report::render_html(&report)
 }

@@ -1,7 +1,7 @@
 //! The figure of a run: the last cycles in detail, energies over the whole run.
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
-use crate::report::{Figure, Panel, ReportError, Series, render_svg};
+use crate::report::{Drawing, Figure, Panel, ReportError, Series, render_svg};
 use crate::scenario::Scenario;
 
 /// Points of one curve: time and value.
@@ -66,7 +66,7 @@ pub fn title(scenario: &Scenario) -> String {
 }
 
 /// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit.
-pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<String, ReportError> {
+pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError> {
     let mechanics = Mechanics::new(trace);
     let circuit = |value: fn(&crate::cosim::CircuitSample) -> f64| {
         move |point: &TracePoint| point.circuits.first().map_or(f64::NAN, value)
@@ -99,7 +99,7 @@ pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<String, ReportError> 
         "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
          and the energies since its start.",
     );
-    render_svg(&figure)
+    Drawing::new(&figure)
 }
 
 /// Relative displacement, C(t) and velocities (in detail) and the gains (whole run).

@@ -149,7 +149,7 @@ impl Book<'_> {
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let finished = cosim::couple(cosim::Backend::Embedded, Coupling::default(), fmu, scenario, &csv)?;
-        output::write(&svg, &finished.svg)?;
+        output::write(&svg, &finished.drawing.svg)?;
         self.warnings.extend(finished.warnings.iter().cloned());
         self.chapters.push(Chapter::audit(AUDIT, &finished, vec![csv, svg]));
         Ok(())

@@ -9,7 +9,7 @@ use crate::paper::{Artefact, Finding, Sheet};
 use crate::report::render_png;
 
 /// Pixels of a PNG for each px of the figure.
-const DENSITY: f32 = 2.0;
+const DENSITY: f64 = 2.0;
 
 /// Writes data and pictures of `artefact` into `folder`; returns the files.
 pub fn write(folder: &Path, artefact: &Artefact) -> anyhow::Result<Vec<PathBuf>> {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::{cosim, cosim_report, crosscheck, crosscheck_report, format, output};
 use crate::fmi::Fmu;
-use crate::paper::{Artefact, Finding};
-use crate::report::{self, Column, Report, Section, Table};
+use crate::paper::{Artefact, Finding, Verdict};
+use crate::report::{self, Cell, Column, Report, Section, Table, Tone};
 
 /// One table or figure in the report.
 pub struct Chapter {
@@ -39,7 +39,7 @@ impl Chapter {
             .text(cosim_report::EXPLANATION.join(" "))
             .text(cosim_report::coupling_lines(finished))
             .table(cosim_report::table(finished))
-            .figure(finished.svg.clone(), cosim_report::FIGURE_CAPTION);
+            .drawing(finished.drawing.clone(), cosim_report::FIGURE_CAPTION);
         Self { name, title, findings: Vec::new(), files, sections: vec![section] }
     }
 
@@ -105,13 +105,36 @@ fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
         .iter()
         .enumerate()
         .map(|(k, heading)| if (3..=5).contains(&k) { Column::numbers(*heading) } else { Column::words(*heading) });
-    let findings = chapters.iter().flat_map(|chapter| &chapter.findings);
-    let table = findings.fold(Table::new(columns), |table, finding| table.row(cells(finding)));
+    let rows = chapters.iter().flat_map(|chapter| chapter.findings.iter().map(move |finding| row(chapter, finding)));
+    let table = rows.fold(Table::new(columns), Table::row);
     let mut section = Section::new("Summary").id("summary").table(table);
     if quick {
         section = section.warning("Made with --quick: the large ensembles have a tenth of their samples.");
     }
     warnings.iter().cloned().fold(section, Section::warning)
+}
+
+/// The row of a finding, with a link to its chapter and the verdict as a badge.
+fn row(chapter: &Chapter, finding: &Finding) -> [Cell; 8] {
+    let [place, quantity, unit, paper, videg, deviation, verdict, reason] = cells(finding);
+    let tone = match finding.verdict {
+        Verdict::Agrees => Tone::Good,
+        Verdict::WithinEnsemble => Tone::Near,
+        Verdict::Explained => Tone::Noted,
+        Verdict::Differs => Tone::Bad,
+        Verdict::Beyond => Tone::Neutral,
+    };
+    let words = |text: String| Cell::from(text);
+    [
+        Cell::link(place, chapter.name),
+        words(quantity),
+        words(unit),
+        words(paper),
+        words(videg),
+        words(deviation),
+        Cell::badge(verdict, tone),
+        words(reason),
+    ]
 }
 
 fn versions(fmu: &Fmu) -> Section {
