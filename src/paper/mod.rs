@@ -5,7 +5,17 @@
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
+mod ensemble;
 mod error;
+mod fixed_step;
+mod motion;
+mod motion_findings;
+mod orbit;
+mod patterns;
+mod recording;
+mod stability;
+mod table2;
+mod table2_output;
 mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
@@ -23,4 +33,13 @@ pub struct Item {
 }
 
 /// All items, in the order of the report.
-pub const ITEMS: &[Item] = &[];
+pub const ITEMS: &[Item] = &[
+    Item { name: "fig9", title: "Figure 9", make: |workshop| motion::make(workshop, 9) },
+    Item { name: "fig10", title: "Figure 10", make: stability::make },
+    Item { name: "fig11", title: "Figure 11", make: |workshop| motion::make(workshop, 11) },
+    Item { name: "fig12", title: "Figure 12", make: |workshop| motion::make(workshop, 12) },
+    Item { name: "fig13", title: "Figure 13", make: |workshop| motion::make(workshop, 13) },
+    Item { name: "fig14", title: "Figure 14", make: |workshop| motion::make(workshop, 14) },
+    Item { name: "fig15", title: "Figure 15", make: |workshop| motion::make(workshop, 15) },
+    Item { name: "table2", title: "Table 2", make: table2::make },
+];

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::PaperError;
 use crate::fmi::{Fmu, Instance, Logging};
-use crate::scenario::Setting;
+use crate::scenario::{Request, Setting};
 
 /// How much work the large ensembles may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -65,6 +65,25 @@ impl Workshop<'_> {
     /// The first that failed, in their order.
     pub fn averages(&self, runs: &[Run]) -> Result<Vec<Averages>, PaperError> {
         self.each(runs, |run| self.average(run))
+    }
+
+    /// Settings of a case of the paper.
+    ///
+    /// # Errors
+    /// No such case.
+    pub fn case(&self, name: &str) -> Result<Vec<Setting>, PaperError> {
+        Ok(Request { case: Some(name.to_owned()), ..Request::default() }.resolve()?.settings)
+    }
+
+    /// Values of variables of an instance, in the order of `names`.
+    ///
+    /// # Errors
+    /// If the FMU has no such variable, or it is no real number.
+    pub fn reals<const N: usize>(&self, instance: &Instance, names: [&str; N]) -> Result<[f64; N], PaperError> {
+        let references = names.iter().map(|name| self.reference(name)).collect::<Result<Vec<_>, _>>()?;
+        let mut values = [0.0; N];
+        instance.get_real(&references, &mut values)?;
+        Ok(values)
     }
 
     /// An instance with `settings`, initialised at 0 s.
