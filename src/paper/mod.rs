@@ -5,12 +5,22 @@
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
+mod ensemble;
 mod error;
 mod fig4;
 mod fig7;
+mod fixed_step;
+mod motion;
+mod motion_findings;
+mod orbit;
+mod patterns;
 mod peak;
+mod recording;
+mod stability;
 mod stepping;
 mod table1;
+mod table2;
+mod table2_output;
 mod table3;
 mod workshop;
 
@@ -31,7 +41,15 @@ pub struct Item {
 /// All items, in the order of the report.
 pub const ITEMS: &[Item] = &[
     Item { name: "table1", title: "Table 1", make: table1::make },
+    Item { name: "table2", title: "Table 2", make: table2::make },
+    Item { name: "table3", title: "Table 3", make: table3::make },
     Item { name: "fig4", title: "Figure 4", make: fig4::make },
     Item { name: "fig7", title: "Figure 7", make: fig7::make },
-    Item { name: "table3", title: "Table 3", make: table3::make },
+    Item { name: "fig9", title: "Figure 9", make: |workshop| motion::make(workshop, 9) },
+    Item { name: "fig10", title: "Figure 10", make: stability::make },
+    Item { name: "fig11", title: "Figure 11", make: |workshop| motion::make(workshop, 11) },
+    Item { name: "fig12", title: "Figure 12", make: |workshop| motion::make(workshop, 12) },
+    Item { name: "fig13", title: "Figure 13", make: |workshop| motion::make(workshop, 13) },
+    Item { name: "fig14", title: "Figure 14", make: |workshop| motion::make(workshop, 14) },
+    Item { name: "fig15", title: "Figure 15", make: |workshop| motion::make(workshop, 15) },
 ];

@@ -1,0 +1,227 @@
+//! Figures 9 to 15: displacements, velocities, relative displacement and voltage against time.
+
+use super::motion_findings::findings;
+use super::patterns::Pattern;
+use super::recording::{
+    BALL, BALL_VELOCITY, CYLINDER, CYLINDER_VELOCITY, DISPLACEMENT, Impact, OUTPUTS, Recording, Sample, record,
+};
+use super::{Artefact, PaperError, Picture, Sheet, Workshop};
+use crate::report::{Figure, Panel, Series, Style};
+
+/// Distance of samples between corners, s.
+const STEP: f64 = 2e-3;
+
+/// A figure of the paper.
+pub(super) struct Shown {
+    /// Its case.
+    pub(super) case: &'static str,
+    /// Its number.
+    pub(super) number: u32,
+    /// What is shown of it, s.
+    pub(super) window: [f64; 2],
+    /// What the paper circles in it.
+    pub(super) circled: Option<Pattern>,
+}
+
+/// With r = 1 nothing is damped: a run is as typical at its beginning as later on, and only the beginning of a chaotic one is
+/// the same with every method. With r < 1 the steady state is what matters.
+const BEGINNING: [f64; 2] = [0.0, 5.0];
+const STEADY: [f64; 2] = [50.0, 54.0];
+
+/// The figures, in their order.
+const SHOWN: [Shown; 7] = [
+    Shown { case: "fig9", number: 9, window: BEGINNING, circled: None },
+    Shown { case: "fig10", number: 10, window: BEGINNING, circled: None },
+    Shown { case: "fig11", number: 11, window: BEGINNING, circled: Some(Pattern::ShortFlight) },
+    Shown { case: "fig12", number: 12, window: BEGINNING, circled: Some(Pattern::DoubleHit) },
+    Shown { case: "fig13", number: 13, window: BEGINNING, circled: None },
+    Shown { case: "fig14", number: 14, window: STEADY, circled: None },
+    Shown { case: "fig15", number: 15, window: STEADY, circled: None },
+];
+
+/// Parameters that a figure depends on, SI units.
+pub(super) struct Setup {
+    /// M, kg.
+    pub(super) mass: f64,
+    /// s, m.
+    pub(super) travel: f64,
+    /// A, N.
+    pub(super) amplitude: f64,
+    /// `f_0`, Hz.
+    pub(super) frequency: f64,
+    /// `U_in`, V.
+    pub(super) bias_voltage: f64,
+    /// `z_M(0)`, `z_M'(0)`, `z_m(0)`, `z_m'(0)`, as given.
+    pub(super) start: [f64; 4],
+    caption: String,
+}
+
+impl Setup {
+    fn of(workshop: &Workshop<'_>, case: &str) -> Result<Self, PaperError> {
+        let instance = workshop.start(&workshop.case(case)?)?;
+        let [mass, travel, amplitude, frequency, restitution, bias_voltage] = workshop.reals(
+            &instance,
+            [
+                "cylinder.mass",
+                "ball.travel",
+                "excitation.amplitude",
+                "excitation.frequency",
+                "membrane.restitution",
+                "biasVoltage",
+            ],
+        )?;
+        let start = workshop.reals(
+            &instance,
+            ["initial.cylinderPosition", "initial.cylinderVelocity", "initial.ballPosition", "initial.ballVelocity"],
+        )?;
+        let [ball, length, width, radius] =
+            workshop.reals(&instance, ["ball.mass", "cylinder.length", "frame.width", "ball.radius"])?;
+        let [r1, h1, r2] =
+            workshop.reals(&instance, ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"])?;
+        let [z_cylinder, v_cylinder, z_ball, v_ball] = start;
+        let caption = format!(
+            "A = {amplitude} N, f_0 = {frequency} Hz, r = {restitution}; M = {} g, m = {} g, d = {} mm, w = {} mm, r_b = {} mm, \
+             R_1 = {} mm, R_2 = {} mm, h_1 = {} mm, U_in = U_z = {bias_voltage} V; z_M(0) = {:.4} mm, z_M'(0) = {v_cylinder} m/s, \
+             z_m(0) = {:.4} mm, z_m'(0) = {v_ball:.5} m/s.",
+            rounded(1e3 * mass),
+            rounded(1e3 * ball),
+            rounded(1e3 * length),
+            rounded(1e3 * width),
+            rounded(1e3 * radius),
+            rounded(1e3 * r1),
+            rounded(1e3 * r2),
+            rounded(1e3 * h1),
+            1e3 * z_cylinder,
+            1e3 * z_ball,
+        );
+        Ok(Self { mass, travel, amplitude, frequency, bias_voltage, start, caption })
+    }
+
+    /// A / (M (2 pi `f_0`)^2), m: amplitude of the cylinder.
+    pub(super) fn swing(&self) -> f64 {
+        let omega = std::f64::consts::TAU * self.frequency;
+        self.amplitude / (self.mass * omega * omega)
+    }
+}
+
+/// Without the last digits, which a change of units upsets.
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
+/// Makes the figure of `number`.
+pub(super) fn make(workshop: &Workshop<'_>, number: u32) -> Result<Artefact, PaperError> {
+    let Some(shown) = SHOWN.iter().find(|shown| shown.number == number) else { return Ok(Artefact::default()) };
+    let setup = Setup::of(workshop, shown.case)?;
+    let recording = record(workshop, &workshop.case(shown.case)?, shown.window, STEP)?;
+    let (findings, text) = findings(workshop, shown, &setup, &recording)?;
+    let picture = picture(shown, &setup, &recording)?;
+    let sheets = vec![samples(shown, &setup, &recording), impacts(shown, &setup, &recording)];
+    Ok(Artefact { findings, text, pictures: vec![picture], sheets, ..Artefact::default() })
+}
+
+type Points = Vec<(f64, f64)>;
+
+fn points(recording: &Recording, output: usize) -> Points {
+    let factor = OUTPUTS[output].2;
+    recording.samples.iter().map(|sample| (sample.time, factor * sample.values[output])).collect()
+}
+
+/// Voltage of one membrane, kV: `U_in`, and a peak to `U_DE4` at each of its impacts.
+fn peaks(setup: &Setup, recording: &Recording, left: bool, [from, to]: [f64; 2]) -> Points {
+    let rest = 1e-3 * setup.bias_voltage;
+    let impacts = recording.impacts.iter().filter(|impact| impact.left == left);
+    let peaks = impacts.flat_map(|impact| {
+        let (time, peak) = (impact.time, rest + 1e-3 * impact.gain);
+        [(time, rest), (time, peak), (time, rest)]
+    });
+    [(from, rest)].into_iter().chain(peaks).chain([(to, rest)]).collect()
+}
+
+fn picture(shown: &Shown, setup: &Setup, recording: &Recording) -> Result<Picture, PaperError> {
+    let [from, to] = shown.window;
+    let [cylinder, cylinder_velocity, ball, ball_velocity, displacement] =
+        [CYLINDER, CYLINDER_VELOCITY, BALL, BALL_VELOCITY, DISPLACEMENT].map(|output| points(recording, output));
+    let [left, right] = [true, false].map(|left| peaks(setup, recording, left, shown.window));
+    let circled = shown.circled.map_or_else(Vec::new, |rule| rule.members(&recording.impacts, setup.travel));
+    let on_ball: Points = circled.iter().map(|impact| (impact.time, 1e3 * impact.ball)).collect();
+    let on_displacement: Points = circled.iter().map(|impact| (impact.time, 1e3 * impact.displacement)).collect();
+    let panel = |title: &str, y: &str| Panel::new(title, "", y).x_range(from, to).share_x_with_next();
+    let last = |title: &str, y: &str| Panel::new(title, "time (s)", y).x_range(from, to);
+    let marked = |label: &str, at| Series::points(label, at).style(Style::Markers).color(1);
+    let mut positions = panel("(c)", "z_m (mm)").series(Series::points("", &ball).color(0));
+    let half = 500.0 * setup.travel;
+    let mut relative = last("(e)", "z_M - z_m (mm)")
+        .series(Series::points("", &displacement).color(0))
+        .line("membranes, +-s/2", half)
+        .line("", -half);
+    if !circled.is_empty() {
+        positions = positions.series(marked("as circled in the paper", &on_ball));
+        relative = relative.series(marked("", &on_displacement));
+    }
+    let figure = Figure::new(format!("Figure {}", shown.number))
+        .columns(2)
+        .width(960.0)
+        .panel(panel("(a)", "z_M (mm)").series(Series::points("", &cylinder).color(0)))
+        .panel(panel("(b)", "z_M' (m/s)").series(Series::points("", &cylinder_velocity).color(0)))
+        .panel(positions)
+        .panel(panel("(d)", "z_m' (m/s)").series(Series::points("", &ball_velocity).color(0)))
+        .panel(relative)
+        .panel(
+            last("(f)", "voltage (kV)")
+                .series(Series::points("left membrane", &left).color(0))
+                .series(Series::points("right membrane", &right).color(1)),
+        );
+    let caption = caption(shown, setup);
+    Ok(Picture::new(shown.case, &figure.caption(caption.clone()), caption)?)
+}
+
+fn caption(shown: &Shown, setup: &Setup) -> String {
+    let [from, to] = shown.window;
+    let mut caption = format!(
+        "Displacement and velocity of the cylinder (a, b) and of the ball (c, d), relative displacement (e) and voltage (f). {} \
+         Shown are {from} to {to} s, every {} ms and at both sides of each corner. The voltage is U_in with a peak to \
+         U_DE4 = U_in + the jump of gain.voltage at each impact, Eq. (12), as the paper draws it: how it falls is not shown.",
+        setup.caption,
+        1e3 * STEP,
+    );
+    if let Some(rule) = shown.circled {
+        caption += &format!(" Dots in (c) and (e): {}.", rule.words());
+    }
+    caption
+}
+
+fn samples(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {
+    let headings = OUTPUTS.iter().map(|(_, heading, _)| (*heading).to_owned());
+    let voltages = ["left", "right"].map(|side| format!("voltage of the {side} membrane (kV)"));
+    let voltage = |sample: &Sample, left: bool| {
+        let here = |impact: &&Impact| impact.time == sample.time && impact.left == left;
+        // Impacts lie in the order of time.
+        let first = recording.impacts.partition_point(|impact| impact.time < sample.time);
+        let gain = recording.impacts[first..].first().filter(here).map_or(0.0, |impact| impact.gain);
+        1e-3 * (setup.bias_voltage + gain)
+    };
+    let row = |sample: &Sample| {
+        let values = OUTPUTS.iter().zip(sample.values).map(|((.., factor), value)| factor * value);
+        let voltages = [true, false].map(|left| voltage(sample, left));
+        std::iter::once(sample.time).chain(values).chain(voltages).collect()
+    };
+    Sheet {
+        name: shown.case.to_owned(),
+        columns: std::iter::once("time (s)".to_owned()).chain(headings).chain(voltages).collect(),
+        rows: recording.samples.iter().map(row).collect(),
+    }
+}
+
+fn impacts(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {
+    let columns = ["time (s)", "membrane (1 left, 2 right)", "relative speed (m/s)", "U_DE4 (V)", "z_m (mm)"];
+    let row = |i: &Impact| {
+        let side = if i.left { 1.0 } else { 2.0 };
+        vec![i.time, side, i.speed, setup.bias_voltage + i.gain, 1e3 * i.ball]
+    };
+    Sheet {
+        name: format!("{}-impacts", shown.case),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: recording.impacts.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,218 @@
+//! The saw-tooth orbit of Figure 10, and its multipliers.
+//!
+//! With r = 1 the ball flies from membrane to membrane in half a period T/2 and meets each at a turning point of the
+//! cylinder, whose velocity is 0 then and whose acceleration is g = A / M. Let it hit dt later than it should and fly by q
+//! faster: to first order the wall stands where it should and moves at g dt, so an impact changes q by -2 g dt, and the next
+//! one is late by dt - T/(2 V) q, V the speed of the orbit. Half a period thus takes (dt, q) through a matrix of determinant
+//! 1 and trace 2 + 2 k, k = g T / (2 V): the orbit is a saddle. Where the force has the opposite sign at the impacts, the trace
+//! is 2 - 2 k, and the orbit a centre.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::{PaperError, Workshop};
+use crate::scenario::Setting;
+
+/// At which turning point of the cylinder the ball hits a membrane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// The wall accelerates away from the ball: the start of the paper.
+    Paper,
+    /// The force has the opposite sign.
+    Opposite,
+}
+
+/// A saw-tooth orbit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Orbit {
+    pub(super) phase: Phase,
+    /// `f_0`, Hz.
+    pub(super) frequency: f64,
+    /// s/2, m.
+    pub(super) half_travel: f64,
+    /// A / M, m/s^2.
+    pub(super) acceleration: f64,
+}
+
+/// How a small distance from an orbit changes within one period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Multipliers {
+    /// Real ones: the larger and the smaller by modulus.
+    Saddle([f64; 2]),
+    /// A conjugate pair: modulus and angle, rad.
+    Centre([f64; 2]),
+}
+
+impl Multipliers {
+    /// Eigenvalues of a matrix of two rows.
+    pub(super) fn of(matrix: [[f64; 2]; 2]) -> Self {
+        let [[a, b], [c, d]] = matrix;
+        let (middle, determinant) = (0.5 * (a + d), a * d - b * c);
+        let discriminant = middle * middle - determinant;
+        if discriminant < 0.0 {
+            return Self::Centre([determinant.sqrt(), (-discriminant).sqrt().atan2(middle)]);
+        }
+        let larger = middle + discriminant.sqrt().copysign(middle);
+        Self::Saddle([larger, determinant / larger])
+    }
+
+    /// Modulus of the larger one.
+    pub(super) fn largest(self) -> f64 {
+        let (Self::Saddle([largest, _]) | Self::Centre([largest, _])) = self;
+        largest.abs()
+    }
+}
+
+impl Orbit {
+    /// The orbit of a case, its parameters read from the FMU.
+    pub(super) fn of(workshop: &Workshop<'_>, settings: &[Setting], phase: Phase) -> Result<Self, PaperError> {
+        let instance = workshop.start(settings)?;
+        let names = ["excitation.frequency", "ball.travel", "excitation.amplitude", "cylinder.mass"];
+        let [frequency, travel, amplitude, mass] = workshop.reals(&instance, names)?;
+        Ok(Self { phase, frequency, half_travel: travel / 2.0, acceleration: amplitude / mass })
+    }
+
+    pub(super) fn period(&self) -> f64 {
+        1.0 / self.frequency
+    }
+
+    /// `z_M` at the impact on the right membrane, m: minus or plus the amplitude.
+    fn turning_point(&self) -> f64 {
+        let omega = TAU * self.frequency;
+        let swing = self.acceleration / (omega * omega);
+        if self.phase == Phase::Paper { -swing } else { swing }
+    }
+
+    /// Speed of the ball, m/s: 4 `f_0` `z_m`(0).
+    pub(super) fn speed(&self) -> f64 {
+        4.0 * self.frequency * (self.half_travel + self.turning_point())
+    }
+
+    /// Settings that start the FMU at the impact on the right membrane, with the ball already on its way.
+    pub(super) fn at_impact(&self) -> Vec<Setting> {
+        let position = self.turning_point();
+        let phase = if self.phase == Phase::Paper { 0.0 } else { PI };
+        self.start(phase, [position, 0.0], [self.half_travel + position, -self.speed()])
+    }
+
+    /// `z_M - z_m`, m, and its rate, m/s, a quarter of a period after the impact on the right membrane.
+    pub(super) fn in_the_middle(&self) -> [f64; 2] {
+        [0.0, -self.turning_point() * TAU * self.frequency + self.speed()]
+    }
+
+    /// Settings that start the FMU there, with this relative displacement, m, and velocity, m/s.
+    fn from_the_middle(&self, [displacement, velocity]: [f64; 2]) -> Vec<Setting> {
+        let phase = if self.phase == Phase::Paper { FRAC_PI_2 } else { FRAC_PI_2 + PI };
+        let cylinder = [0.0, -self.turning_point() * TAU * self.frequency];
+        self.start(phase, cylinder, [cylinder[0] - displacement, cylinder[1] - velocity])
+    }
+
+    fn start(&self, phase: f64, cylinder: [f64; 2], ball: [f64; 2]) -> Vec<Setting> {
+        let values = [
+            ("excitation.frequency", self.frequency),
+            ("excitation.phase", phase),
+            ("initial.cylinderPosition", cylinder[0]),
+            ("initial.cylinderVelocity", cylinder[1]),
+            ("initial.ballPosition", ball[0]),
+            ("initial.ballVelocity", ball[1]),
+        ];
+        values.map(|(name, value)| Setting { name: name.to_owned(), value: format!("{value:?}") }).to_vec()
+    }
+
+    /// Distance of a relative displacement and velocity from the orbit's in the middle, in units of s/2 and V.
+    pub(super) fn distance(&self, [displacement, velocity]: [f64; 2]) -> f64 {
+        let [d, v] = self.in_the_middle();
+        ((displacement - d) / self.half_travel).hypot((velocity - v) / self.speed())
+    }
+
+    /// Multipliers by the closed form.
+    pub(super) fn closed_form(&self) -> Multipliers {
+        let k = self.acceleration * self.period() / (2.0 * self.speed());
+        let k = if self.phase == Phase::Paper { k } else { -k };
+        let tau = self.period() / (2.0 * self.speed());
+        let g = k / tau;
+        // (dt, q) after half a period; the other half is its mirror image.
+        let half = [[1.0, -tau], [-2.0 * g, 1.0 + 2.0 * g * tau]];
+        Multipliers::of(product(half, half))
+    }
+
+    /// Multipliers by central differences of runs of the FMU over one period; `settings` are those of the case.
+    pub(super) fn by_differences(
+        &self,
+        workshop: &Workshop<'_>,
+        settings: &[Setting],
+    ) -> Result<Multipliers, PaperError> {
+        /// Step in units of s/2 and V: its square is the error of the differences, rounding over it their noise.
+        const STEP: f64 = 1e-5;
+        let scale = [self.half_travel, self.speed()];
+        let middle = self.in_the_middle();
+        let mut matrix = [[0.0; 2]; 2];
+        for column in 0..2 {
+            let after = |step: f64| {
+                let mut state = middle;
+                state[column] += step * scale[column];
+                self.after_a_period(workshop, settings, state)
+            };
+            let (ahead, behind) = (after(STEP)?, after(-STEP)?);
+            for row in 0..2 {
+                matrix[row][column] = (ahead[row] - behind[row]) / (2.0 * STEP * scale[row]);
+            }
+        }
+        Ok(Multipliers::of(matrix))
+    }
+
+    fn after_a_period(
+        &self,
+        workshop: &Workshop<'_>,
+        settings: &[Setting],
+        state: [f64; 2],
+    ) -> Result<[f64; 2], PaperError> {
+        let mut instance = workshop.start(&[settings, &self.from_the_middle(state)].concat())?;
+        instance.do_step(0.0, self.period())?;
+        let [displacement, cylinder, ball] =
+            workshop.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
+        Ok([displacement, cylinder - ball])
+    }
+}
+
+fn product(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|row| [0, 1].map(|column| a[row][0] * b[0][column] + a[row][1] * b[1][column]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn multipliers_are_eigenvalues() {
+        assert_eq!(Multipliers::of([[2.0, 0.0], [7.0, 0.5]]), Multipliers::Saddle([2.0, 0.5]));
+        assert_eq!(Multipliers::of([[-0.5, 0.0], [0.0, -2.0]]), Multipliers::Saddle([-2.0, -0.5]));
+        let (sin, cos) = 0.7_f64.sin_cos();
+        let Multipliers::Centre([modulus, angle]) = Multipliers::of([[cos, -sin], [sin, cos]]) else {
+            panic!("saddle")
+        };
+        assert_relative_eq!(modulus, 1.0);
+        assert_relative_eq!(angle, 0.7, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn the_closed_form_has_the_trace_of_half_a_period() {
+        // k = g T / (2 V): multipliers of half a period have the sum 2 + 2 k and the product 1.
+        for phase in [Phase::Paper, Phase::Opposite] {
+            let orbit = Orbit { phase, frequency: 2.0, half_travel: 0.022, acceleration: 0.01 / 0.1245 };
+            let k = orbit.acceleration * orbit.period() / (2.0 * orbit.speed());
+            match orbit.closed_form() {
+                Multipliers::Saddle([large, small]) => {
+                    assert!(phase == Phase::Paper);
+                    assert_relative_eq!(large.sqrt() + small.sqrt(), 2.0 + 2.0 * k, max_relative = 1e-12);
+                    assert_relative_eq!(large * small, 1.0, max_relative = 1e-12);
+                }
+                Multipliers::Centre([modulus, angle]) => {
+                    assert!(phase == Phase::Opposite);
+                    assert_relative_eq!(modulus, 1.0, max_relative = 1e-12);
+                    assert_relative_eq!(2.0 * (angle / 2.0).cos(), 2.0 - 2.0 * k, max_relative = 1e-12);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Figure 10 and whether its orbit lasts: multipliers, growth of small perturbations, and what the paper's stepping does.
+
+use videg_model::Case;
+
+use super::fixed_step::FixedStep;
+use super::motion;
+use super::motion_findings::Fact;
+use super::orbit::{Multipliers, Orbit, Phase};
+use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Workshop};
+use crate::report::{Figure, Panel, Series, Style};
+use crate::scenario::Setting;
+
+const CASE: &str = "fig10";
+
+/// How long perturbations are followed, s: the length of the paper's runs.
+const UNTIL: f64 = 100.0;
+
+/// Nudges of the ball's velocity at the start, m/s.
+const NUDGES: [f64; 4] = [1e-12, 1e-10, 1e-8, 1e-6];
+
+/// A frequency, Hz, whose period doubles cannot hold exactly.
+const INEXACT: f64 = 2.1;
+
+/// Distance from the orbit, in units of s/2 and its speed, beyond which it has been left.
+const LEFT: f64 = 1e-2;
+
+/// Distances from an orbit, once a period.
+struct Track {
+    label: String,
+    /// Time, s, and distance in units of s/2 and V.
+    points: Vec<(f64, f64)>,
+}
+
+impl Track {
+    /// When the orbit is left, s.
+    fn leaves(&self) -> Option<f64> {
+        self.points.iter().find(|(_, distance)| *distance > LEFT).map(|(time, _)| *time)
+    }
+
+    /// Rate at which the distance grows, 1/s, by least squares, from ten times the first distance until the orbit is left.
+    fn growth(&self) -> f64 {
+        let first = self.points.first().map_or(f64::NAN, |point| point.1);
+        let end = self.leaves().unwrap_or(UNTIL);
+        let straight = self.points.iter().filter(|(time, distance)| *distance > 10.0 * first && *time < end);
+        let logs: Vec<_> = straight.map(|(time, distance)| (*time, distance.ln())).collect();
+        let mean = |value: fn(&(f64, f64)) -> f64| logs.iter().map(value).sum::<f64>() / logs.len() as f64;
+        let (time, log) = (mean(|point| point.0), mean(|point| point.1));
+        let sum = |term: &dyn Fn(&(f64, f64)) -> f64| logs.iter().map(term).sum::<f64>();
+        sum(&|(t, l)| (t - time) * (l - log)) / sum(&|(t, _)| (t - time) * (t - time))
+    }
+}
+
+/// Everything that is said of the orbit.
+struct Stability {
+    orbit: Orbit,
+    closed_form: Multipliers,
+    by_differences: Multipliers,
+    opposite: Orbit,
+    opposite_by_differences: Multipliers,
+    /// `<U>` of the orbit of the opposite phase, V/s.
+    opposite_gain: f64,
+    /// One for each of [`NUDGES`].
+    nudged: Vec<Track>,
+    exact: Track,
+    inexact: Track,
+    stepped: Option<Track>,
+    opposite_nudged: Track,
+}
+
+/// Makes Figure 10.
+pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let mut artefact = motion::make(workshop, 10)?;
+    let stability = Stability::of(workshop)?;
+    artefact.findings.extend(stability.findings());
+    artefact.text.extend(stability.text());
+    artefact.pictures.push(stability.picture()?);
+    artefact.sheets.push(stability.sheet());
+    Ok(artefact)
+}
+
+impl Stability {
+    fn of(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
+        let settings = workshop.case(CASE)?;
+        let orbit = Orbit::of(workshop, &settings, Phase::Paper)?;
+        let opposite = Orbit { phase: Phase::Opposite, ..orbit };
+        let nudged = workshop
+            .each(&NUDGES, |nudge| track(workshop, &settings, &orbit, *nudge, format!("nudged by {nudge:e} m/s")))?;
+        let at_other_frequency = Orbit { frequency: INEXACT, ..orbit };
+        let window = [50.0, UNTIL];
+        let run = Run { settings: [settings.as_slice(), &opposite.at_impact()].concat(), window };
+        let gain = workshop.averages(&[run])?.first().map_or(f64::NAN, |averages| averages.voltage_gain);
+        Ok(Self {
+            orbit,
+            closed_form: orbit.closed_form(),
+            by_differences: orbit.by_differences(workshop, &settings)?,
+            opposite,
+            opposite_by_differences: opposite.by_differences(workshop, &settings)?,
+            opposite_gain: gain,
+            nudged,
+            exact: track(workshop, &settings, &orbit, 0.0, "not nudged".to_owned())?,
+            inexact: track(workshop, &settings, &at_other_frequency, 0.0, format!("not nudged, f_0 = {INEXACT} Hz"))?,
+            stepped: stepped(&orbit),
+            opposite_nudged: track(
+                workshop,
+                &settings,
+                &opposite,
+                NUDGES[3],
+                format!("opposite phase, nudged by {:e} m/s", NUDGES[3]),
+            )?,
+        })
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        let fact = |quantity, unit| Fact { number: 10, quantity, unit };
+        let until = |track: &Track| track.leaves().unwrap_or(UNTIL);
+        let closed = self.closed_form.largest();
+        let rate = closed.ln() / self.orbit.period();
+        let mut findings = vec![
+            fact("largest multiplier of the orbit over a period", "1").own(
+                self.by_differences.largest(),
+                format!("above 1: the orbit is unstable; closed form {closed:.6}, the other is its inverse"),
+            ),
+            fact("growth of a nudge of 1e-12 m/s", "1/s")
+                .own(self.nudged[0].growth(), format!("ln(multiplier) / T is {rate:.4} 1/s")),
+            fact("time on the orbit from the exact start", "s").own(
+                until(&self.exact),
+                format!("of {UNTIL} s: impacts fall on multiples of T/2 = 1/4 s, which doubles hold exactly"),
+            ),
+            fact("time on the orbit from the exact start at f_0 = 2.1 Hz", "s")
+                .own(until(&self.inexact), "rounding alone: T/2 is no double"),
+        ];
+        findings.extend(self.stepped.as_ref().map(|track| {
+            fact("time on the orbit by the paper's stepping", "s")
+                .own(until(track), "Runge-Kutta of fourth order at 1e-5 s, Eq. (11) at the end of a step")
+        }));
+        let angle = match self.opposite_by_differences {
+            Multipliers::Centre([_, angle]) => format!("a pair of angle {:.3} rad: neutrally stable", angle),
+            Multipliers::Saddle(_) => "real".to_owned(),
+        };
+        findings.push(
+            fact("modulus of the multipliers with the force of opposite sign", "1")
+                .own(self.opposite_by_differences.largest(), angle),
+        );
+        findings.push(fact("<U> with the force of opposite sign", "V/s").own(self.opposite_gain, "50 to 100 s"));
+        findings
+    }
+
+    fn text(&self) -> Vec<String> {
+        let rate = self.closed_form.largest().ln() / self.orbit.period();
+        let stepped = self.stepped.as_ref().and_then(Track::leaves);
+        let stepped = stepped.map_or_else(String::new, |time| {
+            format!(" The paper's own stepping leaves the orbit at {time:.1} s, before the averaging window begins; that the paper prints the value of the orbit all the same is not explained by it.")
+        });
+        vec![
+            format!(
+                "The orbit is a saddle: to first order an impact that is late by dt changes the ball's speed by -2 (A/M) dt, and \
+                 half a period takes (delay, speed) through a matrix of determinant 1 and trace 2 + A/(M f_0 V), V = {:.5} m/s. \
+                 A small distance grows {:.3} times in each period, tenfold in {:.2} s. Rounding errors of 1e-16 would take \
+                 some 17 s to be seen; with f_0 = 2 Hz the run of the FMU makes none, since all impact times are doubles, and it \
+                 keeps the orbit.{stepped}",
+                self.orbit.speed(),
+                self.closed_form.largest(),
+                10.0_f64.ln() / rate,
+            ),
+            format!(
+                "With the force of opposite sign (excitation.phase = pi) the same motion, started at z_M(0) = +A/(M (2 pi f_0)^2) \
+                 with V = {:.5} m/s, is neutrally stable: its multipliers lie on the unit circle, and a nudge stays as small as \
+                 it is. It would be the one to build.",
+                self.opposite.speed(),
+            ),
+        ]
+    }
+
+    fn tracks(&self) -> Vec<&Track> {
+        let mut tracks: Vec<_> = self.nudged.iter().collect();
+        tracks.push(&self.inexact);
+        tracks.extend(&self.stepped);
+        tracks.push(&self.opposite_nudged);
+        tracks
+    }
+
+    fn picture(&self) -> Result<Picture, PaperError> {
+        let rate = self.closed_form.largest().ln() / self.orbit.period();
+        let start = self.nudged[0].points.first().map_or(f64::NAN, |point| point.1);
+        let end = (1.0 / start).ln() / rate;
+        let slope = [(0.0, start), (end, 1.0)];
+        let mut panel = Panel::new("", "time (s)", "distance from the orbit")
+            .log_y()
+            .x_range(0.0, 50.0)
+            .y_range(1e-17, 10.0)
+            .height(320.0)
+            .series(Series::points("multiplier, closed form", &slope).style(Style::Dashed).color(6));
+        for (color, track) in self.tracks().into_iter().enumerate() {
+            // The palette has 8 colours, of which the slope has the seventh.
+            let color = if color < 6 { color } else { 7 };
+            panel = panel.series(Series::points(track.label.as_str(), &track.points).color(color));
+        }
+        let caption = format!(
+            "Distance from the orbit of Figure 10 once a period, in units of s/2 and of the ball's speed, after a nudge of the \
+             ball's velocity at the start; the run that is not nudged stays at a distance of {:.0e} at most for {UNTIL} s.",
+            self.exact.points.iter().map(|point| point.1).fold(0.0, f64::max)
+        );
+        let figure =
+            Figure::new("How long the saw-tooth orbit lasts").width(960.0).panel(panel).caption(caption.clone());
+        Ok(Picture::new("fig10-stability", &figure, caption)?)
+    }
+
+    fn sheet(&self) -> Sheet {
+        let mut tracks = self.tracks();
+        tracks.insert(0, &self.exact);
+        let columns = tracks
+            .iter()
+            .flat_map(|track| [format!("time (s), {0}", track.label), format!("distance (1), {0}", track.label)]);
+        let longest = tracks.iter().map(|track| track.points.len()).max().unwrap_or(0);
+        let row = |index: usize| {
+            let cells = |track: &&Track| track.points.get(index).map_or([f64::NAN; 2], |point| [point.0, point.1]);
+            tracks.iter().flat_map(cells).collect()
+        };
+        Sheet { name: "fig10-stability".to_owned(), columns: columns.collect(), rows: (0..longest).map(row).collect() }
+    }
+}
+
+/// A run of the FMU from the orbit's start with the ball's velocity nudged, m/s.
+fn track(
+    workshop: &Workshop<'_>,
+    settings: &[Setting],
+    orbit: &Orbit,
+    nudge: f64,
+    label: String,
+) -> Result<Track, PaperError> {
+    let velocity = Setting { name: "initial.ballVelocity".to_owned(), value: format!("{:?}", nudge - orbit.speed()) };
+    let mut instance = workshop.start(&[settings, &orbit.at_impact(), &[velocity]].concat())?;
+    let mut points = Vec::new();
+    let mut now = 0.0;
+    for time in middles(orbit) {
+        instance.do_step(now, time - now)?;
+        now += time - now;
+        let [displacement, cylinder, ball] =
+            workshop.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
+        points.push((time, orbit.distance([displacement, cylinder - ball])));
+    }
+    instance.terminate()?;
+    Ok(Track { label, points })
+}
+
+/// Times, s, at which the ball passes the middle of the cylinder from the right membrane on.
+fn middles(orbit: &Orbit) -> impl Iterator<Item = f64> + use<> {
+    let period = orbit.period();
+    (0..).map(move |cycle| (f64::from(cycle) + 0.25) * period).take_while(|time| *time < UNTIL)
+}
+
+/// The paper's method from the paper's start.
+fn stepped(orbit: &Orbit) -> Option<Track> {
+    let parameters = (Case::find(CASE)?.parameters)();
+    let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity]);
+    let points = middles(orbit).filter_map(|time| {
+        run.advance(time);
+        run.first().map(|state| (time, orbit.distance(state)))
+    });
+    Some(Track { label: "paper's stepping, not nudged".to_owned(), points: points.collect() })
+}

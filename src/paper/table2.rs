@@ -1,0 +1,240 @@
+//! Table 2: the average voltage gain, and how far nearby starts and the paper's own stepping scatter.
+
+use videg_model::Case;
+
+use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
+use super::fixed_step::FixedStep;
+use super::table2_output::{picture, sheets, table, text};
+use super::{Artefact, Effort, Finding, PaperError, Run, Verdict, Workshop};
+use crate::scenario::Setting;
+
+/// Averaging window of the paper, s.
+pub(super) const WINDOW: [f64; 2] = [50.0, 100.0];
+
+/// Largest nudge for the paper's method, m/s: what its time step makes of one impact, 2 A/M times 1e-5 s. Smaller ones change
+/// no step at which the ball hits a membrane for a long time, so that all starts would be the same.
+pub(super) const STEPPED_NUDGE: f64 = 1e-4;
+
+/// Starts that one core steps at once by the paper's method.
+const BATCH: usize = 20;
+
+/// How a case moves, and so how it can be compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Motion {
+    /// Nearby starts end in one motion; agreement is a relative difference of at most this.
+    Damped(f64),
+    /// An orbit that nearby starts leave.
+    Unstable,
+    /// r = 1: one distribution whatever the start.
+    Chaotic,
+}
+
+/// A column of the table.
+pub(super) struct Printed {
+    /// Number of the figure.
+    pub(super) number: u32,
+    /// Its case.
+    pub(super) case: &'static str,
+    /// `<U>`, V/s.
+    pub(super) gain: f64,
+    pub(super) motion: Motion,
+}
+
+const PRINTED: [Printed; 6] = [
+    Printed { number: 10, case: "fig10", gain: 1831.0, motion: Motion::Unstable },
+    Printed { number: 11, case: "fig11", gain: 6749.0, motion: Motion::Chaotic },
+    Printed { number: 12, case: "fig12", gain: 6730.0, motion: Motion::Chaotic },
+    Printed { number: 13, case: "fig13", gain: 6989.0, motion: Motion::Chaotic },
+    Printed { number: 14, case: "fig14", gain: 8079.0, motion: Motion::Damped(1e-4) },
+    Printed { number: 15, case: "fig15", gain: 8652.0, motion: Motion::Damped(2e-3) },
+];
+
+/// A column of the table, computed. All values are `<U>`, V/s.
+pub(super) struct Computed {
+    pub(super) printed: &'static Printed,
+    /// The start of the paper.
+    pub(super) own: f64,
+    /// Nearby starts, in the order of the nudges.
+    pub(super) values: Vec<f64>,
+    pub(super) nearby: Ensemble,
+    /// Nearby starts by the paper's method, where one motion does not stand for all.
+    pub(super) stepped: Option<Ensemble>,
+}
+
+impl Computed {
+    pub(super) fn deviation(&self) -> f64 {
+        self.own / self.printed.gain - 1.0
+    }
+
+    pub(super) fn is_chaotic(&self) -> bool {
+        self.printed.motion == Motion::Chaotic
+    }
+}
+
+/// Everything that the table shows.
+pub(super) struct Computation {
+    pub(super) nudges: Vec<f64>,
+    pub(super) cases: Vec<Computed>,
+    /// Figure 12 with a ball that starts free.
+    pub(super) free: Computed,
+    /// Nearby starts of all chaotic cases together.
+    pub(super) pooled: Ensemble,
+}
+
+/// Makes the table.
+pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let computation = compute(workshop)?;
+    let mut findings: Vec<_> = computation.cases.iter().map(|case| finding(case, &computation.pooled)).collect();
+    findings.extend(other_rule(&computation.free));
+    findings.extend(computation.cases.iter().filter_map(by_the_papers_method));
+    Ok(Artefact {
+        findings,
+        text: text(&computation),
+        tables: vec![table(&computation)],
+        pictures: vec![picture(&computation)?],
+        sheets: sheets(&computation),
+    })
+}
+
+fn compute(workshop: &Workshop<'_>) -> Result<Computation, PaperError> {
+    let count = match workshop.effort {
+        Effort::Full => 200,
+        Effort::Quick => 40,
+    };
+    let nudges = ensemble::nudges(count, NUDGE);
+    let coarse = ensemble::nudges(count, STEPPED_NUDGE);
+    let mut cases = Vec::new();
+    for printed in &PRINTED {
+        let mut case = computed(workshop, printed, workshop.case(printed.case)?, &nudges)?;
+        if !matches!(printed.motion, Motion::Damped(_)) {
+            case.stepped = stepped(workshop, printed, &coarse)?;
+        }
+        cases.push(case);
+    }
+    let rule = Setting { name: "initial.outsideGap".to_owned(), value: "free".to_owned() };
+    let free = workshop.case("fig12")?.into_iter().chain([rule]).collect();
+    let free = computed(workshop, &PRINTED[2], free, &nudges)?;
+    let pooled = cases.iter().filter(|case| case.is_chaotic()).flat_map(|case| case.values.iter().copied());
+    let pooled = Ensemble::new(pooled.collect());
+    Ok(Computation { nudges, cases, free, pooled })
+}
+
+/// The start of the paper and those nearby, through the FMU.
+fn computed(
+    workshop: &Workshop<'_>,
+    printed: &'static Printed,
+    settings: Vec<Setting>,
+    nudges: &[f64],
+) -> Result<Computed, PaperError> {
+    let values = voltage_gains(workshop, nearby(workshop, &settings, nudges)?, WINDOW)?;
+    let own = workshop.averages(&[Run { settings, window: WINDOW }])?;
+    let own = own.first().map_or(f64::NAN, |averages| averages.voltage_gain);
+    Ok(Computed { printed, own, nearby: Ensemble::new(values.clone()), values, stepped: None })
+}
+
+/// Nearby starts by the paper's method.
+fn stepped(workshop: &Workshop<'_>, printed: &Printed, nudges: &[f64]) -> Result<Option<Ensemble>, PaperError> {
+    let Some(case) = Case::find(printed.case) else { return Ok(None) };
+    let parameters = (case.parameters)();
+    let batches: Vec<Vec<f64>> = nudges
+        .chunks(BATCH)
+        .map(|batch| batch.iter().map(|nudge| parameters.ball_velocity + nudge).collect())
+        .collect();
+    let gains =
+        workshop.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities).voltage_gains(WINDOW)))?;
+    Ok(Some(Ensemble::new(gains.concat())))
+}
+
+fn finding(case: &Computed, pooled: &Ensemble) -> Finding {
+    let (verdict, reason) = judge(case, pooled);
+    Finding {
+        place: format!("Table 2, Figure {}", case.printed.number),
+        quantity: "<U>, Eq. (15)".to_owned(),
+        unit: "V/s".to_owned(),
+        paper: Some(case.printed.gain),
+        videg: case.own,
+        verdict,
+        reason,
+    }
+}
+
+fn judge(case: &Computed, pooled: &Ensemble) -> (Verdict, String) {
+    let (paper, nearby) = (case.printed.gain, &case.nearby);
+    let [low, high] = nearby.range();
+    let range = format!("{} starts nudged by up to {NUDGE:e} m/s give {low:.0} to {high:.0} V/s", nearby.len());
+    match case.printed.motion {
+        Motion::Damped(tolerance) if case.deviation().abs() <= tolerance => {
+            let spread = (high - low) / case.own;
+            let reason = if spread > tolerance / 10.0 { format!("weakly chaotic: {range}") } else { String::new() };
+            (Verdict::Agrees, reason)
+        }
+        Motion::Damped(_) => (Verdict::Differs, range),
+        Motion::Unstable if case.deviation().abs() <= 1e-3 && nearby.contains(paper) => {
+            (Verdict::Explained, format!("unstable orbit, kept here to the last bit; {range}"))
+        }
+        Motion::Unstable => (Verdict::Differs, range),
+        Motion::Chaotic => judge_chaotic(paper, nearby, pooled),
+    }
+}
+
+fn judge_chaotic(paper: f64, nearby: &Ensemble, pooled: &Ensemble) -> (Verdict, String) {
+    let (below, count) = (nearby.below(paper), nearby.len());
+    let spread = format!(
+        "mean {:.0}, 5 to 95 %: {:.0} to {:.0} V/s",
+        nearby.mean(),
+        nearby.quantile(0.05),
+        nearby.quantile(0.95)
+    );
+    if nearby.contains(paper) {
+        return (
+            Verdict::WithinEnsemble,
+            format!("chaotic: {below} of {count} nearby starts lie below the paper's value ({spread})"),
+        );
+    }
+    let [low, high] = nearby.range();
+    let beyond = format!("beyond the {low:.0} to {high:.0} V/s of its {count} nearby starts ({spread})");
+    if pooled.contains(paper) {
+        let share = format!("{} of {} of all three cases lie below it", pooled.below(paper), pooled.len());
+        return (Verdict::Explained, format!("chaotic, with one distribution for Figures 11 to 13: {beyond}; {share}"));
+    }
+    (Verdict::Differs, beyond)
+}
+
+/// Figure 12 under the rule that is not the default.
+fn other_rule(free: &Computed) -> Vec<Finding> {
+    let [low, high] = free.nearby.range();
+    let reason = format!(
+        "the other reading of a start outside the gap keeps to another motion: {} nearby starts give {low:.1} to {high:.1} V/s",
+        free.nearby.len()
+    );
+    let verdict = if free.nearby.contains(free.printed.gain) { Verdict::WithinEnsemble } else { Verdict::Explained };
+    vec![Finding {
+        place: "Table 2, Figure 12, initial.outsideGap = free".to_owned(),
+        quantity: "<U>, Eq. (15)".to_owned(),
+        unit: "V/s".to_owned(),
+        paper: Some(free.printed.gain),
+        videg: free.own,
+        verdict,
+        reason,
+    }]
+}
+
+/// Whether the paper's way of stepping explains its value.
+fn by_the_papers_method(case: &Computed) -> Option<Finding> {
+    let stepped = case.stepped.as_ref()?;
+    let [low, high] = stepped.range();
+    let paper = case.printed.gain;
+    Some(Finding {
+        place: format!("Table 2, Figure {}", case.printed.number),
+        quantity: "<U> by the paper's stepping, mean of nearby starts".to_owned(),
+        unit: "V/s".to_owned(),
+        paper: None,
+        videg: stepped.mean(),
+        verdict: Verdict::Beyond,
+        reason: format!(
+            "{} starts nudged by up to {STEPPED_NUDGE:e} m/s give {low:.0} to {high:.0} V/s; below the paper's {paper}: {}",
+            stepped.len(),
+            stepped.below(paper)
+        ),
+    })
+}
