@@ -8,19 +8,33 @@ use videg_model::{Membrane, Parameters};
 /// The paper's time step, s (Section 4.2).
 pub(super) const STEP: f64 = 1e-5;
 
+/// What a window of a run comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Stepped {
+    /// `<U>`, Eq. (15), V/s.
+    pub(super) voltage_gain: f64,
+    /// P, Eq. (14), W.
+    pub(super) power: f64,
+    /// Impacts counted.
+    pub(super) impacts: u64,
+}
+
 /// One ball.
 #[derive(Debug, Clone, Copy)]
 struct Ball {
     position: f64,
     velocity: f64,
-    /// Sum of `U_DE4` - `U_in`, V.
-    gain: f64,
+    /// Sum of `C_3` / `C_2` - 1.
+    excess: f64,
+    impacts: u64,
 }
 
 /// A cylinder with many balls that do not feel each other.
 pub(super) struct FixedStep {
     parameters: Parameters,
     membrane: Membrane,
+    /// s.
+    step: f64,
     steps: u64,
     /// `z_M`, m, its rate, m/s, and that of the rate, m/s^2.
     cylinder: [f64; 3],
@@ -28,19 +42,19 @@ pub(super) struct FixedStep {
 }
 
 impl FixedStep {
-    /// Balls that start with `velocities`, m/s. One that starts beyond a membrane is put on it.
-    pub(super) fn new(parameters: &Parameters, velocities: &[f64]) -> Self {
+    /// Balls that start with `velocities`, m/s, to be followed by a `step`, s. One that starts beyond a membrane is put on it.
+    pub(super) fn new(parameters: &Parameters, velocities: &[f64], step: f64) -> Self {
         let p = *parameters;
         let half = p.travel() / 2.0;
         let position = p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half);
-        let balls = velocities.iter().map(|&velocity| Ball { position, velocity, gain: 0.0 }).collect();
+        let balls = velocities.iter().map(|&velocity| Ball { position, velocity, excess: 0.0, impacts: 0 }).collect();
         let cylinder = [p.cylinder_position, p.cylinder_velocity, acceleration(&p, 0.0)];
-        Self { parameters: p, membrane: Membrane::new(&p), steps: 0, cylinder, balls }
+        Self { parameters: p, membrane: Membrane::new(&p), step, steps: 0, cylinder, balls }
     }
 
     /// Steps on to the point of the grid that is nearest to `time`, s.
     pub(super) fn advance(&mut self, time: f64) {
-        while (self.steps as f64 + 0.5) * STEP < time {
+        while (self.steps as f64 + 0.5) * self.step < time {
             self.step();
         }
     }
@@ -51,32 +65,41 @@ impl FixedStep {
         self.balls.first().map(|ball| [z - ball.position, v - ball.velocity])
     }
 
-    /// `<U>` of each ball, V/s, Eq. (15), over a window, s.
-    pub(super) fn voltage_gains(mut self, [from, to]: [f64; 2]) -> Vec<f64> {
+    /// What a window, s, comes to for each ball.
+    pub(super) fn run(mut self, [from, to]: [f64; 2]) -> Vec<Stepped> {
         self.advance(from);
-        let before: Vec<f64> = self.balls.iter().map(|ball| ball.gain).collect();
+        let before = self.balls.clone();
         self.advance(to);
-        self.balls.iter().zip(before).map(|(ball, before)| (ball.gain - before) / (to - from)).collect()
+        let bias = self.parameters.bias_voltage;
+        let ended = self.balls.iter().zip(before).map(|(ball, before)| {
+            let excess = (ball.excess - before.excess) / (to - from);
+            Stepped {
+                voltage_gain: bias * excess,
+                power: 0.5 * bias * bias * self.membrane.rest_capacitance() * excess,
+                impacts: ball.impacts - before.impacts,
+            }
+        });
+        ended.collect()
     }
 
     fn step(&mut self) {
-        let p = &self.parameters;
+        let (p, dt) = (&self.parameters, self.step);
         let [z, v, start] = self.cylinder;
-        let time = self.steps as f64 * STEP;
+        let time = self.steps as f64 * dt;
         self.steps += 1;
         // The right-hand side depends on time only: the two middle stages of the method are one.
-        let (middle, end) = (acceleration(p, time + 0.5 * STEP), acceleration(p, self.steps as f64 * STEP));
-        let z = z + STEP * v + STEP * STEP / 6.0 * (start + 2.0 * middle);
-        let v = v + STEP / 6.0 * (start + 4.0 * middle + end);
+        let (middle, end) = (acceleration(p, time + 0.5 * dt), acceleration(p, self.steps as f64 * dt));
+        let z = z + dt * v + dt * dt / 6.0 * (start + 2.0 * middle);
+        let v = v + dt / 6.0 * (start + 4.0 * middle + end);
         self.cylinder = [z, v, end];
         let half = p.travel() / 2.0;
         for ball in &mut self.balls {
-            ball.position += STEP * ball.velocity;
+            ball.position += dt * ball.velocity;
             let (gap, closing) = (z - ball.position, v - ball.velocity);
             if gap.abs() >= half && gap * closing > 0.0 {
                 ball.velocity = v + p.restitution * closing;
-                let deflection = self.membrane.deflection(closing.abs());
-                ball.gain += self.membrane.released_voltage(deflection, p.bias_voltage) - p.bias_voltage;
+                ball.excess += self.membrane.capacitance_excess(self.membrane.deflection(closing.abs()));
+                ball.impacts += 1;
             }
         }
     }

@@ -17,7 +17,6 @@ mod patterns;
 mod peak;
 mod recording;
 mod stability;
-mod stepping;
 mod table1;
 mod table2;
 mod table2_output;

@@ -2,7 +2,7 @@
 
 use videg_model::Case;
 
-use super::fixed_step::FixedStep;
+use super::fixed_step::{FixedStep, STEP};
 use super::motion;
 use super::motion_findings::Fact;
 use super::orbit::{Multipliers, Orbit, Phase};
@@ -252,7 +252,7 @@ fn middles(orbit: &Orbit) -> impl Iterator<Item = f64> + use<> {
 /// The paper's method from the paper's start.
 fn stepped(orbit: &Orbit) -> Option<Track> {
     let parameters = (Case::find(CASE)?.parameters)();
-    let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity]);
+    let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity], STEP);
     let points = middles(orbit).filter_map(|time| {
         run.advance(time);
         run.first().map(|state| (time, orbit.distance(state)))

@@ -3,7 +3,7 @@
 use videg_model::Case;
 
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
-use super::fixed_step::FixedStep;
+use super::fixed_step::{FixedStep, STEP};
 use super::table2_output::{picture, sheets, table, text};
 use super::{Artefact, Effort, Finding, PaperError, Run, Verdict, Workshop};
 use crate::scenario::Setting;
@@ -140,9 +140,8 @@ fn stepped(workshop: &Workshop<'_>, printed: &Printed, nudges: &[f64]) -> Result
         .chunks(BATCH)
         .map(|batch| batch.iter().map(|nudge| parameters.ball_velocity + nudge).collect())
         .collect();
-    let gains =
-        workshop.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities).voltage_gains(WINDOW)))?;
-    Ok(Some(Ensemble::new(gains.concat())))
+    let gains = workshop.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities, STEP).run(WINDOW)))?;
+    Ok(Some(Ensemble::new(gains.concat().iter().map(|run| run.voltage_gain).collect())))
 }
 
 fn finding(case: &Computed, pooled: &Ensemble) -> Finding {

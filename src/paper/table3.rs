@@ -2,7 +2,7 @@
 
 use videg_model::Case;
 
-use super::stepping::{self, Stepped};
+use super::fixed_step::{FixedStep, STEP, Stepped};
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Verdict, Workshop};
 use crate::report::{Column, Figure, Panel, Series, Style, Table};
 
@@ -12,9 +12,8 @@ const WINDOW: [f64; 2] = [50.0, 100.0];
 /// Volume of the device, cm^3 (Section 5.3).
 const VOLUME: f64 = 42.2;
 
-/// Steps of the paper's method to show, s; it uses 1e-5 s.
+/// Steps of the paper's method to show, s.
 const STEPS: [f64; 10] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6];
-const STEP_OF_THE_PAPER: f64 = 1e-5;
 
 /// What the paper prints of a case.
 struct Printed {
@@ -46,7 +45,7 @@ struct Compared {
 
 impl Compared {
     fn of_the_paper(&self) -> Stepped {
-        let index = STEPS.iter().position(|&step| step == STEP_OF_THE_PAPER).unwrap_or_default();
+        let index = STEPS.iter().position(|&step| step == STEP).unwrap_or_default();
         self.stepped[index]
     }
 }
@@ -95,7 +94,7 @@ fn compare(workshop: &Workshop<'_>) -> Result<Vec<Compared>, PaperError> {
     let tasks: Vec<_> = STEPS.iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
     let mut stepped = workshop.each(&tasks, |(printed, step)| {
         let parameters = Case::find(printed.case).map(|case| (case.parameters)());
-        Ok(parameters.map(|p| stepping::run(&p, *step, WINDOW)))
+        Ok(parameters.and_then(|p| FixedStep::new(&p, &[p.ball_velocity], *step).run(WINDOW).pop()))
     })?;
     stepped.reverse();
     let of_case = |k: usize| {
