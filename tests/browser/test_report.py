@@ -11,7 +11,22 @@ SCHEMES = ["light", "dark"]
 # Both sides of the page, which text and figures must not leave unless a box of their own scrolls.
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 PANELS = "box => box.querySelectorAll('.cartesianlayer > .subplot').length"
-RANGES = "box => Object.fromEntries(Object.entries(box._fullLayout).filter(([k]) => /^xaxis/.test(k)).map(([k, v]) => [k, v.range]))"
+RANGES = """box => Object.fromEntries(
+    Object.entries(box._fullLayout).filter(([name]) => /^xaxis/.test(name)).map(([name, axis]) => [name, axis.range])
+)"""
+
+
+# Keys of the legends that show as a whole within the chart.
+KEYS = """box => {
+    const frame = box.getBoundingClientRect();
+    return [...box.querySelectorAll('.legend .legendtext')].map(text => text.getBoundingClientRect())
+        .filter(key => key.width > 0 && key.left >= frame.left && key.right <= frame.right && key.top >= frame.top).length;
+}"""
+
+
+def keys_of(chart):
+    traces = sum(trace.get("showlegend", False) for trace in chart["traces"])
+    return traces + sum(line["label"] != "" for panel in chart["panels"] for line in panel["lines"])
 
 
 def look_closer(figure):
@@ -47,6 +62,7 @@ def test_every_chart_opens_with_all_its_panels_and_closes_again(visit, width, sc
         look_closer(figure)
         box, panels = figure.locator(".chart"), chart_of(figure)["panels"]
         assert box.evaluate(PANELS) == len(panels)
+        assert box.evaluate(KEYS) == keys_of(chart_of(figure))
         assert box.locator(".trace path, .heatmaplayer image, .point").count() > 0
         visited.shoot(f"{width}-{scheme}-chart{number}", figure)
         assert page.evaluate(OVERFLOW) <= 0
