@@ -3,10 +3,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy conformance)
+readonly STAGES=(setup lint unit valgrind fmpy conformance browser)
 readonly VENV=.venv
-# The second takes the first in.
-readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt)
+# Each takes the one before in.
+readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt tests/requirements-browser.txt)
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
@@ -25,6 +25,8 @@ Runs the stages named, or all of them in this order:
   fmpy         FMPy simulates the FMUs and agrees with the command line
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
+  browser      reports in headless Chromium: drawn, without errors or requests, on a phone and a desktop, on paper;
+               screenshots go to target/screenshots
 
 Only when named:
   conformance-slow
@@ -72,6 +74,7 @@ missing_packages() {
     has_command valgrind || echo valgrind
     has_command ngspice || echo ngspice
     has_library libngspice.so.0 || echo libngspice0
+    has_command chromium || echo chromium
 }
 
 install_packages() {
@@ -97,7 +100,7 @@ install_python_packages() {
     fi
     echo "installing Python packages into $VENV"
     python3 -m venv --clear "$VENV"
-    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "${REQUIREMENTS[1]}"
+    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "${REQUIREMENTS[-1]}"
     "$VENV/bin/pip" check
     echo "$wanted" >"$stamp"
 }
@@ -176,6 +179,12 @@ stage_conformance() {
     run "$VENV/bin/python" -m pytest tests/c
     run "$VENV/bin/python" tests/conformance
     run "$VENV/bin/python" tests/coupling
+}
+
+stage_browser() {
+    need_python
+    run cargo build --release --example figures
+    run "$VENV/bin/python" -m pytest tests/browser
 }
 
 stage_conformance-slow() {

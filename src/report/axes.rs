@@ -52,7 +52,8 @@ fn x_axis(group: &[&Panel], ticks: usize) -> Result<Axis, ReportError> {
     let has_marks = group.iter().flat_map(|panel| &panel.series).any(|series| series.style.is_marks());
     let has_bars = group.iter().any(|panel| !panel.bars.is_empty());
     let has_map = group.iter().any(|panel| panel.map.is_some());
-    let margin = if (has_marks || has_bars) && !has_map { 0.02 } else { 0.0 };
+    let to_scale = group.iter().any(|panel| panel.equal_aspect);
+    let margin = if has_marks || has_bars || to_scale { 0.02 } else { 0.0 };
     let axis = match (has_map, log) {
         // A map ends where its outer cells end, not at a round number near by.
         (true, _) => fit(range, log, ticks),

@@ -19,8 +19,8 @@ pub(super) struct Cells<'f> {
 
 impl<'f> Cells<'f> {
     pub(super) fn new(map: &'f HeatMap<'f>, space: Space) -> Self {
-        let xs = edges(map.xs.iter().map(|&x| space.x(x)).collect());
-        let ys = edges(map.ys.iter().map(|&y| space.y(y)).collect());
+        let xs = edges(&map.xs.iter().map(|&x| space.x(x)).collect::<Vec<f64>>());
+        let ys = edges(&map.ys.iter().map(|&y| space.y(y)).collect::<Vec<f64>>());
         let ramp = matches!(map.scale, Scale::Quantity(_)).then(|| Ramp::over(map.values));
         Self { map, xs, ys, ramp }
     }
@@ -70,7 +70,7 @@ pub(super) fn ramp_markup(ramp: &Ramp, (left, top): (i32, i32), (right, bottom):
     for (level, index) in (0..count).zip(0..) {
         let mut path = String::new();
         rectangle(&mut path, (left, at(level + 1)), (right, at(level)));
-        markup += &format!("<path fill=\"{}\" d=\"{path}\"/>\n", hex(ramp.color(index)));
+        let _ = writeln!(markup, "<path fill=\"{}\" d=\"{path}\"/>", hex(ramp.color(index)));
     }
     markup + "</g>\n"
 }
@@ -91,7 +91,7 @@ pub(super) fn dots_markup(dots: impl Iterator<Item = (i32, i32)>, color: Rgb, di
 
 /// Ends of what a map covers along one axis, from the middles of its cells in axis units.
 pub(super) fn covered(middles: impl Iterator<Item = f64>) -> [f64; 2] {
-    ends(&edges(middles.collect()))
+    ends(&edges(&middles.collect::<Vec<f64>>()))
 }
 
 /// Index of a kind, which has been checked to be a small whole number.
@@ -105,7 +105,7 @@ fn ends(edges: &[f64]) -> [f64; 2] {
 }
 
 /// Half way between the middles, and as far beyond the outer ones; a lone cell is 1 wide.
-fn edges(middles: Vec<f64>) -> Vec<f64> {
+fn edges(middles: &[f64]) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (middles.first(), middles.last()) else { return Vec::new() };
     let between = middles.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
     let mut edges: Vec<f64> = std::iter::once(f64::NAN).chain(between).collect();
@@ -147,9 +147,9 @@ mod tests {
 
     #[test]
     fn cells_reach_half_way_to_their_neighbours() {
-        assert_eq!(edges(vec![1.0, 2.0, 3.0]), [0.5, 1.5, 2.5, 3.5]);
-        assert_eq!(edges(vec![4.0]), [3.5, 4.5]);
-        assert!(edges(Vec::new()).is_empty());
+        assert_eq!(edges(&[1.0, 2.0, 3.0]), [0.5, 1.5, 2.5, 3.5]);
+        assert_eq!(edges(&[4.0]), [3.5, 4.5]);
+        assert!(edges(&[]).is_empty());
     }
 
     #[test]

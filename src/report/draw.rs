@@ -39,7 +39,10 @@ pub(super) fn draw(plan: &Plan) -> Result<String, ReportError> {
     let (mut maps, mut dots) = (String::new(), String::new());
     let ground = layer(plan, |canvas| {
         canvas.fill(&WHITE).map_err(failed)?;
-        plan.panels.iter().try_for_each(|panel| Ok(maps += &draw_ground(canvas, panel)?))
+        plan.panels.iter().try_for_each(|panel| {
+            maps += &draw_ground(canvas, panel)?;
+            Ok(())
+        })
     })?;
     let areas = layer(plan, |canvas| {
         plan.panels.iter().try_for_each(|panel| {

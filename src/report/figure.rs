@@ -52,6 +52,7 @@ impl<'a> Figure<'a> {
 
 /// One pair of axes with its series.
 #[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "independent properties, each with a builder of its own")]
 pub struct Panel<'a> {
     /// Short title at the upper left, such as `(a)`.
     pub title: String,

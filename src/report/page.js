@@ -22,11 +22,13 @@
       : { ink: "#222222", paper: "#ffffff", grid: "#e4e4e4", line: "#5a5a5a" };
   }
 
-  // Black is the ink of the page: white on a dark one.
+  // On a dark page black becomes white, and the dark blue lighter.
   function inked(trace, ink) {
-    const copy = { ...trace };
+    const copy = { ...trace }, lighter = { "#000000": ink, "#0072b2": "#3d9bd8" };
     for (const part of ["line", "marker", "error_y"]) {
-      if (copy[part] && copy[part].color === "#000000") copy[part] = { ...copy[part], color: ink };
+      // Squares are the keys of a map, whose colours stay.
+      const color = copy[part] && dark.matches && copy[part].symbol !== "square" && lighter[copy[part].color];
+      if (color) copy[part] = { ...copy[part], color };
     }
     if (copy.kinds) copy.text = copy.z.map((row) => row.map((kind) => (kind === null ? "" : copy.kinds[kind])));
     if (copy.type === "heatmap") {
@@ -34,6 +36,34 @@
       copy.hovertemplate = `x: %{x}<br>y: %{y}<br>${value}<extra></extra>`;
     }
     return copy;
+  }
+
+  // Labels row by row, as many in each as there is room for: the library would run over the edge.
+  function flow(labels, room) {
+    const rows = [];
+    let used = Infinity;
+    for (const label of labels) {
+      const width = plain(label).length * WORD + 50;
+      if (used + width > room) {
+        rows.push(0);
+        used = 0;
+      }
+      rows[rows.length - 1] += 1;
+      used += width;
+    }
+    return rows;
+  }
+
+  // A legend for each row of labels; returns which one each label takes.
+  function legends(layout, spot, share, up) {
+    return spot.rows.flatMap((count, row) => {
+      const id = `legend${number(spot.index * 20 + row)}`, below = (spot.rows.length - 1 - row) * ROW;
+      layout[id] = {
+        x: share(spot.left + spot.titled), y: up(spot.top - 2 - below), xanchor: "left", yanchor: "bottom",
+        orientation: "h", bgcolor: "rgba(0,0,0,0)", font: { size: 11 },
+      };
+      return Array(count).fill(id);
+    });
   }
 
   // Places of the panels in px; side by side only where there is room.
@@ -54,15 +84,16 @@
         const left = column * cell + LEFT, right = (column + 1) * cell - RIGHT - bar;
         const labels = traces.filter((trace) => trace.showlegend).map((trace) => trace.name);
         labels.push(...panel.lines.filter((line) => line.label).map((line) => line.label));
-        const titled = panel.title ? plain(panel.title).length * 7.5 + 14 : 0;
-        const long = Math.max(0, ...labels.map((label) => plain(label).length * WORD + 50));
-        const each = Math.max(1, Math.floor((right - left - titled) / Math.max(long, 1)));
-        const rows = Math.max(1, Math.ceil(labels.length / each));
-        header = Math.max(header, labels.length || panel.title ? rows * ROW + 6 : 8);
+        // On a phone the title takes a row of its own.
+        const narrow = right - left < 300 && panel.title && labels.length > 0;
+        const titled = panel.title && !narrow ? plain(panel.title).length * 7.5 + 14 : 0;
+        const rows = flow(labels, right - left - titled), above = narrow ? (rows.length || 1) * ROW + 3 : 0;
+        const filled = Math.max(rows.length, 1) * ROW + 6 + (narrow ? ROW : 0);
+        header = Math.max(header, rows.length || panel.title ? filled : 8);
         const ranges = [panel.x.range, panel.y.range].map((range) => range[1] - range[0]);
         const height = panel.toScale ? (right - left) * ranges[1] / ranges[0] : Math.max(panel.height * 1.25, 140);
         below = Math.max(below, height + (panel.open ? BELOW : GAP));
-        return { index, left, right, height, titled, bar };
+        return { index, left, right, height, titled, above, rows };
       });
       for (const spot of row) places.push({ ...spot, top: top + header, bottom: top + header + spot.height });
       top += header + below;
@@ -71,20 +102,22 @@
   }
 
   function axis(of, ink) {
-    const { paper, ...rest } = ink;
+    const decades = of.range[1] - of.range[0];
     return {
+      ...(of.type === "log" && decades >= 1.5 ? { dtick: Math.ceil(decades / 8) } : {}),
       type: of.type, range: of.range, title: { text: of.title, standoff: 6, font: { size: 12 } }, zeroline: false,
-      gridcolor: rest.grid, linecolor: rest.ink, showline: true, mirror: true, ticks: "outside", ticklen: 4,
+      gridcolor: ink.grid, linecolor: ink.ink, showline: true, mirror: true, ticks: "outside", ticklen: 4,
       exponentformat: "power", automargin: false, nticks: 8,
     };
   }
 
   function draw(chart, width) {
     const ink = colors(), { places, height } = place(chart, width);
-    const share = (px) => Math.min(1, Math.max(0, px / width)), up = (px) => Math.min(1, Math.max(0, 1 - px / height));
+    const within = (part) => Math.min(1, Math.max(0, part));
+    const share = (px) => within(px / width), up = (px) => within(1 - px / height);
     const traces = chart.traces.map((trace) => inked(trace, ink.ink));
     const layout = {
-      width, height, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: ink.paper, plot_bgcolor: ink.paper,
+      width, height, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: ink.paper, plot_bgcolor: ink.paper,
       font: { color: ink.ink, size: 11, family: "system-ui, sans-serif" }, hovermode: "closest", dragmode: "zoom",
       uirevision: "keep", annotations: [], shapes: [],
     };
@@ -103,21 +136,21 @@
         x.title.text = "";
       }
       if (panel.toScale) Object.assign(y, { scaleanchor: `x${id}`, constrain: "domain" });
-      const titled = share(spot.left + spot.titled);
-      layout[`legend${id}`] = {
-        x: titled, y: up(spot.top - 2), xanchor: "left", yanchor: "bottom", orientation: "h",
-        bgcolor: "rgba(0,0,0,0)", font: { size: 11 },
-      };
+      const keys = legends(layout, spot, share, up);
+      for (const trace of traces.filter((trace) => trace.panel === spot.index && trace.showlegend)) {
+        trace.legend = keys.shift();
+      }
       if (panel.title) {
         layout.annotations.push({
           text: `<b>${panel.title}</b>`, showarrow: false, xref: "paper", yref: "paper", x: share(spot.left),
-          y: up(spot.top - 4), xanchor: "left", yanchor: "bottom",
+          y: up(spot.top - 4 - spot.above), xanchor: "left", yanchor: "bottom",
         });
       }
       for (const line of panel.lines) {
         layout.shapes.push({
           type: "line", xref: `x${id} domain`, yref: `y${id}`, x0: 0, x1: 1, y0: line.y, y1: line.y, name: line.label,
-          showlegend: line.label !== "", legend: `legend${id}`, line: { color: ink.line, width: 1.2, dash: "dash" },
+          showlegend: line.label !== "", ...(line.label ? { legend: keys.shift() } : {}),
+          line: { color: ink.line, width: 1.2, dash: "dash" },
         });
       }
       for (const trace of traces.filter((trace) => trace.panel === spot.index && trace.type === "heatmap")) {

@@ -62,16 +62,13 @@ fn panel_traces(planned: &PanelPlan) -> Vec<Value> {
     map.chain(bands).chain(series).chain(bars).collect()
 }
 
-/// The trace on the axes and in the legend of a panel.
+/// The trace on the axes of a panel.
 fn at(mut trace: Value, index: usize) -> Value {
     if let Some(fields) = trace.as_object_mut() {
         let number = if index == 0 { String::new() } else { (index + 1).to_string() };
         fields.insert("panel".into(), index.into());
         fields.insert("xaxis".into(), format!("x{number}").into());
         fields.insert("yaxis".into(), format!("y{number}").into());
-        if fields.get("type").is_some_and(|kind| kind == "scatter") {
-            fields.insert("legend".into(), format!("legend{number}").into());
-        }
     }
     trace
 }
@@ -98,7 +95,7 @@ fn series_trace(series: &Series, space: Space) -> Value {
         Style::Steps => ("lines", "line", json!({ "color": color, "width": 1.5, "shape": "hv" })),
         Style::Dashed => ("lines", "line", json!({ "color": color, "width": 1.5, "dash": "dash" })),
         Style::Markers => ("markers", "marker", mark("circle", 5.0)),
-        Style::Dots => ("markers", "marker", mark("circle", 2.5)),
+        Style::Dots => ("markers", "marker", mark("circle", 2.0)),
         Style::Crosses => ("markers", "marker", mark("x", 6.0)),
     };
     trace.insert("mode".into(), mode.into());

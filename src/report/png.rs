@@ -33,7 +33,9 @@ pub fn render_png(svg: &str, scale: f64) -> Result<Vec<u8>, ReportError> {
         return Err(ReportError::InvalidScale { what, value: scale, min, max });
     }
     let options = Options { fontdb: Arc::clone(&FONTS), font_family: "Noto Sans".to_owned(), ..Options::default() };
-    let tree = Tree::from_str(svg, &options).map_err(|error| failed(&error.to_string()))?;
+    // Noto Sans has no superscript minus; a macron looks the same.
+    let svg = svg.replace('\u{207b}', "\u{af}");
+    let tree = Tree::from_str(&svg, &options).map_err(|error| failed(&error.to_string()))?;
     let (width, height) = (f64::from(tree.size().width()) * scale, f64::from(tree.size().height()) * scale);
     if width * height > LARGEST {
         let (what, value) = ("number of pixels".to_owned(), width * height);

@@ -86,7 +86,7 @@ fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::{Panel, Series, Style};
+    use super::super::figure::{HeatMap, Panel, Scale, Series, Style};
     use super::*;
     use quick_xml::events::Event;
 
@@ -161,6 +161,43 @@ mod tests {
         let ys: Vec<f64> = xs.iter().map(|x| (x * 1e3).sin()).collect();
         let svg = one(Series::columns("noise", &xs, &ys));
         assert!(svg.len() < 100_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn a_map_of_many_cells_makes_a_small_document() {
+        let axis: Vec<f64> = (0..200).map(f64::from).collect();
+        let wave = |x: f64, y: f64| (0.03 * x).sin() * (0.05 * y).cos();
+        let values: Vec<f64> = axis.iter().flat_map(|&y| axis.iter().map(move |&x| wave(x, y))).collect();
+        let map = HeatMap { xs: &axis, ys: &axis, values: &values, scale: Scale::Quantity("z (V)".to_owned()) };
+        let svg = render_svg(&Figure::new("").panel(Panel::new("", "", "").map(map))).unwrap();
+        assert!(svg.len() < 400_000, "{} bytes", svg.len());
+        let (_, texts) = parse(&svg);
+        assert!(texts.contains(&"z (V)".to_owned()) && texts.contains(&"0.5".to_owned()), "{texts:?}");
+    }
+
+    #[test]
+    fn bands_lie_below_lines_and_bars_have_caps() {
+        let (line, limits) = ([(0.0, 1.0), (1.0, 2.0)], [(0.0, 0.5, 1.5), (1.0, 1.5, 2.5)]);
+        let bare = Panel::new("", "", "").series(Series::points("", &line));
+        let full = bare.clone().band("range", &limits, 1).bars(&limits, 2);
+        let draw = |panel: &Panel| render_svg(&Figure::new("").panel(panel.clone())).unwrap();
+        let (before, after) = (draw(&bare), draw(&full));
+        assert!(after.find("<polygon").unwrap() < after.find("stroke=\"#0072B2\"").unwrap());
+        assert!(!before.contains("#009E73"));
+        assert_eq!(after.matches("stroke=\"#009E73\"").count(), 6, "two bars with two caps each");
+        assert_eq!(after, draw(&full), "the same bytes every time");
+    }
+
+    #[test]
+    fn a_logarithmic_axis_puts_decades_at_equal_distances() {
+        let points = [(1.0, 1.0), (2.0, 10.0), (3.0, 100.0)];
+        let panel = Panel::new("", "", "").log_y().series(Series::points("", &points));
+        let svg = render_svg(&Figure::new("").panel(panel)).unwrap();
+        let line = svg.split("<polyline").find(|part| part.contains("#0072B2")).unwrap();
+        let line = line.split_once("points=\"").unwrap().1.split_once('"').unwrap().0;
+        let ys: Vec<i32> = line.split_whitespace().map(|p| p.split_once(',').unwrap().1.parse().unwrap()).collect();
+        assert!((ys[0] - ys[1] - (ys[1] - ys[2])).abs() <= 1, "{ys:?}");
+        assert!(parse(&svg).1.contains(&"10".to_owned()));
     }
 
     #[test]

@@ -1,0 +1,105 @@
+"""Reports to look at, and a headless Chromium to look with."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).resolve().parents[2]
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+SCREENSHOTS = TARGET / "screenshots"
+QUIET = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+def run(*command):
+    subprocess.run(["cargo", "run", "--quiet", "--release", *command], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+
+
+def make_report(kind, folder):
+    if kind == "figures":
+        run("--example", "figures", "--", str(folder / "report.html"))
+    else:
+        run("--", "cosim", "--until", "10", "--output", str(folder))
+    return folder / "report.html"
+
+
+def kinds():
+    """Of the reports to test: those of VIDEG_REPORTS, paths with colons between, or those that the tests make."""
+    given = os.environ.get("VIDEG_REPORTS")
+    return given.split(":") if given else ["figures", "cosim"]
+
+
+@pytest.fixture(scope="session", params=kinds())
+def report(request, tmp_path_factory):
+    """Path of a report, and a name for it."""
+    if request.param in ("figures", "cosim"):
+        return make_report(request.param, tmp_path_factory.mktemp(request.param)), request.param
+    path = Path(request.param).resolve()
+    assert path.is_file(), f"{path} is no file"
+    return path, path.parent.name
+
+
+@pytest.fixture(scope="session")
+def browser():
+    chromium = shutil.which("chromium")
+    assert chromium, "chromium is not on the PATH; run ./test.sh setup first"
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=QUIET)
+        yield browser
+        browser.close()
+
+
+class Visit:
+    """An open report with all that it did wrong."""
+
+    def __init__(self, browser, report, **options):
+        self.path, self.name = report
+        self.faults = []
+        self.context = browser.new_context(**options)
+        self.page = self.context.new_page()
+        self.page.on("console", self.heard)
+        self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
+        self.page.on("request", self.requested)
+        self.page.goto(self.path.as_uri())
+
+    def heard(self, message):
+        if message.type in ("error", "warning"):
+            self.faults.append(f"{message.type}: {message.text}")
+
+    def requested(self, request):
+        if request.url != self.path.as_uri() and not request.url.startswith(("data:", "blob:")):
+            self.faults.append(f"request: {request.url}")
+
+    def shoot(self, name, target=None):
+        path = SCREENSHOTS / f"{self.name}-{name}.png"
+        if target:
+            target.screenshot(path=path)
+        else:
+            self.page.screenshot(path=path, full_page=True)
+
+
+@pytest.fixture
+def visit(browser, report):
+    """Opens the report; after the test, nothing may have gone wrong."""
+    visits = []
+
+    def open_report(width=1440, scheme="light", **options):
+        visits.append(Visit(browser, report, viewport={"width": width, "height": 900}, color_scheme=scheme, **options))
+        return visits[-1]
+
+    yield open_report
+    faults = [fault for visit in visits for fault in visit.faults]
+    for visit in visits:
+        visit.context.close()
+    assert faults == []
