@@ -226,10 +226,10 @@ fn by_the_papers_method(case: &Computed) -> Option<Finding> {
     let paper = case.printed.gain;
     Some(Finding {
         place: format!("Table 2, Figure {}", case.printed.number),
-        quantity: "<U> by the paper's stepping, mean of nearby starts".to_owned(),
+        quantity: "<U> by the paper's stepping, median of nearby starts".to_owned(),
         unit: "V/s".to_owned(),
         paper: None,
-        videg: stepped.mean(),
+        videg: stepped.quantile(0.5),
         verdict: Verdict::Beyond,
         reason: format!(
             "{} starts nudged by up to {STEPPED_NUDGE:e} m/s give {low:.0} to {high:.0} V/s; below the paper's {paper}: {}",
