@@ -116,7 +116,7 @@ fn figure_14_repeats_and_figure_15_does_not() {
     assert!(finding(&wandering, "Figure 15", "least difference").videg > 0.1);
 }
 
-/// The closed form in `src/paper/orbit.rs`: half a period has a matrix of determinant 1 and trace 2 +- A / (M f_0 V).
+/// The closed form in `src/paper/orbit.rs`: half a period has a matrix of determinant 1 and trace 2 +- A / (M `f_0` V).
 #[test]
 fn the_multipliers_of_the_saw_tooth_orbit_are_those_of_the_closed_form() {
     let swing = 0.01 / (0.1245 * (2.0 * std::f64::consts::TAU).powi(2));
@@ -142,6 +142,8 @@ fn the_fmu_keeps_the_saw_tooth_orbit_and_the_papers_stepping_loses_it() {
     assert!((10.0..30.0).contains(&inexact), "{inexact} s");
     let stepped = time("time on the orbit by the paper's stepping");
     assert!((2.0..15.0).contains(&stepped), "{stepped} s");
+    let gain = finding(&FIGURE_10, "Figure 10", "<U> by the paper's stepping").videg;
+    assert_relative_eq!(gain, 1699.0, max_relative = 1e-3);
     let spread = finding(&FIGURE_10, "Figure 10", "spread of the voltage peaks");
     assert!(spread.videg < 1e-12 && spread.verdict == Verdict::Agrees);
 }

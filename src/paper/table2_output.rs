@@ -19,15 +19,15 @@ pub(super) fn text(computation: &Computation) -> Vec<String> {
     });
     vec![
         format!(
-            "With r = 1 nothing is damped, and a start that differs by {NUDGE:e} m/s takes another course long before the \
-             averaging window begins. Each case is therefore computed {} more times with the ball's velocity nudged by up to that \
-             much, always by the same numbers. Of the chaotic cases {}.",
+            "With r = 1 nothing is damped, and a start that differs by {NUDGE:e} m/s takes another course long before \
+             the averaging window begins. Each case is therefore computed {} more times with the ball's velocity \
+             nudged by up to that much, always by the same numbers. Of the chaotic cases {}.",
             nudges.len(),
             shares.collect::<Vec<_>>().join(", "),
         ),
         format!(
-            "The three chaotic cases share one distribution: all their starts together have a mean of {:.0} V/s, 5 % lie below \
-             {:.0} and 95 % below {:.0}. {}",
+            "The three chaotic cases share one distribution: all their starts together have a mean of {:.0} V/s, 5 % \
+             lie below {:.0} and 95 % below {:.0}. {}",
             pooled.mean(),
             pooled.quantile(0.05),
             pooled.quantile(0.95),
@@ -48,10 +48,10 @@ fn low_values(computation: &Computation) -> String {
     let stepped = Ensemble::new(stepped.collect());
     let below = low.iter().map(|gain| format!("{} of {} lie below {gain}", stepped.below(*gain), stepped.len()));
     format!(
-        "That two of the paper's three values stand as low as {highest} or lower has a chance of {:.2} %. The paper's own stepping \
-         does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied where a step ends beyond the membrane, starts nudged by \
-         up to {STEPPED_NUDGE:e} m/s have a median of {:.0} V/s, and {}. The voltages do not either: the same formulas give \
-         Figure 14 to within its last digit.",
+        "That two of the paper's three values stand as low as {highest} or lower has a chance of {:.2} %. The paper's \
+         own stepping does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied where a step ends beyond the \
+         membrane, starts nudged by up to {STEPPED_NUDGE:e} m/s have a median of {:.0} V/s, and {}. The voltages do \
+         not either: the same formulas give Figure 14 to within its last digit.",
         100.0 * chance,
         stepped.quantile(0.5),
         below.collect::<Vec<_>>().join(" and "),
@@ -215,10 +215,11 @@ pub(super) fn picture(computation: &Computation) -> Result<Picture, PaperError> 
         .panel(unstable.panel("(c) saw-tooth orbit, FMU"))
         .panel(stepped.panel("(d) chaotic cases, paper's stepping").x_range(6400.0, 7700.0));
     let caption = format!(
-        "Average voltage gain <U> over 50 to 100 s, Eq. (15). (a) The paper (crosses), its starts through the FMU (dots), and \
-         starts with the ball's velocity nudged by up to {NUDGE:e} m/s: all of them and the middle 90 %. (b) Their distribution \
-         functions for Figures 11 to 13, r = 1; dashed: the paper's values. (c) The same for Figure 10. (d) As (b) by the paper's \
-         method, Runge-Kutta of fourth order at 1e-5 s, with nudges of up to {STEPPED_NUDGE:e} m/s. A few starts of (b) and (d) lie outside.",
+        "Average voltage gain <U> over 50 to 100 s, Eq. (15). (a) The paper (crosses), its starts through the FMU \
+         (dots), and starts with the ball's velocity nudged by up to {NUDGE:e} m/s: all of them and the middle 90 %. \
+         (b) Their distribution functions for Figures 11 to 13, r = 1; dashed: the paper's values. (c) The same for \
+         Figure 10. (d) As (b) by the paper's method, Runge-Kutta of fourth order at 1e-5 s, with nudges of up to \
+         {STEPPED_NUDGE:e} m/s. A few starts of (b) and (d) lie outside.",
     );
     Ok(Picture::new("table2", &figure.caption(caption.clone()), caption)?)
 }
