@@ -15,8 +15,8 @@ pub(super) fn nudges(count: usize, largest: f64) -> Vec<f64> {
     (0..count).map(|_| largest * (2.0 * random.f64() - 1.0)).collect()
 }
 
-/// `settings` with the ball's velocity at the start nudged by each of `nudges`, m/s. The velocity: a ball that is nudged out
-/// of the gap would be put back.
+/// `settings` with the ball's velocity at the start nudged by each of `nudges`, m/s. The velocity: a ball that is
+/// nudged out of the gap would be put back.
 pub(super) fn nearby(
     workshop: &Workshop<'_>,
     settings: &[Setting],

@@ -109,3 +109,32 @@ impl FixedStep {
 fn acceleration(p: &Parameters, time: f64) -> f64 {
     p.amplitude / p.cylinder_mass * (TAU * p.frequency * time + p.phase).cos()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use videg_model::{Case, Harvester};
+
+    fn parameters(case: &str) -> Parameters {
+        (Case::find(case).unwrap().parameters)()
+    }
+
+    #[test]
+    fn a_ball_goes_its_own_way_whoever_else_is_there() {
+        let p = parameters("fig13");
+        let velocities = [0.0, 1e-4, -1e-4];
+        let together = FixedStep::new(&p, &velocities).voltage_gains([1.0, 5.0]);
+        let alone = velocities.map(|velocity| FixedStep::new(&p, &[velocity]).voltage_gains([1.0, 5.0])[0]);
+        assert_eq!(together, alone);
+    }
+
+    #[test]
+    fn a_damped_motion_is_that_of_the_model_to_the_first_order_of_the_step() {
+        let p = parameters("fig14");
+        let stepped = FixedStep::new(&p, &[p.ball_velocity]).voltage_gains([0.0, 10.0])[0];
+        let mut model = Harvester::new(&p, 0.0).unwrap();
+        model.advance(10.0).unwrap();
+        let exact = model.totals().voltage_gain / 10.0;
+        assert!((stepped / exact - 1.0).abs() < 1e-2, "{stepped} V/s against {exact} V/s");
+    }
+}

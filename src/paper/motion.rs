@@ -23,8 +23,8 @@ pub(super) struct Shown {
     pub(super) circled: Option<Pattern>,
 }
 
-/// With r = 1 nothing is damped: a run is as typical at its beginning as later on, and only the beginning of a chaotic one is
-/// the same with every method. With r < 1 the steady state is what matters.
+/// With r = 1 nothing is damped: a run is as typical at its beginning as later on, and only the beginning of a chaotic
+/// one is the same with every method. With r < 1 the steady state is what matters.
 const BEGINNING: [f64; 2] = [0.0, 5.0];
 const STEADY: [f64; 2] = [50.0, 54.0];
 
@@ -80,9 +80,9 @@ impl Setup {
             workshop.reals(&instance, ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"])?;
         let [z_cylinder, v_cylinder, z_ball, v_ball] = start;
         let caption = format!(
-            "A = {amplitude} N, f_0 = {frequency} Hz, r = {restitution}; M = {} g, m = {} g, d = {} mm, w = {} mm, r_b = {} mm, \
-             R_1 = {} mm, R_2 = {} mm, h_1 = {} mm, U_in = U_z = {bias_voltage} V; z_M(0) = {:.4} mm, z_M'(0) = {v_cylinder} m/s, \
-             z_m(0) = {:.4} mm, z_m'(0) = {v_ball:.5} m/s.",
+            "A = {amplitude} N, f_0 = {frequency} Hz, r = {restitution}; M = {} g, m = {} g, d = {} mm, w = {} mm, r_b \
+             = {} mm, R_1 = {} mm, R_2 = {} mm, h_1 = {} mm, U_in = U_z = {bias_voltage} V; z_M(0) = {:.4} mm, z_M'(0) \
+             = {v_cylinder} m/s, z_m(0) = {:.4} mm, z_m'(0) = {v_ball:.5} m/s.",
             rounded(1e3 * mass),
             rounded(1e3 * ball),
             rounded(1e3 * length),
@@ -138,57 +138,80 @@ fn peaks(setup: &Setup, recording: &Recording, left: bool, [from, to]: [f64; 2])
     [(from, rest)].into_iter().chain(peaks).chain([(to, rest)]).collect()
 }
 
-fn picture(shown: &Shown, setup: &Setup, recording: &Recording) -> Result<Picture, PaperError> {
-    let [from, to] = shown.window;
-    let [cylinder, cylinder_velocity, ball, ball_velocity, displacement] =
-        [CYLINDER, CYLINDER_VELOCITY, BALL, BALL_VELOCITY, DISPLACEMENT].map(|output| points(recording, output));
-    let [left, right] = [true, false].map(|left| peaks(setup, recording, left, shown.window));
-    let circled = shown.circled.map_or_else(Vec::new, |rule| rule.members(&recording.impacts, setup.travel));
-    let on_ball: Points = circled.iter().map(|impact| (impact.time, 1e3 * impact.ball)).collect();
-    let on_displacement: Points = circled.iter().map(|impact| (impact.time, 1e3 * impact.displacement)).collect();
-    let panel = |title: &str, y: &str| Panel::new(title, "", y).x_range(from, to).share_x_with_next();
-    let last = |title: &str, y: &str| Panel::new(title, "time (s)", y).x_range(from, to);
-    let marked = |label: &str, at| Series::points(label, at).style(Style::Markers).color(1);
-    let mut positions = panel("(c)", "z_m (mm)").series(Series::points("", &ball).color(0));
-    let half = 500.0 * setup.travel;
-    let mut relative = last("(e)", "z_M - z_m (mm)")
-        .series(Series::points("", &displacement).color(0))
-        .line("membranes, +-s/2", half)
-        .line("", -half);
-    if !circled.is_empty() {
-        positions = positions.series(marked("as circled in the paper", &on_ball));
-        relative = relative.series(marked("", &on_displacement));
+/// The curves of the six panels, and what is circled in two of them.
+struct Curves {
+    /// In the order of the first five [`OUTPUTS`], (a) to (e).
+    motion: [Points; 5],
+    /// Left and right membrane, (f).
+    voltages: [Points; 2],
+    /// In (c) and (e).
+    circled: [Points; 2],
+    half_travel: f64,
+}
+
+impl Curves {
+    fn new(shown: &Shown, setup: &Setup, recording: &Recording) -> Self {
+        let outputs = [CYLINDER, CYLINDER_VELOCITY, BALL, BALL_VELOCITY, DISPLACEMENT];
+        let circled = shown.circled.map_or_else(Vec::new, |rule| rule.members(&recording.impacts, setup.travel));
+        let at = |place: fn(&Impact) -> f64| circled.iter().map(|impact| (impact.time, 1e3 * place(impact))).collect();
+        Self {
+            motion: outputs.map(|output| points(recording, output)),
+            voltages: [true, false].map(|left| peaks(setup, recording, left, shown.window)),
+            circled: [at(|impact| impact.ball), at(|impact| impact.displacement)],
+            half_travel: 500.0 * setup.travel,
+        }
     }
-    let figure = Figure::new(format!("Figure {}", shown.number))
-        .columns(2)
-        .width(960.0)
-        .panel(panel("(a)", "z_M (mm)").series(Series::points("", &cylinder).color(0)))
-        .panel(panel("(b)", "z_M' (m/s)").series(Series::points("", &cylinder_velocity).color(0)))
-        .panel(positions)
-        .panel(panel("(d)", "z_m' (m/s)").series(Series::points("", &ball_velocity).color(0)))
-        .panel(relative)
-        .panel(
+
+    fn panels(&self, [from, to]: [f64; 2]) -> [Panel<'_>; 6] {
+        let [cylinder, cylinder_velocity, ball, ball_velocity, displacement] = &self.motion;
+        let curve = |points| Series::points("", points).color(0);
+        let panel = |title: &str, y: &str| Panel::new(title, "", y).x_range(from, to).share_x_with_next();
+        let last = |title: &str, y: &str| Panel::new(title, "time (s)", y).x_range(from, to);
+        let [mut positions, mut relative] = [
+            panel("(c)", "z_m (mm)").series(curve(ball)),
+            last("(e)", "z_M - z_m (mm)")
+                .series(curve(displacement))
+                .line("membranes, +-s/2", self.half_travel)
+                .line("", -self.half_travel),
+        ];
+        let [in_positions, in_relative] = &self.circled;
+        if !in_positions.is_empty() {
+            let marked = |label: &str, points| Series::points(label, points).style(Style::Markers).color(1);
+            positions = positions.series(marked("as circled in the paper", in_positions));
+            relative = relative.series(marked("", in_relative));
+        }
+        [
+            panel("(a)", "z_M (mm)").series(curve(cylinder)),
+            panel("(b)", "z_M' (m/s)").series(curve(cylinder_velocity)),
+            positions,
+            panel("(d)", "z_m' (m/s)").series(curve(ball_velocity)),
+            relative,
             last("(f)", "voltage (kV)")
-                .series(Series::points("left membrane", &left).color(0))
-                .series(Series::points("right membrane", &right).color(1)),
-        );
+                .series(Series::points("left membrane", &self.voltages[0]).color(0))
+                .series(Series::points("right membrane", &self.voltages[1]).color(1)),
+        ]
+    }
+}
+
+fn picture(shown: &Shown, setup: &Setup, recording: &Recording) -> Result<Picture, PaperError> {
+    let curves = Curves::new(shown, setup, recording);
     let caption = caption(shown, setup);
-    Ok(Picture::new(shown.case, &figure.caption(caption.clone()), caption)?)
+    let figure = Figure::new(format!("Figure {}", shown.number)).columns(2).width(960.0).caption(caption.clone());
+    let figure = curves.panels(shown.window).into_iter().fold(figure, Figure::panel);
+    Ok(Picture::new(shown.case, &figure, caption)?)
 }
 
 fn caption(shown: &Shown, setup: &Setup) -> String {
     let [from, to] = shown.window;
-    let mut caption = format!(
-        "Displacement and velocity of the cylinder (a, b) and of the ball (c, d), relative displacement (e) and voltage (f). {} \
-         Shown are {from} to {to} s, every {} ms and at both sides of each corner. The voltage is U_in with a peak to \
-         U_DE4 = U_in + the jump of gain.voltage at each impact, Eq. (12), as the paper draws it: how it falls is not shown.",
+    let circled = shown.circled.map(|rule| format!(" Dots in (c) and (e): {}.", rule.words())).unwrap_or_default();
+    format!(
+        "Displacement and velocity of the cylinder (a, b) and of the ball (c, d), relative displacement (e) and \
+         voltage (f). {} Shown are {from} to {to} s, every {} ms and at both sides of each corner. The voltage is U_in \
+         with a peak to U_DE4 = U_in + the jump of gain.voltage at each impact, Eq. (12), as the paper draws it: how \
+         it falls is not shown.{circled}",
         setup.caption,
         1e3 * STEP,
-    );
-    if let Some(rule) = shown.circled {
-        caption += &format!(" Dots in (c) and (e): {}.", rule.words());
-    }
-    caption
+    )
 }
 
 fn samples(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {

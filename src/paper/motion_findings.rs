@@ -77,7 +77,7 @@ pub(super) fn findings(
         11 => short_flights(shown, setup, recording, &steady),
         12 => double_hits(workshop, shown, setup, recording)?,
         13 => (counts(shown, setup, recording), Vec::new()),
-        _ => damped(shown, setup, &steady, period(workshop, setup, &settings)?),
+        _ => damped(shown, setup, &steady, &period(workshop, setup, &settings)?),
     })
 }
 
@@ -133,8 +133,8 @@ fn short_flights(shown: &Shown, setup: &Setup, recording: &Recording, steady: &[
     findings.extend(counts(shown, setup, recording));
     let [.., ball, _] = setup.start;
     let text = format!(
-        "The start of the saw-tooth, z_m(0) = s/2 - A/(M (2 pi f_0)^2), is meant for z_m(0) > 0, as the paper says of Figure \
-         10; with A = {} N it is {:.2} mm. It is taken as it stands.",
+        "The start of the saw-tooth, z_m(0) = s/2 - A/(M (2 pi f_0)^2), is meant for z_m(0) > 0, as the paper says of \
+         Figure 10; with A = {} N it is {:.2} mm. It is taken as it stands.",
         setup.amplitude,
         1e3 * ball
     );
@@ -164,9 +164,9 @@ fn double_hits(
     );
     let own = Pattern::DoubleHit.count(&recording.impacts, setup.travel);
     let text = format!(
-        "The start lies outside the gap, of which the paper says nothing. Put on the membrane (initial.outsideGap = project, \
-         shown here) the ball hits one membrane twice in a row {own} times in the first 5 s, as the paper describes it; let free \
-         (free) it does so {hits} times."
+        "The start lies outside the gap, of which the paper says nothing. Put on the membrane (initial.outsideGap = \
+         project, shown here) the ball hits one membrane twice in a row {own} times in the first 5 s, as the paper \
+         describes it; let free (free) it does so {hits} times."
     );
     Ok((findings, vec![text]))
 }
@@ -187,7 +187,7 @@ fn counts(shown: &Shown, setup: &Setup, recording: &Recording) -> Vec<Finding> {
 }
 
 /// Figures 14 and 15: "a high peak is followed by a moderate peak and then a very small one".
-fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: Period) -> Found {
+fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: &Period) -> Found {
     let periods = (STEADY[1] - STEADY[0]) * setup.frequency;
     let [low, high] = extremes(steady).map(|gain| setup.bias_voltage + gain);
     let left = steady.iter().filter(|impact| impact.left).count() as f64 / steady.len() as f64;
@@ -216,8 +216,8 @@ fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: Period) -> Fo
     let reason = format!("{from} to {to} s: the motion does not repeat, however long one waits");
     let quantity = format!("least difference of z_M - z_m after 1 to {MOST_CYCLES} cycles");
     findings.push(fact(shown, &quantity, "mm").own(1e3 * period.difference, reason));
-    let text = "Damped as it is, this motion is no periodic one: it stays within narrow bands but does not come back to where \
-                it was, and nearby starts part from it (see Table 2).";
+    let text = "Damped as it is, this motion is no periodic one: it stays within narrow bands but does not come back \
+                to where it was, and nearby starts part from it (see Table 2).";
     (findings, vec![text.to_owned()])
 }
 
@@ -234,8 +234,8 @@ struct Period {
     difference: f64,
 }
 
-/// The number of cycles, at most [`MOST_CYCLES`], after which the relative displacement at the beginning of a cycle comes back best; of
-/// several that are as good as equal the smallest.
+/// The number of cycles, at most [`MOST_CYCLES`], after which the relative displacement at the beginning of a cycle
+/// comes back best; of several that are as good as equal the smallest.
 fn period(workshop: &Workshop<'_>, setup: &Setup, settings: &[Setting]) -> Result<Period, PaperError> {
     let run = record(workshop, settings, LATE, 1.0 / setup.frequency)?;
     let starts_cycle =

@@ -1,11 +1,11 @@
 //! The saw-tooth orbit of Figure 10, and its multipliers.
 //!
 //! With r = 1 the ball flies from membrane to membrane in half a period T/2 and meets each at a turning point of the
-//! cylinder, whose velocity is 0 then and whose acceleration is g = A / M. Let it hit dt later than it should and fly by q
-//! faster: to first order the wall stands where it should and moves at g dt, so an impact changes q by -2 g dt, and the next
-//! one is late by dt - T/(2 V) q, V the speed of the orbit. Half a period thus takes (dt, q) through a matrix of determinant
-//! 1 and trace 2 + 2 k, k = g T / (2 V): the orbit is a saddle. Where the force has the opposite sign at the impacts, the trace
-//! is 2 - 2 k, and the orbit a centre.
+//! cylinder, whose velocity is 0 then and whose acceleration is g = A / M. Let it hit dt later than it should and fly
+//! by q faster: to first order the wall stands where it should and moves at g dt, so an impact changes q by -2 g dt,
+//! and the next one is late by dt - T/(2 V) q, V the speed of the orbit. Half a period thus takes (dt, q) through a
+//! matrix of determinant 1 and trace 2 + 2 k, k = g T / (2 V): the orbit is a saddle. Where the force has the opposite
+//! sign at the impacts, the trace is 2 - 2 k, and the orbit a centre.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -100,7 +100,7 @@ impl Orbit {
     }
 
     /// Settings that start the FMU there, with this relative displacement, m, and velocity, m/s.
-    fn from_the_middle(&self, [displacement, velocity]: [f64; 2]) -> Vec<Setting> {
+    fn start_in_the_middle(&self, [displacement, velocity]: [f64; 2]) -> Vec<Setting> {
         let phase = if self.phase == Phase::Paper { FRAC_PI_2 } else { FRAC_PI_2 + PI };
         let cylinder = [0.0, -self.turning_point() * TAU * self.frequency];
         self.start(phase, cylinder, [cylinder[0] - displacement, cylinder[1] - velocity])
@@ -166,7 +166,7 @@ impl Orbit {
         settings: &[Setting],
         state: [f64; 2],
     ) -> Result<[f64; 2], PaperError> {
-        let mut instance = workshop.start(&[settings, &self.from_the_middle(state)].concat())?;
+        let mut instance = workshop.start(&[settings, &self.start_in_the_middle(state)].concat())?;
         instance.do_step(0.0, self.period())?;
         let [displacement, cylinder, ball] =
             workshop.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;

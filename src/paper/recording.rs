@@ -27,8 +27,8 @@ const GAIN: usize = 9;
 /// Outputs that look ahead, and the speed of the last impact.
 const EVENTS: [&str; 3] = ["impact.nextTime", "pulse.nextKnot", "impact.lastVelocity"];
 
-/// How long before an impact a sample is taken, s: short against anything that can be drawn, long against the spacing of
-/// doubles at 100 s.
+/// How long before an impact a sample is taken, s: short against anything that can be drawn, long against the spacing
+/// of doubles at 100 s.
 const BEFORE: f64 = 1e-9;
 
 /// What holds at one time.
@@ -66,7 +66,8 @@ pub(super) struct Recording {
     pub(super) impacts: Vec<Impact>,
 }
 
-/// Runs the FMU with `settings` and records it from `from` to `to`, s, at every multiple of `step`, s, and at all corners.
+/// Runs the FMU with `settings` and records it from `from` to `to`, s, at every multiple of `step`, s, and at all
+/// corners.
 pub(super) fn record(
     workshop: &Workshop<'_>,
     settings: &[Setting],

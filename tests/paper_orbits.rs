@@ -1,0 +1,212 @@
+//! Figures 9 to 15 and Table 2 of the paper, made through the packaged FMU.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
+
+use std::sync::LazyLock;
+
+use approx::assert_relative_eq;
+use videg::fmi::Fmu;
+use videg::package::{Options, build_all};
+use videg::paper::{Artefact, Effort, Finding, ITEMS, Sheet, Verdict, Workshop};
+
+static FMU: LazyLock<Fmu> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap();
+    Fmu::open(&paths[0]).unwrap()
+});
+
+static TABLE_2: LazyLock<Artefact> = LazyLock::new(|| make("table2"));
+static FIGURE_10: LazyLock<Artefact> = LazyLock::new(|| make("fig10"));
+
+fn make(name: &str) -> Artefact {
+    let item = ITEMS.iter().find(|item| item.name == name).unwrap();
+    (item.make)(&Workshop { fmu: &FMU, effort: Effort::Quick, watch: &() }).unwrap()
+}
+
+fn finding<'a>(artefact: &'a Artefact, place: &str, quantity: &str) -> &'a Finding {
+    let is = |finding: &&Finding| finding.place == place && finding.quantity.starts_with(quantity);
+    artefact.findings.iter().find(is).unwrap_or_else(|| panic!("{place}: no {quantity}"))
+}
+
+fn sheet<'a>(artefact: &'a Artefact, name: &str) -> &'a Sheet {
+    artefact.sheets.iter().find(|sheet| sheet.name == name).unwrap_or_else(|| panic!("no sheet {name}"))
+}
+
+/// The column whose heading starts with `heading`.
+fn column(sheet: &Sheet, heading: &str) -> Vec<f64> {
+    let index = sheet.columns.iter().position(|name| name.starts_with(heading)).unwrap_or_else(|| panic!("{heading}"));
+    sheet.rows.iter().map(|row| row[index]).collect()
+}
+
+#[test]
+fn each_figure_has_six_panels_and_the_data_behind_them() {
+    for number in 9..=15 {
+        let name = format!("fig{number}");
+        let artefact = make(&name);
+        let svg = &artefact.pictures[0].drawing.svg;
+        for panel in ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"] {
+            // Text of its own, not a word of the caption.
+            assert!(svg.lines().any(|line| line == panel), "{name} {panel}");
+        }
+        for label in ["z_M (mm)", "z_M&apos; (m/s)", "z_m (mm)", "z_M - z_m (mm)", "voltage (kV)"] {
+            assert!(svg.contains(label) || svg.contains(&label.replace("&apos;", "'")), "{name} {label}");
+        }
+        let data = sheet(&artefact, &name);
+        assert!(column(data, "time").is_sorted() && data.rows.iter().flatten().all(|value| value.is_finite()));
+        assert!(artefact.findings.iter().all(|finding| finding.verdict != Verdict::Differs), "{name}");
+    }
+}
+
+/// Right before an impact and at it the ball is in one place and has two velocities, which Eq. (11) relates.
+#[test]
+fn both_sides_of_each_corner_are_in_the_data() {
+    let artefact = make("fig14");
+    let (data, impacts) = (sheet(&artefact, "fig14"), sheet(&artefact, "fig14-impacts"));
+    let [time, wall, ball, gap] = ["time", "z_M' ", "z_m' ", "z_M - z_m"].map(|heading| column(data, heading));
+    assert_eq!(impacts.rows.len(), 24, "six impacts in two cycles");
+    for impact in column(impacts, "time") {
+        let at = time.iter().position(|sample| *sample == impact).unwrap();
+        assert!(impact - time[at - 1] < 2e-9, "{impact}");
+        assert_relative_eq!(gap[at].abs(), 22.0, epsilon = 1e-9);
+        let (before, after) = (ball[at - 1] - wall[at], ball[at] - wall[at]);
+        assert_relative_eq!(after, -0.6 * before, epsilon = 1e-7);
+    }
+}
+
+#[test]
+fn voltage_peaks_are_those_of_the_impacts() {
+    let artefact = make("fig14");
+    let (data, impacts) = (sheet(&artefact, "fig14"), sheet(&artefact, "fig14-impacts"));
+    for (side, heading) in [(1.0, "voltage of the left"), (2.0, "voltage of the right")] {
+        let peaks: Vec<f64> = column(data, heading).into_iter().filter(|voltage| *voltage != 2.0).collect();
+        let own: Vec<f64> = impacts.rows.iter().filter(|row| row[1] == side).map(|row| 1e-3 * row[3]).collect();
+        assert!(!own.is_empty() && peaks.len() == own.len());
+        peaks.iter().zip(&own).for_each(|(peak, own)| assert_relative_eq!(peak, own, max_relative = 1e-12));
+    }
+    // The sum that the FMU outputs grows by the peaks.
+    let sum = column(data, "sum of U_DE4");
+    let peaks: f64 = column(impacts, "U_DE4").iter().map(|voltage| voltage - 2000.0).sum();
+    assert_relative_eq!(sum[sum.len() - 1] - sum[0], peaks, max_relative = 1e-9);
+}
+
+#[test]
+fn figure_9_has_no_impact() {
+    let artefact = make("fig9");
+    let value = |quantity: &str| finding(&artefact, "Figure 9", quantity).videg;
+    assert_eq!([value("impacts in 100 s"), value("largest voltage")], [0.0, 2.0]);
+    // A / (M (2 pi f_0)^2) = 0.01 / (0.1245 * 157.9137) m.
+    assert_relative_eq!(value("amplitude of z_M - z_m"), 0.508_640, max_relative = 1e-5);
+}
+
+#[test]
+fn what_the_paper_circles_is_found_by_rule() {
+    let [circled, doubles] = ["fig11", "fig12"].map(make);
+    assert!(finding(&circled, "Figure 11", "short flights").videg >= 5.0);
+    assert!(finding(&doubles, "Figure 12", "double hits").videg >= 3.0);
+    assert_eq!(finding(&doubles, "Figure 12", "double hits if the ball starts free").videg, 0.0);
+    for artefact in [&circled, &doubles] {
+        assert!(artefact.pictures[0].drawing.svg.contains("as circled in the paper"));
+    }
+}
+
+#[test]
+fn figure_14_repeats_and_figure_15_does_not() {
+    let [repeating, wandering] = ["fig14", "fig15"].map(make);
+    assert_eq!(finding(&repeating, "Figure 14", "cycles after which").videg, 2.0);
+    assert_relative_eq!(finding(&repeating, "Figure 14", "mean length of a row").videg, 3.0, max_relative = 1e-12);
+    assert!(finding(&wandering, "Figure 15", "least difference").videg > 0.1);
+}
+
+/// The closed form in `src/paper/orbit.rs`: half a period has a matrix of determinant 1 and trace 2 +- A / (M `f_0` V).
+#[test]
+fn the_multipliers_of_the_saw_tooth_orbit_are_those_of_the_closed_form() {
+    let swing = 0.01 / (0.1245 * (2.0 * std::f64::consts::TAU).powi(2));
+    let half_trace = |speed: f64, sign: f64| 1.0 + sign * 0.01 / (0.1245 * 2.0 * speed) / 2.0;
+    let trace = half_trace(8.0 * (0.022 - swing), 1.0);
+    let largest = (trace + (trace * trace - 1.0).sqrt()).powi(2);
+    let found = finding(&FIGURE_10, "Figure 10", "largest multiplier").videg;
+    assert_relative_eq!(found, largest, max_relative = 1e-6);
+    assert!(found > 2.5);
+    // Twice the angle of half a period; with the opposite sign abs(trace) < 2.
+    assert!(half_trace(8.0 * (0.022 + swing), -1.0).abs() < 1.0);
+    let opposite = finding(&FIGURE_10, "Figure 10", "modulus of the multipliers").videg;
+    assert_relative_eq!(opposite, 1.0, epsilon = 1e-6);
+    let growth = finding(&FIGURE_10, "Figure 10", "growth of a nudge").videg;
+    assert_relative_eq!(growth, largest.ln() / 0.5, max_relative = 0.01);
+}
+
+#[test]
+fn the_fmu_keeps_the_saw_tooth_orbit_and_the_papers_stepping_loses_it() {
+    let time = |quantity: &str| finding(&FIGURE_10, "Figure 10", quantity).videg;
+    assert_eq!(time("time on the orbit from the exact start"), 100.0);
+    let inexact = time("time on the orbit from the exact start at f_0 = 2.1 Hz");
+    assert!((10.0..30.0).contains(&inexact), "{inexact} s");
+    let stepped = time("time on the orbit by the paper's stepping");
+    assert!((2.0..15.0).contains(&stepped), "{stepped} s");
+    let gain = finding(&FIGURE_10, "Figure 10", "<U> by the paper's stepping").videg;
+    assert_relative_eq!(gain, 1699.0, max_relative = 1e-3);
+    let spread = finding(&FIGURE_10, "Figure 10", "spread of the voltage peaks");
+    assert!(spread.videg < 1e-12 && spread.verdict == Verdict::Agrees);
+}
+
+#[test]
+fn table_2_is_that_of_the_paper_where_the_motion_allows() {
+    let gain = |figure: u32| finding(&TABLE_2, &format!("Table 2, Figure {figure}"), "<U>, Eq. (15)");
+    for (figure, expected, tolerance, verdict) in [
+        (10, 1830.4849, 1e-7, Verdict::Explained),
+        (14, 8079.0, 1e-4, Verdict::Agrees),
+        (15, 8652.0, 2e-3, Verdict::Agrees),
+    ] {
+        assert_relative_eq!(gain(figure).videg, expected, max_relative = tolerance);
+        assert_eq!(gain(figure).verdict, verdict, "Figure {figure}");
+    }
+    for figure in [11, 12, 13] {
+        let found = gain(figure);
+        assert!(matches!(found.verdict, Verdict::WithinEnsemble | Verdict::Explained), "{}", found.reason);
+        assert!(found.reason.starts_with("chaotic"), "{}", found.reason);
+    }
+}
+
+#[test]
+fn the_chaotic_cases_have_one_distribution() {
+    let nearby = sheet(&TABLE_2, "table2-nearby");
+    let mut pooled = Vec::new();
+    for case in ["fig11", "fig12 (", "fig13"] {
+        let gains = column(nearby, case);
+        let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+        // 40 starts: the standard error of their mean is below 50 V/s.
+        assert_relative_eq!(mean, 7043.0, max_relative = 0.025);
+        pooled.extend(gains);
+    }
+    pooled.sort_by(f64::total_cmp);
+    assert_eq!(pooled.len(), 120);
+    assert_relative_eq!(pooled[6], 6825.0, max_relative = 0.02);
+    assert_relative_eq!(pooled[113], 7270.0, max_relative = 0.02);
+}
+
+#[test]
+fn both_rules_of_figure_12_stand_side_by_side() {
+    let free = finding(&TABLE_2, "Table 2, Figure 12, initial.outsideGap = free", "<U>");
+    assert_relative_eq!(free.videg, 10_490.0, max_relative = 2e-3);
+    let nearby = sheet(&TABLE_2, "table2-nearby");
+    let [project, free] = ["fig12 (", "fig12 free"].map(|heading| column(nearby, heading));
+    assert!(project.iter().all(|gain| *gain < 9500.0) && free.iter().all(|gain| *gain > 10_400.0));
+}
+
+#[test]
+fn the_papers_stepping_scatters_about_the_same_value() {
+    for figure in [11, 12, 13] {
+        let place = format!("Table 2, Figure {figure}");
+        let median = finding(&TABLE_2, &place, "<U> by the paper's stepping").videg;
+        assert_relative_eq!(median, 7043.0, max_relative = 0.03);
+    }
+}
+
+/// Debug prints numbers without losing a bit.
+#[test]
+fn the_same_bytes_come_out_again() {
+    for name in ["fig10", "fig13"] {
+        let [first, second] = [make(name), make(name)].map(|artefact| format!("{artefact:?}"));
+        assert!(first == second, "{name}");
+    }
+    assert!(format!("{:?}", TABLE_2.sheets) == format!("{:?}", make("table2").sheets));
+}
