@@ -103,8 +103,8 @@ impl Force {
         block.number = number;
         let carrier = self.carrier(number * BLOCK as u64);
         let samples = noise::normals(self.seed, number);
-        for k in 0..BLOCK {
-            let phase = self.phase + self.intensity * samples[k];
+        for (k, xi) in samples.iter().enumerate() {
+            let phase = self.phase + self.intensity * xi;
             let [sin, cos] = sin_cos(carrier + (k as f64 * self.turn + phase * (1.0 / TAU)));
             block.velocity[k] = self.push * cos;
             block.position[k] = self.shift[0] * cos + self.shift[1] * sin;
@@ -180,7 +180,7 @@ mod tests {
             number in prop_oneof![0..4_u64, 1_000_000..1_000_010_u64], seed in any::<i32>(), phase in -7.0_f64..7.0,
         ) {
             let p = Parameters { phase_noise: intensity, frequency, noise_hold: hold, ..Parameters::default() };
-            let p = Parameters { seed, phase, ..p };
+            let p = Parameters { phase, seed, ..p };
             let mut block = Block::EMPTY;
             Force::new(&p).fill(&mut block, number);
             let amplitude = p.amplitude / p.cylinder_mass;
