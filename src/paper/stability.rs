@@ -277,7 +277,7 @@ fn middles(orbit: &Orbit) -> impl Iterator<Item = f64> + use<> {
 /// `<U>`, V/s, by the paper's method from the paper's start.
 fn stepped_gain(window: [f64; 2]) -> Option<f64> {
     let parameters = (Case::find(CASE)?.parameters)();
-    FixedStep::new(&parameters, &[parameters.ball_velocity]).voltage_gains(window).pop()
+    FixedStep::new(&parameters, &[parameters.ball_velocity], STEP).run(window).pop().map(|run| run.voltage_gain)
 }
 
 /// The paper's method from the paper's start.
