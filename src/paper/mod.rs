@@ -6,6 +6,10 @@
 
 mod artefact;
 mod error;
+mod excitation;
+mod fig16;
+mod fig17;
+mod statistics;
 mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
@@ -23,4 +27,7 @@ pub struct Item {
 }
 
 /// All items, in the order of the report.
-pub const ITEMS: &[Item] = &[];
+pub const ITEMS: &[Item] = &[
+    Item { name: "fig16", title: "Figure 16", make: fig16::make },
+    Item { name: "fig17", title: "Figure 17", make: fig17::make },
+];
