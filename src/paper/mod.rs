@@ -5,11 +5,14 @@
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
+mod coupled;
 mod error;
 mod excitation;
 mod fig16;
 mod fig17;
+mod power;
 mod statistics;
+mod tuning;
 mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
@@ -30,4 +33,6 @@ pub struct Item {
 pub const ITEMS: &[Item] = &[
     Item { name: "fig16", title: "Figure 16", make: fig16::make },
     Item { name: "fig17", title: "Figure 17", make: fig17::make },
+    Item { name: "tuning", title: "Tuning of the circuit", make: tuning::make },
+    Item { name: "power", title: "Power density, honestly", make: power::make },
 ];
