@@ -1,21 +1,29 @@
 //! Ranges, ticks and tick labels.
 
-use plotters::coord::ranged1d::Ranged;
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 
 /// Relative span below which a range counts as one value: digits beyond are rounding.
 const CONSTANT: f64 = 1e-9;
+/// Powers of ten beyond which a logarithmic axis does not reach.
+const LARGEST_DECADE: f64 = 300.0;
 
 /// An axis, drawn in multiples of a power of ten so that its span is 1 to 10: whatever the unit of
 /// the data, ticks are sought among numbers of that size.
+///
+/// A logarithmic axis is drawn in decades, and its data are their logarithms to base 10 everywhere but in its labels.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     /// Ends in data units.
     pub low: f64,
     pub high: f64,
+    log: bool,
     exponent: i32,
     decimals: usize,
     scientific: bool,
+    ticks: Vec<f64>,
 }
 
 impl Axis {
@@ -29,9 +37,41 @@ impl Axis {
         if exponent.abs() > 250 {
             return None;
         }
-        let mut axis = Self { low, high, exponent, decimals: 0, scientific: false };
-        axis.choose_format(max_ticks);
+        let ticks = Vec::new();
+        let mut axis = Self { low, high, log: false, exponent, decimals: 0, scientific: false, ticks };
+        axis.ticks = RangedCoordf64::from(axis.scaled_range()).key_points(max_ticks);
+        axis.choose_format();
         Some(axis)
+    }
+
+    /// A logarithmic axis between these logarithms; `None` if they are no finite, ascending interval.
+    pub(super) fn exact_log(low: f64, high: f64, max_ticks: usize) -> Option<Self> {
+        let span = high - low;
+        if !(CONSTANT..=2.0 * LARGEST_DECADE).contains(&span) || low.abs().max(high.abs()) > LARGEST_DECADE {
+            return None;
+        }
+        let ticks = if span < 1.0 {
+            let plain = Self::exact(10_f64.powf(low), 10_f64.powf(high), max_ticks)?;
+            plain.ticks.iter().map(|tick| (tick * 10_f64.powi(plain.exponent)).log10()).collect()
+        } else {
+            decades(low, high, max_ticks)
+        };
+        Some(Self { low, high, log: true, exponent: 0, decimals: 0, scientific: false, ticks })
+    }
+
+    /// [`Self::around`] for logarithms; without data, the decade from 1.
+    pub(super) fn around_log(low: f64, high: f64, margin: f64, max_ticks: usize) -> Option<Self> {
+        if low > high {
+            return Self::exact_log(0.0, 1.0, max_ticks);
+        }
+        let pad = if high - low <= CONSTANT { 0.1 } else { margin * (high - low) };
+        Self::exact_log(low - pad, high + pad, max_ticks)
+    }
+
+    /// The same axis with another number of ticks.
+    pub(super) fn with_ticks(&self, max_ticks: usize) -> Self {
+        let make = if self.log { Self::exact_log } else { Self::exact };
+        make(self.low, self.high, max_ticks).unwrap_or_else(|| self.clone())
     }
 
     /// An axis around data from `low` to `high` with a margin (a share of the span).
@@ -57,13 +97,15 @@ impl Axis {
     }
 
     /// Ends in drawing units.
-    pub(super) fn scaled_range(&self) -> std::ops::Range<f64> {
+    pub(super) fn scaled_range(&self) -> Range<f64> {
         self.scaled(self.low)..self.scaled(self.high)
     }
 
     /// The text at a tick given in drawing units.
     pub(super) fn label(&self, scaled: f64) -> String {
-        let text = if self.scientific {
+        let text = if self.log {
+            plain_or_power(scaled)
+        } else if self.scientific {
             scientific(scaled, self.exponent)
         } else {
             format!("{:.*}", self.decimals, scaled * 10_f64.powi(self.exponent))
@@ -79,28 +121,91 @@ impl Axis {
     }
 
     /// The longest tick label, in characters.
-    pub(super) fn label_length(&self, max_ticks: usize) -> usize {
-        let ticks = self.ticks(max_ticks).into_iter();
-        ticks.map(|t| self.label(t).chars().count()).max().unwrap_or(0)
+    pub(super) fn label_length(&self) -> usize {
+        self.ticks.iter().map(|&tick| self.label(tick).chars().count()).max().unwrap_or(0)
     }
 
-    /// Ticks in drawing units, as the plotting library will choose them.
-    fn ticks(&self, max_ticks: usize) -> Vec<f64> {
-        RangedCoordf64::from(self.scaled_range()).key_points(max_ticks)
+    /// Labelled ticks in drawing units.
+    pub(super) fn ticks(&self) -> &[f64] {
+        &self.ticks
+    }
+
+    /// Finer lines in drawing units: 2 to 9 times each decade, where there are few of them.
+    pub(super) fn light_ticks(&self) -> Vec<f64> {
+        if !self.log || !(1.0..=6.0).contains(&(self.high - self.low)) {
+            return Vec::new();
+        }
+        multiples(self.low, self.high, &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
     }
 
     /// As many decimals as tell all ticks apart; powers of ten for the very large and very small.
-    fn choose_format(&mut self, max_ticks: usize) {
-        let ticks = self.ticks(max_ticks);
+    fn choose_format(&mut self) {
         let fine = (0_i32..6).find(|&d| {
             let shift = 10_f64.powi(d);
-            ticks.iter().all(|t| (t * shift - (t * shift).round()).abs() < 1e-6 * shift.max(1.0))
+            self.ticks.iter().all(|t| (t * shift - (t * shift).round()).abs() < 1e-6 * shift.max(1.0))
         });
         let decimals = fine.unwrap_or(6) - self.exponent;
         self.decimals = usize::try_from(decimals.max(0)).unwrap_or(0);
         let largest = self.low.abs().max(self.high.abs());
         self.scientific = !(1e-3..1e6).contains(&largest);
     }
+}
+
+/// What the plotting library asks of an axis, in drawing units.
+impl Ranged for Axis {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        RangedCoordf64::from(self.scaled_range()).map(value, limit)
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() { self.light_ticks() } else { self.ticks.clone() }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.scaled_range()
+    }
+}
+
+/// Ticks of a logarithmic axis: 1, 2 and 5 times each decade, each decade, or every so many of them.
+fn decades(low: f64, high: f64, max_ticks: usize) -> Vec<f64> {
+    let fine = multiples(low, high, &[1.0, 2.0, 5.0]);
+    if fine.len() <= max_ticks {
+        return fine;
+    }
+    let whole = multiples(low, high, &[1.0]);
+    let stride = whole.len().div_ceil(max_ticks.max(1)).max(1);
+    whole.into_iter().step_by(stride).collect()
+}
+
+/// Logarithms, from `low` to `high`, of these multiples of powers of ten.
+fn multiples(low: f64, high: f64, factors: &[f64]) -> Vec<f64> {
+    let (first, last) = (low.floor(), high.floor());
+    let mut ticks = Vec::new();
+    let mut power = first;
+    while power <= last {
+        ticks.extend(factors.iter().map(|factor| power + factor.log10()));
+        power += 1.0;
+    }
+    ticks.retain(|tick| (low - CONSTANT..=high + CONSTANT).contains(tick));
+    ticks
+}
+
+/// `200`, or `2 x 10^-7`, for its logarithm.
+fn plain_or_power(logarithm: f64) -> String {
+    let shift = decade_of(logarithm + CONSTANT);
+    let mantissa = (10_f64.powf(logarithm - f64::from(shift)) * 1e6).round() / 1e6;
+    if (-3..=4).contains(&shift) {
+        let decimals = usize::try_from(6 - shift).unwrap_or(0);
+        let text = format!("{:.decimals$}", mantissa * 10_f64.powi(shift));
+        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    if mantissa == 1.0 {
+        return format!("10{}", superscript(shift));
+    }
+    format!("{mantissa}\u{d7}10{}", superscript(shift))
 }
 
 /// Moves an end to the round number just outside, so that a run to 99.999 s has a tick at 100 s.
@@ -134,9 +239,13 @@ fn superscript(exponent: i32) -> String {
 }
 
 /// Exponent of the power of ten at or below a positive value.
-#[expect(clippy::cast_possible_truncation, reason = "the exponent of an f64 is within -324..=308")]
 fn decade(value: f64) -> i32 {
-    value.log10().floor() as i32
+    decade_of(value.log10())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the exponent of an f64 is within -324..=308")]
+fn decade_of(logarithm: f64) -> i32 {
+    logarithm.floor() as i32
 }
 
 #[cfg(test)]
@@ -145,7 +254,7 @@ mod tests {
 
     fn labels(low: f64, high: f64) -> Vec<String> {
         let axis = Axis::exact(low, high, 6).unwrap();
-        axis.ticks(6).into_iter().map(|t| axis.label(t)).collect()
+        axis.ticks().iter().map(|&t| axis.label(t)).collect()
     }
 
     #[test]
@@ -168,7 +277,7 @@ mod tests {
         for exponent in [-200, -17, -3, 0, 5, 200] {
             let unit = 10_f64.powi(exponent);
             let axis = Axis::exact(0.0, 4.2 * unit, 6).unwrap();
-            assert_eq!(axis.ticks(6).len(), 5, "10^{exponent}");
+            assert_eq!(axis.ticks().len(), 5, "10^{exponent}");
         }
     }
 
@@ -198,5 +307,30 @@ mod tests {
         }
         assert!(Axis::exact(-1e308, 1e308, 6).is_none());
         assert!(Axis::exact(1e9, 1e9 + 1e-3, 6).is_none());
+    }
+
+    fn log_labels(low: f64, high: f64) -> Vec<String> {
+        let axis = Axis::exact_log(low.log10(), high.log10(), 6).unwrap();
+        axis.ticks().iter().map(|&t| axis.label(t)).collect()
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_decades_or_fit_between_them() {
+        assert_eq!(log_labels(0.01, 1000.0), ["0.01", "0.1", "1", "10", "100", "1000"]);
+        assert_eq!(log_labels(1e-7, 1e-5), ["10\u{207b}\u{2077}", "10\u{207b}\u{2076}", "10\u{207b}\u{2075}"]);
+        assert_eq!(log_labels(1.0, 20.0), ["1", "2", "5", "10", "20"]);
+        assert_eq!(log_labels(2.0, 6.0), ["2", "3", "4", "5", "6"]);
+        assert_eq!(log_labels(1e-100, 1e100).len(), 6);
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_finer_lines_and_bounds() {
+        let axis = Axis::exact_log(0.0, 2.0, 6).unwrap();
+        assert_eq!(axis.light_ticks().len(), 16);
+        assert!(Axis::exact_log(0.0, 400.0, 6).is_none());
+        assert!(Axis::exact_log(1.0, 1.0, 6).is_none());
+        assert!(Axis::exact_log(f64::NEG_INFINITY, 1.0, 6).is_none());
+        let constant = Axis::around_log(2.0, 2.0, 0.06, 6).unwrap();
+        assert!(constant.low < 2.0 && 2.0 < constant.high);
     }
 }

@@ -1,20 +1,25 @@
 //! A laid-out figure on the canvas of the plotting library.
+//!
+//! What the library would write down mark by mark - the cells of a map, the dots of a cloud - lies as compact paths
+//! between its layers.
 
 use std::fmt::Display;
 
 use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
-use plotters::coord::types::RangedCoordf64;
-use plotters::element::{Circle, DashedPathElement, PathElement};
+use plotters::element::PathElement;
 use plotters::prelude::{DrawingArea, IntoDrawingArea, RGBColor, SVGBackend, WHITE};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontStyle, FontTransform, IntoFont, ShapeStyle, TextStyle};
+use plotters::style::{Color, FontStyle, IntoFont, ShapeStyle, TextStyle};
 
+use super::axis::Axis;
+use super::cells::ramp_markup;
+use super::colors::{REFERENCE, palette};
 use super::error::ReportError;
-use super::layout::{
-    Entry, LABEL_ROW, LEGEND_GAP, LEGEND_KEY, PanelPlan, Plan, ROW, TEXT_SIZE, TITLE_ROW, TITLE_SIZE, X_LABEL_DROP,
-};
+use super::labels::{draw_axis_labels, draw_bar_labels, draw_header, put};
+use super::layout::{BAR_GAP, BAR_WIDTH, PanelPlan, Plan, TEXT_SIZE, TITLE_ROW, TITLE_SIZE};
+use super::marks::{clouds, draw_areas, draw_lines, draw_traces, draw_whiskers};
 use super::trace::Key;
 
 /// The library draws on whole pixels: ten of them are one px of the figure.
@@ -22,66 +27,97 @@ pub(super) const UNITS: f64 = 10.0;
 /// The SVG backend divides font sizes by this.
 const FONT_FACTOR: f64 = 1.24;
 
-/// Colours that readers with any colour vision tell apart (Okabe and Ito 2008), darkest first:
-/// yellow comes last, since it is faint on white.
-const PALETTE: [RGBColor; 8] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(0, 0, 0),
-    RGBColor(240, 228, 66),
-];
-const INK: RGBColor = RGBColor(34, 34, 34);
+pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
 const GRID: RGBColor = RGBColor(228, 228, 228);
-const REFERENCE: RGBColor = RGBColor(90, 90, 90);
+const FINE_GRID: RGBColor = RGBColor(241, 241, 241);
 
-type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
-/// Draws the figure; the document's own head is replaced later.
+/// Draws the figure: all that goes into its SVG element.
 pub(super) fn draw(plan: &Plan) -> Result<String, ReportError> {
+    let (mut maps, mut dots) = (String::new(), String::new());
+    let ground = layer(plan, |canvas| {
+        canvas.fill(&WHITE).map_err(failed)?;
+        plan.panels.iter().try_for_each(|panel| Ok(maps += &draw_ground(canvas, panel)?))
+    })?;
+    let areas = layer(plan, |canvas| {
+        plan.panels.iter().try_for_each(|panel| {
+            let mut chart = chart(canvas, panel)?;
+            draw_areas(&mut chart, panel)?;
+            dots += &clouds(&chart, panel);
+            Ok(())
+        })
+    })?;
+    let marks = layer(plan, |canvas| {
+        draw_title(canvas, plan)?;
+        plan.panels.iter().try_for_each(|panel| draw_panel(canvas, panel))
+    })?;
+    Ok([ground, maps, areas, dots, marks].concat())
+}
+
+/// What `paint` puts on an empty canvas, without the SVG element around it.
+fn layer(plan: &Plan, paint: impl FnOnce(&Canvas<'_>) -> Result<(), ReportError>) -> Result<String, ReportError> {
     let mut svg = String::new();
     let size = (units(plan.width).unsigned_abs(), units(plan.height).unsigned_abs());
     let canvas = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-    canvas.fill(&WHITE).map_err(failed)?;
-    let style = text(TITLE_SIZE, FontStyle::Bold, HPos::Left);
-    for (row, line) in plan.title.iter().enumerate() {
-        put(&canvas, line, &style, (plan.left, TITLE_SIZE + row as f64 * TITLE_ROW))?;
-    }
-    for panel in &plan.panels {
-        draw_panel(&canvas, plan, panel)?;
-    }
+    paint(&canvas)?;
     canvas.present().map_err(failed)?;
     drop(canvas);
-    Ok(svg)
+    let inside = svg.split_once('>').and_then(|(_, inside)| inside.rsplit_once("</svg>"));
+    Ok(inside.map_or_else(String::new, |(inside, _)| inside.trim_start().to_owned()))
 }
 
-fn draw_panel(canvas: &Canvas, plan: &Plan, panel: &PanelPlan) -> Result<(), ReportError> {
-    draw_header(canvas, plan, panel)?;
-    draw_axis_labels(canvas, plan, panel)?;
-    let top = panel.top + panel.header;
-    let area = canvas.clone().shrink((0, units(top)), (units(plan.width), units(panel.panel.height + panel.bottom)));
-    let mut chart = ChartBuilder::on(&area)
-        .margin_right(units(plan.right))
-        .set_label_area_size(LabelAreaPosition::Left, units(plan.left))
-        .set_label_area_size(LabelAreaPosition::Bottom, units(panel.bottom))
-        .build_cartesian_2d(panel.x.scaled_range(), panel.y.scaled_range())
-        .map_err(failed)?;
+fn draw_title(canvas: &Canvas, plan: &Plan) -> Result<(), ReportError> {
+    let style = text(TITLE_SIZE, FontStyle::Bold, HPos::Left);
+    for (row, line) in plan.title.iter().enumerate() {
+        put(canvas, line, &style, (plan.title_left, TITLE_SIZE + row as f64 * TITLE_ROW))?;
+    }
+    Ok(())
+}
+
+/// Grid and tick labels; returns the cells of the map, which cover the grid, and its colour bar.
+fn draw_ground(canvas: &Canvas, panel: &PanelPlan) -> Result<String, ReportError> {
+    let mut chart = chart(canvas, panel)?;
     draw_mesh(&mut chart, panel)?;
+    let place = |x, y| chart.backend_coord(&(panel.x.scaled(x), panel.y.scaled(y)));
+    let Some(cells) = &panel.cells else { return Ok(String::new()) };
+    let markup = cells.markup((&panel.x, &panel.y), place);
+    let Some(ramp) = cells.ramp.filter(|_| panel.bar.is_some()) else { return Ok(markup) };
+    let top = panel.top + panel.header;
+    let (left, right) = (panel.frame.1 + BAR_GAP, panel.frame.1 + BAR_GAP + BAR_WIDTH);
+    Ok(markup + &ramp_markup(&ramp, (units(left), units(top)), (units(right), units(top + panel.height))))
+}
+
+fn draw_panel(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
+    draw_header(canvas, panel)?;
+    draw_axis_labels(canvas, panel)?;
+    draw_bar_labels(canvas, panel)?;
+    let mut chart = chart(canvas, panel)?;
     draw_traces(&mut chart, panel)?;
+    draw_whiskers(&mut chart, panel)?;
     draw_lines(&mut chart, panel)?;
     draw_frame(&mut chart)
+}
+
+/// The axes of a panel at their place.
+fn chart<'a, 'b>(canvas: &Canvas<'b>, panel: &PanelPlan) -> Result<Chart<'a, 'b>, ReportError> {
+    let (cell, frame) = (panel.cell, panel.frame);
+    let corner = (units(cell.0), units(panel.top + panel.header));
+    let area = canvas.clone().shrink(corner, (units(cell.1 - cell.0), units(panel.height + panel.bottom)));
+    ChartBuilder::on(&area)
+        .margin_right(units(cell.1 - frame.1))
+        .set_label_area_size(LabelAreaPosition::Left, units(frame.0 - cell.0))
+        .set_label_area_size(LabelAreaPosition::Bottom, units(panel.bottom))
+        .build_cartesian_2d(panel.x.clone(), panel.y.clone())
+        .map_err(failed)
 }
 
 fn draw_mesh(chart: &mut Chart, panel: &PanelPlan) -> Result<(), ReportError> {
     let ticks = text(TEXT_SIZE, FontStyle::Normal, HPos::Center);
     let mut mesh = chart.configure_mesh();
-    mesh.x_labels(panel.x_ticks)
-        .y_labels(panel.y_ticks)
-        .max_light_lines(0)
+    mesh.max_light_lines(1)
+        .light_line_style(stroke(FINE_GRID, 0.7))
         .bold_line_style(stroke(GRID, 0.7))
         .axis_style(stroke(INK, 0.8))
         .label_style(ticks)
@@ -91,37 +127,6 @@ fn draw_mesh(chart: &mut Chart, panel: &PanelPlan) -> Result<(), ReportError> {
     mesh.draw().map_err(failed)
 }
 
-fn draw_lines(chart: &mut Chart, panel: &PanelPlan) -> Result<(), ReportError> {
-    let inside = panel.y.low..=panel.y.high;
-    for line in panel.panel.lines.iter().filter(|line| inside.contains(&line.value)) {
-        let (ends, y) = (panel.x.scaled_range(), panel.y.scaled(line.value));
-        let path = [(ends.start, y), (ends.end, y)];
-        let dashes = DashedPathElement::new(path, units(5.0), units(3.0), stroke(REFERENCE, 0.9));
-        chart.draw_series([dashes]).map_err(failed)?;
-    }
-    Ok(())
-}
-
-fn draw_traces(chart: &mut Chart, panel: &PanelPlan) -> Result<(), ReportError> {
-    let scaled = |&(x, y): &(f64, f64)| (panel.x.scaled(x), panel.y.scaled(y));
-    for trace in &panel.traces {
-        let style = stroke(color(trace.key), 1.2);
-        for part in &trace.parts {
-            let points: Vec<_> = part.iter().map(scaled).collect();
-            if matches!(trace.key, Key::Dot(_)) {
-                let dots = points.into_iter().map(|at| Circle::new(at, units(1.8), style.filled()));
-                chart.draw_series(dots).map_err(failed)?;
-            } else if let [only] = points[..] {
-                // A value between two gaps is a dot, not an invisible line.
-                chart.draw_series([Circle::new(only, units(1.0), style.filled())]).map_err(failed)?;
-            } else {
-                chart.draw_series([PathElement::new(points, style)]).map_err(failed)?;
-            }
-        }
-    }
-    Ok(())
-}
-
 fn draw_frame(chart: &mut Chart) -> Result<(), ReportError> {
     let (x, y) = (chart.x_range(), chart.y_range());
     let corners = [(x.start, y.start), (x.end, y.start), (x.end, y.end), (x.start, y.end), (x.start, y.start)];
@@ -129,79 +134,25 @@ fn draw_frame(chart: &mut Chart) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn draw_header(canvas: &Canvas, plan: &Plan, panel: &PanelPlan) -> Result<(), ReportError> {
-    if !panel.panel.title.is_empty() {
-        let style = text(TEXT_SIZE, FontStyle::Bold, HPos::Left);
-        put(canvas, &panel.panel.title, &style, (plan.left, panel.top + ROW / 2.0))?;
-    }
-    for entry in &panel.legend {
-        draw_key(canvas, entry)?;
-        let style = text(TEXT_SIZE, FontStyle::Normal, HPos::Left);
-        put(canvas, entry.label, &style, (entry.x + LEGEND_KEY + LEGEND_GAP, entry.y))?;
-    }
-    Ok(())
-}
-
-fn draw_key(canvas: &Canvas, entry: &Entry) -> Result<(), ReportError> {
-    let y = units(entry.y);
-    let (start, end) = (units(entry.x), units(entry.x + LEGEND_KEY));
-    let ink = color(entry.key);
-    match entry.key {
-        Key::Line(_) => canvas.draw(&PathElement::new([(start, y), (end, y)], stroke(ink, 2.0))),
-        Key::Dot(_) => canvas.draw(&Circle::new((i32::midpoint(start, end), y), units(2.4), ink.filled())),
-        Key::Dashes => {
-            canvas.draw(&DashedPathElement::new([(start, y), (end, y)], units(5.0), units(3.0), stroke(ink, 0.9)))
-        }
-    }
-    .map_err(failed)
-}
-
-fn draw_axis_labels(canvas: &Canvas, plan: &Plan, panel: &PanelPlan) -> Result<(), ReportError> {
-    let across = text(TEXT_SIZE, FontStyle::Normal, HPos::Center);
-    let top = panel.top + panel.header;
-    if panel.bottom > 0.0 {
-        let middle = f64::midpoint(plan.left, plan.width - plan.right);
-        let below = top + panel.panel.height + X_LABEL_DROP;
-        put(canvas, &panel.panel.x_label, &across, (middle, below))?;
-    }
-    let upward = across.transform(FontTransform::Rotate270);
-    let middle = top + panel.panel.height / 2.0;
-    let first = plan.label_rows - panel.y_label.len();
-    for (row, line) in panel.y_label.iter().enumerate() {
-        let x = TEXT_SIZE + (first + row) as f64 * LABEL_ROW;
-        put(canvas, line, &upward, (x, middle))?;
-    }
-    Ok(())
-}
-
-fn put(canvas: &Canvas, label: &str, style: &TextStyle, at: (f64, f64)) -> Result<(), ReportError> {
-    if label.is_empty() {
-        return Ok(());
-    }
-    canvas.draw_text(label, style, (units(at.0), units(at.1))).map_err(failed)
-}
-
-fn text(size: f64, weight: FontStyle, side: HPos) -> TextStyle<'static> {
+pub(super) fn text(size: f64, weight: FontStyle, side: HPos) -> TextStyle<'static> {
     let font = ("sans-serif", size * UNITS * FONT_FACTOR).into_font().style(weight);
     TextStyle::from(font).color(&INK).pos(Pos::new(side, VPos::Center))
 }
 
-fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
+pub(super) fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
     color.stroke_width(units(width).unsigned_abs())
 }
 
-fn color(key: Key) -> RGBColor {
-    match key {
-        Key::Line(index) | Key::Dot(index) => PALETTE.get(index % PALETTE.len()).copied().unwrap_or(INK),
-        Key::Dashes => REFERENCE,
-    }
+pub(super) fn ink(key: Key) -> RGBColor {
+    let (red, green, blue) = key.color.map_or(REFERENCE, palette);
+    RGBColor(red, green, blue)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "sizes are checked to be some thousand px")]
-fn units(px: f64) -> i32 {
+pub(super) fn units(px: f64) -> i32 {
     (px * UNITS).round() as i32
 }
 
-fn failed(error: impl Display) -> ReportError {
+pub(super) fn failed(error: impl Display) -> ReportError {
     ReportError::Draw(error.to_string())
 }

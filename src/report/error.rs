@@ -43,6 +43,79 @@ pub enum ReportError {
         /// Its value.
         value: f64,
     },
+    /// Panels cannot stand in so many columns.
+    #[error("figure `{figure}` has {columns} columns, allowed are 1 to {max}")]
+    InvalidColumns {
+        /// Title of the figure.
+        figure: String,
+        /// Columns asked for.
+        columns: usize,
+        /// Most that are allowed.
+        max: usize,
+    },
+    /// A map with more or fewer values than cells, or without cells.
+    #[error("panel `{panel}`: {values} values for a map of {columns} x {rows} cells")]
+    MapSize {
+        /// Title of the panel.
+        panel: String,
+        /// Columns of cells.
+        columns: usize,
+        /// Rows of cells.
+        rows: usize,
+        /// Values given.
+        values: usize,
+    },
+    /// A value that stands for no kind.
+    #[error("panel `{panel}`: {value} is none of the {kinds} kinds of the map, which count from 0")]
+    UnknownKind {
+        /// Title of the panel.
+        panel: String,
+        /// The value.
+        value: f64,
+        /// Number of kinds.
+        kinds: usize,
+    },
+    /// Values that should be finite and in ascending order are not.
+    #[error("panel `{panel}`: {what}: {after} follows {before}, but the values must be finite and ascend")]
+    NotAscending {
+        /// Title of the panel.
+        panel: String,
+        /// Which values.
+        what: String,
+        /// The value before.
+        before: f64,
+        /// The value that does not lie above it.
+        after: f64,
+    },
+    /// The limits of a band or bar in the wrong order.
+    #[error("panel `{panel}`: limits {low} to {high} at x = {x} are in the wrong order")]
+    InvalidLimits {
+        /// Title of the panel.
+        panel: String,
+        /// Where.
+        x: f64,
+        /// Lower limit.
+        low: f64,
+        /// Upper limit.
+        high: f64,
+    },
+    /// A logarithmic axis on which nothing has a place.
+    #[error("panel `{panel}`: no value on the logarithmic {axis} axis is above 0, or a cell of the map is not")]
+    NoLogarithm {
+        /// Title of the panel.
+        panel: String,
+        /// `x` or `y`.
+        axis: &'static str,
+    },
+    /// A drawing to scale needs linear axes.
+    #[error("panel `{panel}`: a drawing to scale has no logarithmic axes")]
+    LogToScale {
+        /// Title of the panel.
+        panel: String,
+    },
+    /// An SVG document that cannot be turned into pixels.
+    #[error("making a PNG failed: {0}")]
+    Png(String),
     /// A width or height outside what a page can carry.
     #[error("{what} is {value} px, allowed are {min} to {max} px")]
     InvalidSize {

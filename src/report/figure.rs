@@ -63,7 +63,7 @@ pub struct Panel<'a> {
     pub x_range: Option<(f64, f64)>,
     /// Ends of the y axis; `None` spans the data within the x range, and the reference lines.
     pub y_range: Option<(f64, f64)>,
-    /// Takes the same x axis as the panel below, which alone carries its tick labels.
+    /// Takes the same x axis as the panel below in the same column, which alone carries its tick labels.
     pub share_x_with_next: bool,
     /// Height of the frame in px, without labels.
     pub height: f64,
@@ -128,7 +128,7 @@ impl<'a> Panel<'a> {
         self
     }
 
-    /// Shares the x axis of the panel below.
+    /// Shares the x axis of the panel below in the same column.
     #[must_use]
     pub fn share_x_with_next(mut self) -> Self {
         self.share_x_with_next = true;
@@ -152,7 +152,8 @@ impl<'a> Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// Adds the area between two curves, in the colour of palette entry `color`; an empty label keeps it out of the legend.
+    /// Adds the area between two curves, in the colour of palette entry `color`; an empty label keeps it out of the
+    /// legend.
     #[must_use]
     pub fn band(mut self, label: impl Into<String>, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
         self.bands.push(Band { label: label.into(), limits, color });
@@ -231,7 +232,8 @@ pub struct HeatMap<'a> {
 /// What the colours of a map mean.
 #[derive(Debug, Clone)]
 pub enum Scale {
-    /// A quantity with this label and unit: one hue of growing depth; two, white at 0, if values have both signs.
+    /// A quantity with this label and unit, from dark (low) to light; if values have both signs, blue below and orange
+    /// above a white 0.
     Quantity(String),
     /// Values 0, 1, 2, ... stand for these names, each in a colour of the palette.
     Kinds(Vec<String>),
@@ -338,4 +340,11 @@ pub enum Style {
     Crosses,
     /// Straight dashed lines from point to point.
     Dashed,
+}
+
+impl Style {
+    /// Whether the points stand for themselves, without a line that joins them.
+    pub(super) fn is_marks(self) -> bool {
+        matches!(self, Self::Markers | Self::Dots | Self::Crosses)
+    }
 }

@@ -1,10 +1,13 @@
 //! Where everything goes: axes, the parts of each series that show, legend rows, margins.
 
+use super::axes::{x_axes, y_axis};
 use super::axis::Axis;
+use super::band::{Whisker, areas, whiskers};
+use super::cells::Cells;
 use super::error::ReportError;
-use super::figure::{Figure, Panel, ReferenceLine, Style};
-use super::reduce::extent;
-use super::trace::{Key, Trace, finish, finite, trace};
+use super::figure::{Figure, Panel, Scale};
+use super::legend::{Entry, legend, wrap};
+use super::trace::{Space, Trace, finish, trace};
 
 type Point = (f64, f64);
 
@@ -16,186 +19,192 @@ pub(super) const TITLE_ROW: f64 = 18.0;
 pub(super) const LABEL_ROW: f64 = 13.0;
 pub(super) const LEGEND_KEY: f64 = 18.0;
 pub(super) const LEGEND_GAP: f64 = 5.0;
-const EDGE: f64 = 6.0;
+pub(super) const EDGE: f64 = 6.0;
 const TICK_ROOM: f64 = 10.0;
 /// Width of a digit and mean width of a letter, in font sizes; the reader's font is not known.
-const DIGIT: f64 = 0.6;
-const LETTER: f64 = 0.53;
-const BOLD: f64 = 0.58;
+pub(super) const DIGIT: f64 = 0.6;
+pub(super) const LETTER: f64 = 0.53;
+pub(super) const BOLD: f64 = 0.58;
 /// Distances below a frame, to the middle of the tick labels and of the x label.
 const TICK_LABEL_DROP: f64 = 13.0;
 pub(super) const X_LABEL_DROP: f64 = 28.0;
+
+/// Distance of the colour bar from the frame, and its width.
+pub(super) const BAR_GAP: f64 = 10.0;
+pub(super) const BAR_WIDTH: f64 = 11.0;
 
 /// A figure with all numbers settled, in px from the upper left corner.
 pub(super) struct Plan<'f> {
     pub width: f64,
     pub height: f64,
-    pub left: f64,
-    pub right: f64,
     pub title: Vec<String>,
-    /// Lines that the longest y label takes.
-    pub label_rows: usize,
+    pub title_left: f64,
     pub panels: Vec<PanelPlan<'f>>,
 }
 
 /// One panel: header (title and legend), frame, room for x labels.
 pub(super) struct PanelPlan<'f> {
     pub panel: &'f Panel<'f>,
+    pub space: Space,
     pub x: Axis,
     pub y: Axis,
-    pub x_ticks: usize,
-    pub y_ticks: usize,
     pub y_label: Vec<String>,
+    /// Lines that the longest y label of the column takes.
+    pub label_rows: usize,
     pub traces: Vec<Trace>,
+    /// Polygons of each band.
+    pub areas: Vec<Vec<Vec<Point>>>,
+    /// Of each set of bars.
+    pub whiskers: Vec<Vec<Whisker>>,
+    pub cells: Option<Cells<'f>>,
+    pub bar: Option<ColorBar<'f>>,
     pub legend: Vec<Entry<'f>>,
+    /// Ends of the cell that the panel takes of the figure's width.
+    pub cell: Point,
+    /// Ends of the frame.
+    pub frame: Point,
     pub top: f64,
     pub header: f64,
+    pub height: f64,
     pub bottom: f64,
 }
 
-/// A legend entry at its place.
-pub(super) struct Entry<'f> {
+/// What the colours of a map mean, to the right of the frame.
+pub(super) struct ColorBar<'f> {
+    pub axis: Axis,
     pub label: &'f str,
-    pub key: Key,
-    pub x: f64,
-    pub y: f64,
 }
 
 /// Lays a checked figure out.
 pub(super) fn plan<'f>(figure: &'f Figure<'f>) -> Result<Plan<'f>, ReportError> {
-    let x_axes = x_axes(figure)?;
+    let cell = figure.width / figure.columns as f64;
+    let x_axes = x_axes(figure, x_ticks(cell))?;
     let mut panels = Vec::new();
     for (panel, x) in figure.panels.iter().zip(x_axes) {
-        panels.push(plan_panel(panel, x, figure.width)?);
+        panels.push(plan_panel(panel, x, cell)?);
     }
-    let label_rows = panels.iter().map(|panel| panel.y_label.len()).max().unwrap_or(0);
-    let ticks = panels.iter().map(tick_width).fold(0.0, f64::max);
-    let left = EDGE + label_rows as f64 * LABEL_ROW + ticks + TICK_ROOM;
-    // However long the labels are, half of the width is left for the data.
-    let left = left.min(figure.width / 2.0);
-    let right = EDGE + TEXT_SIZE;
-    let title = wrap(&figure.title, whole((figure.width - left - right) / (BOLD * TITLE_SIZE)));
+    for column in 0..figure.columns.min(panels.len()) {
+        place_column(&mut panels, (column, figure.columns), cell);
+    }
+    let title_left = panels.first().map_or(EDGE, |plan| plan.frame.0);
+    let title = wrap(&figure.title, whole((figure.width - title_left - EDGE) / (BOLD * TITLE_SIZE)));
     let mut top = EDGE + title.len() as f64 * TITLE_ROW;
-    for plan in &mut panels {
-        plan.top = top;
-        place_legend(plan, left, figure.width - right);
-        top += plan.header + plan.panel.height + plan.bottom + EDGE;
+    for row in panels.chunks_mut(figure.columns) {
+        top = place_row(row, top) + EDGE;
     }
-    let (width, height) = (figure.width, top);
-    Ok(Plan { width, height, left, right, title, label_rows, panels })
+    Ok(Plan { width: figure.width, height: top, title, title_left, panels })
 }
 
 fn plan_panel<'f>(panel: &'f Panel<'f>, x: Axis, width: f64) -> Result<PanelPlan<'f>, ReportError> {
-    let y_ticks = whole(panel.height / 26.0).max(2);
-    let mut traces = Vec::new();
-    for series in &panel.series {
-        traces.push(trace(series, &x, width));
+    let space = Space::of(panel);
+    let mut traces: Vec<Trace> = panel.series.iter().map(|series| trace(series, space, &x, width)).collect();
+    let cells = panel.map.as_ref().map(|map| Cells::new(map, space));
+    let mut y = y_axis(panel, (&x, &traces, cells.as_ref()), y_ticks(panel.height))?;
+    let mut height = panel.height;
+    if panel.equal_aspect {
+        height = drawn_to_scale(&x, &y, width);
+        y = y.with_ticks(y_ticks(height));
     }
-    let y = y_axis(panel, &traces, y_ticks)?;
     for (series, trace) in panel.series.iter().zip(&mut traces) {
-        finish(trace, series, (&x, &y), (width, panel.height));
+        finish(trace, series, (&x, &y), (width, height));
     }
-    let y_label = wrap(&panel.y_label, whole(panel.height / (LETTER * TEXT_SIZE)));
+    let areas = panel.bands.iter().map(|band| areas(band, space, (&x, &y), width)).collect();
+    let whiskers = panel.bars.iter().map(|bars| whiskers(bars, space, (&x, &y))).collect();
     let bottom = match (panel.share_x_with_next, panel.x_label.is_empty()) {
         (true, _) => 0.0,
         (false, true) => TICK_LABEL_DROP + EDGE,
         (false, false) => X_LABEL_DROP + EDGE,
     };
-    let (x_ticks, legend) = (x_ticks(width), Vec::new());
-    let (top, header) = (0.0, 0.0);
-    Ok(PanelPlan { panel, x, y, x_ticks, y_ticks, y_label, traces, legend, top, header, bottom })
+    let bar = color_bar(panel, cells.as_ref(), height);
+    let y_label = wrap(&panel.y_label, whole(height / (LETTER * TEXT_SIZE)));
+    let (cell, frame, label_rows, legend, top, header) = ((0.0, width), (0.0, width), 0, Vec::new(), 0.0, 0.0);
+    Ok(PanelPlan {
+        panel,
+        space,
+        x,
+        y,
+        y_label,
+        label_rows,
+        traces,
+        areas,
+        whiskers,
+        cells,
+        bar,
+        legend,
+        cell,
+        frame,
+        top,
+        header,
+        height,
+        bottom,
+    })
 }
 
-/// One axis for each panel; panels that share take the same.
-fn x_axes(figure: &Figure) -> Result<Vec<Axis>, ReportError> {
-    let mut axes = Vec::new();
-    for group in figure.panels.split_inclusive(|panel| !panel.share_x_with_next) {
-        let axis = x_axis(group, x_ticks(figure.width))?;
-        axes.extend(std::iter::repeat_n(axis, group.len()));
-    }
-    Ok(axes)
+fn color_bar<'f>(panel: &'f Panel<'f>, cells: Option<&Cells>, height: f64) -> Option<ColorBar<'f>> {
+    let ramp = cells?.ramp?;
+    let Some(Scale::Quantity(label)) = panel.map.as_ref().map(|map| &map.scale) else { return None };
+    Some(ColorBar { axis: Axis::exact(ramp.low, ramp.high, y_ticks(height))?, label })
 }
 
-fn x_axis(group: &[Panel], ticks: usize) -> Result<Axis, ReportError> {
-    let mut given = group.iter().filter_map(|panel| panel.x_range).peekable();
-    let title = group.first().map_or("", |panel| &panel.title);
-    if given.peek().is_some() {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for range in given {
-            // Each range must be one by itself: a union would hide a reversed one.
-            Axis::exact(range.0, range.1, ticks).ok_or_else(|| bad_range(title, "x", range))?;
-            (low, high) = (low.min(range.0), high.max(range.1));
+/// Frames below each other have the same ends.
+fn place_column(panels: &mut [PanelPlan], (column, columns): (usize, usize), cell: f64) {
+    let members = || panels.iter().skip(column).step_by(columns);
+    let rows = members().map(|panel| panel.y_label.len()).max().unwrap_or(0);
+    let ticks = members().map(|panel| tick_width(&panel.y)).fold(0.0, f64::max);
+    let bar = members().filter_map(|panel| panel.bar.as_ref().map(bar_width)).fold(0.0, f64::max);
+    // However long the labels are, half of the width is left for the data.
+    let margin = (EDGE + rows as f64 * LABEL_ROW + ticks + TICK_ROOM).min(cell / 2.0);
+    let right = (EDGE + TEXT_SIZE + bar).min(cell / 2.0 - EDGE);
+    let start = column as f64 * cell;
+    for plan in panels.iter_mut().skip(column).step_by(columns) {
+        plan.label_rows = rows;
+        plan.cell = (start, start + cell);
+        plan.frame = (start + margin, start + cell - right);
+        let width = plan.frame.1 - plan.frame.0;
+        plan.x = with_room(&plan.x, width);
+        if plan.panel.equal_aspect {
+            plan.height = drawn_to_scale(&plan.x, &plan.y, width);
         }
-        return Axis::exact(low, high, ticks).ok_or_else(|| bad_range(title, "x", (low, high)));
+        (plan.legend, plan.header) = legend(plan.panel, &plan.traces, plan.frame);
     }
-    let points = group.iter().flat_map(|panel| &panel.series).flat_map(|s| finite(&s.data));
-    let range = extent(points.map(|p| p.0));
-    let has_dots = group.iter().flat_map(|p| &p.series).any(|s| s.style == Style::Markers);
-    let margin = if has_dots { 0.02 } else { 0.0 };
-    Axis::around(range.0, range.1, margin, ticks).ok_or_else(|| bad_range(title, "x", range))
 }
 
-fn y_axis(panel: &Panel, traces: &[Trace], ticks: usize) -> Result<Axis, ReportError> {
-    if let Some(range) = panel.y_range {
-        return Axis::exact(range.0, range.1, ticks).ok_or_else(|| bad_range(&panel.title, "y", range));
+/// Frames beside each other have the same top; returns where the row ends.
+fn place_row(row: &mut [PanelPlan], top: f64) -> f64 {
+    let header = row.iter().map(|plan| plan.header).fold(0.0, f64::max);
+    for plan in row.iter_mut() {
+        (plan.top, plan.header) = (top, header);
     }
-    let shown = traces.iter().flat_map(|t| t.parts.iter().flatten()).map(|p| p.1);
-    let range = extent(shown.chain(panel.lines.iter().map(|line| line.value)));
-    Axis::around(range.0, range.1, 0.06, ticks).ok_or_else(|| bad_range(&panel.title, "y", range))
+    top + header + row.iter().map(|plan| plan.height + plan.bottom).fold(0.0, f64::max)
 }
 
-/// Legend entries flow from the title to the right, and on to further rows.
-fn place_legend<'f>(plan: &mut PanelPlan<'f>, left: f64, right: f64) {
-    let panel = plan.panel;
-    let series = panel.series.iter().zip(&plan.traces).map(|(s, t)| (s.label.as_str(), t.key));
-    let lines = panel.lines.iter().map(|l: &ReferenceLine| (l.label.as_str(), Key::Dashes));
-    let entries: Vec<(&'f str, Key)> = series.chain(lines).filter(|e| !e.0.is_empty()).collect();
-    if entries.is_empty() && panel.title.is_empty() {
-        plan.header = TEXT_SIZE;
-        return;
-    }
-    let indent = if panel.title.is_empty() { 0.0 } else { text_width(&panel.title) * BOLD / LETTER + ROW };
-    let (mut x, mut y) = (left + indent, plan.top + ROW / 2.0);
-    for (label, key) in entries {
-        let width = LEGEND_KEY + LEGEND_GAP + text_width(label);
-        if x + width > right && x > left + indent {
-            (x, y) = (left + indent, y + ROW);
-        }
-        plan.legend.push(Entry { label, key, x, y });
-        x += width + ROW;
-    }
-    plan.header = y - plan.top + ROW / 2.0 + 3.0;
+/// Height of a frame in which one unit of y is as long as one of x.
+fn drawn_to_scale(x: &Axis, y: &Axis, width: f64) -> f64 {
+    width * (y.high - y.low) / (x.high - x.low)
 }
 
-fn tick_width(plan: &PanelPlan) -> f64 {
-    plan.y.label_length(plan.y_ticks) as f64 * DIGIT * TEXT_SIZE
+/// As many ticks as have room for their labels.
+fn with_room(axis: &Axis, width: f64) -> Axis {
+    let crowded = |axis: &Axis| (axis.ticks().len() as f64) * (tick_width(axis) + TEXT_SIZE) > width;
+    let fewer = (2..x_ticks(width).max(3)).rev().map(|ticks| axis.with_ticks(ticks));
+    std::iter::once(axis.clone()).chain(fewer).find(|axis| !crowded(axis)).unwrap_or_else(|| axis.with_ticks(2))
 }
 
-/// Words of a label in as few lines of at most `length` characters as possible.
-fn wrap(label: &str, length: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in label.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= length => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
+fn tick_width(axis: &Axis) -> f64 {
+    axis.label_length() as f64 * DIGIT * TEXT_SIZE
 }
 
-fn text_width(text: &str) -> f64 {
-    text.chars().count() as f64 * LETTER * TEXT_SIZE
+fn bar_width(bar: &ColorBar) -> f64 {
+    let label = if bar.label.is_empty() { 0.0 } else { LABEL_ROW };
+    BAR_GAP + BAR_WIDTH + EDGE + tick_width(&bar.axis) + label
 }
 
 fn x_ticks(width: f64) -> usize {
     whole(width / 75.0).max(2)
 }
 
-fn bad_range(panel: &str, axis: &'static str, (low, high): Point) -> ReportError {
-    ReportError::InvalidRange { panel: panel.to_owned(), axis, low, high }
+fn y_ticks(height: f64) -> usize {
+    whole(height / 26.0).max(2)
 }
 
 #[expect(
@@ -209,7 +218,7 @@ pub(super) fn whole(value: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::Series;
+    use super::super::figure::{HeatMap, Series};
     use super::*;
 
     #[test]
@@ -244,12 +253,43 @@ mod tests {
         let plan = plan(&figure).unwrap();
         let rows: Vec<f64> = plan.panels[0].legend.iter().map(|e| e.y).collect();
         assert!(rows.last() > rows.first());
-        assert!(plan.panels[0].legend.iter().all(|e| e.x < plan.width - plan.right));
+        assert!(plan.panels[0].legend.iter().all(|e| e.x < plan.panels[0].frame.1));
     }
 
     #[test]
-    fn long_labels_wrap() {
-        assert_eq!(wrap("relative displacement (mm)", 16), ["relative", "displacement", "(mm)"]);
-        assert_eq!(wrap("relative displacement (mm)", 21), ["relative displacement", "(mm)"]);
+    fn x_axes_are_shared_down_the_columns() {
+        let (early, late) = ([(0.0, 1.0), (1.0, 2.0)], [(3.0, 1.0), (4.0, 2.0)]);
+        let panel = |points| Panel::new("", "", "").series(Series::points("", points));
+        let figure = Figure::new("")
+            .columns(2)
+            .panel(panel(&early).share_x_with_next())
+            .panel(panel(&early))
+            .panel(panel(&late))
+            .panel(panel(&late));
+        let plan = plan(&figure).unwrap();
+        let ends: Vec<_> = plan.panels.iter().map(|p| (p.x.low, p.x.high)).collect();
+        assert_eq!(ends, [(0.0, 4.0), (0.0, 1.0), (0.0, 4.0), (3.0, 4.0)]);
+        let tops: Vec<f64> = plan.panels.iter().map(|p| p.top).collect();
+        assert!(tops[0] == tops[1] && tops[1] < tops[2] && tops[2] == tops[3]);
+        assert!(plan.panels[0].frame.1 < plan.panels[1].frame.0);
+    }
+
+    #[test]
+    fn a_drawing_to_scale_takes_its_height_from_the_ranges() {
+        let panel = Panel::new("", "", "").x_range(0.0, 4.0).y_range(-1.0, 1.0).equal_aspect();
+        let figure = Figure::new("").panel(panel);
+        let plan = plan(&figure).unwrap();
+        let plan = &plan.panels[0];
+        assert!((plan.height - (plan.frame.1 - plan.frame.0) / 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_map_reaches_the_frame_and_leaves_room_for_its_bar() {
+        let map = HeatMap { xs: &[1.0, 2.0], ys: &[1.0, 10.0], values: &[1.0; 4], scale: Scale::Quantity("P".into()) };
+        let figure = Figure::new("").panel(Panel::new("", "", "").map(map).log_y());
+        let plan = plan(&figure).unwrap();
+        let panel = &plan.panels[0];
+        assert_eq!((panel.x.low, panel.x.high, panel.y.low, panel.y.high), (0.5, 2.5, -0.5, 1.5));
+        assert!(plan.width - panel.frame.1 > BAR_GAP + BAR_WIDTH);
     }
 }

@@ -17,14 +17,22 @@
 //! # Ok::<(), videg::report::ReportError>(())
 //! ```
 
+mod axes;
 mod axis;
+mod band;
+mod cells;
+mod check;
 mod clip;
+mod colors;
 mod draw;
 mod drawing;
 mod error;
 mod figure;
 mod html;
+mod labels;
 mod layout;
+mod legend;
+mod marks;
 mod page;
 mod reduce;
 mod svg;

@@ -2,13 +2,11 @@
 
 use askama::Template;
 
+use super::check::{check, check_height};
 use super::draw::{UNITS, draw};
 use super::error::ReportError;
-use super::figure::{Figure, Panel};
+use super::figure::{Figure, Scale};
 use super::layout::{Plan, plan};
-
-const WIDTHS: (f64, f64) = (200.0, 4000.0);
-const HEIGHTS: (f64, f64) = (30.0, 2000.0);
 
 /// Text that XML cannot carry, even escaped, becomes a space.
 fn clean(text: &str) -> String {
@@ -39,15 +37,14 @@ struct Head<'a> {
 /// figure reads the same on a dark page and in print.
 ///
 /// # Errors
-/// A figure without panels, a series whose columns differ in length, a range or a reference line
-/// that is not finite, a size beyond bounds.
+/// A figure without panels, a series whose columns differ in length, a range or a reference line that is not finite,
+/// a size beyond bounds, a map that does not fit its axes, limits out of order, a logarithmic axis without values.
 pub fn render_svg(figure: &Figure) -> Result<String, ReportError> {
     check(figure)?;
     let figure = cleaned(figure);
     let plan = plan(&figure)?;
-    let drawing = draw(&plan)?;
-    let body = drawing.split_once('>').map_or("", |(_, body)| body);
-    Ok(head(&figure, &plan)? + body)
+    plan.panels.iter().try_for_each(|panel| check_height(panel.panel, panel.height))?;
+    Ok(head(&figure, &plan)? + "\n" + &draw(&plan)? + "</svg>\n")
 }
 
 fn head(figure: &Figure, plan: &Plan) -> Result<String, ReportError> {
@@ -58,7 +55,8 @@ fn head(figure: &Figure, plan: &Plan) -> Result<String, ReportError> {
     Ok(Head { view, size, title, description: &figure.caption }.render()?)
 }
 
-fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
+/// The figure with texts that any document can carry.
+pub(super) fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
     let mut figure = figure.clone();
     figure.title = clean(&figure.title);
     figure.caption = clean(&figure.caption);
@@ -68,45 +66,19 @@ fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
         panel.y_label = clean(&panel.y_label);
         panel.series.iter_mut().for_each(|series| series.label = clean(&series.label));
         panel.lines.iter_mut().for_each(|line| line.label = clean(&line.label));
+        panel.bands.iter_mut().for_each(|band| band.label = clean(&band.label));
+        match panel.map.as_mut().map(|map| &mut map.scale) {
+            Some(Scale::Quantity(label)) => *label = clean(label),
+            Some(Scale::Kinds(names)) => names.iter_mut().for_each(|name| *name = clean(name)),
+            None => {}
+        }
     }
     figure
 }
 
-fn check(figure: &Figure) -> Result<(), ReportError> {
-    if figure.panels.is_empty() {
-        return Err(ReportError::NoPanels { figure: figure.title.clone() });
-    }
-    check_size("figure width", figure.width, WIDTHS)?;
-    figure.panels.iter().try_for_each(check_panel)
-}
-
-fn check_panel(panel: &Panel) -> Result<(), ReportError> {
-    check_size(&format!("height of panel `{}`", panel.title), panel.height, HEIGHTS)?;
-    for series in &panel.series {
-        let (xs, ys) = series.data.lengths();
-        if xs != ys {
-            let (panel, series) = (panel.title.clone(), series.label.clone());
-            return Err(ReportError::LengthMismatch { panel, series, xs, ys });
-        }
-    }
-    match panel.lines.iter().find(|line| !line.value.is_finite()) {
-        Some(line) => {
-            Err(ReportError::InvalidLine { panel: panel.title.clone(), line: line.label.clone(), value: line.value })
-        }
-        None => Ok(()),
-    }
-}
-
-fn check_size(what: &str, value: f64, (min, max): (f64, f64)) -> Result<(), ReportError> {
-    if (min..=max).contains(&value) {
-        return Ok(());
-    }
-    Err(ReportError::InvalidSize { what: what.to_owned(), value, min, max })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::figure::{Series, Style};
+    use super::super::figure::{HeatMap, Panel, Series, Style};
     use super::*;
     use quick_xml::events::Event;
 
@@ -158,7 +130,7 @@ mod tests {
     #[test]
     fn empty_constant_and_broken_series_are_drawn() {
         let broken = [(0.0, 1.0), (1.0, f64::NAN), (2.0, f64::INFINITY), (f64::NAN, 0.0), (3.0, 2.0)];
-        for style in [Style::Line, Style::Steps, Style::Markers] {
+        for style in [Style::Line, Style::Steps, Style::Markers, Style::Dots, Style::Crosses, Style::Dashed] {
             for points in [&[][..], &[(1.0, 5.0)], &[(0.0, 5.0), (9.0, 5.0)], &broken] {
                 let svg = one(Series::points("s", points).style(style));
                 parse(&svg);

@@ -2,14 +2,14 @@
 
 use super::axis::Axis;
 use super::clip::{Window, clip};
-use super::figure::{Data, Series, Style};
+use super::figure::{Data, Panel, Series, Style};
 use super::layout::whole;
 use super::reduce::{is_finite, reduce_markers, reduce_within};
 
 type Point = (f64, f64);
 
 /// Pixel columns for each nominal px, for screens of twice the density and for print.
-const DENSITY: f64 = 2.0;
+pub(super) const DENSITY: f64 = 2.0;
 /// Values are cut here so that differences of coordinates stay finite.
 const LARGEST: f64 = 1e300;
 
@@ -19,46 +19,105 @@ pub(super) struct Trace {
     pub key: Key,
 }
 
-/// How a series or a reference line looks; the number is the colour.
+/// How a series, a band or a reference line looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Key {
-    Line(usize),
-    Dot(usize),
+pub(super) struct Key {
+    pub shape: Shape,
+    /// Index into the palette; `None` is the grey of reference lines.
+    pub color: Option<usize>,
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    Line,
     Dashes,
+    Marker,
+    Dot,
+    Cross,
+    Area,
+    Cell,
+}
+
+impl Key {
+    pub(super) const REFERENCE: Self = Self { shape: Shape::Dashes, color: None };
+
+    pub(super) fn new(shape: Shape, color: usize) -> Self {
+        Self { shape, color: Some(color) }
+    }
+
+    fn of(series: &Series) -> Self {
+        let shape = match series.style {
+            Style::Line | Style::Steps => Shape::Line,
+            Style::Dashed => Shape::Dashes,
+            Style::Markers => Shape::Marker,
+            Style::Dots => Shape::Dot,
+            Style::Crosses => Shape::Cross,
+        };
+        Self::new(shape, series.color.unwrap_or(0))
+    }
+}
+
+/// From data to what the axes count: the data, or their logarithms.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Space {
+    log_x: bool,
+    log_y: bool,
+}
+
+impl Space {
+    pub(super) fn of(panel: &Panel) -> Self {
+        Self { log_x: panel.log_x, log_y: panel.log_y }
+    }
+
+    pub(super) fn x(self, value: f64) -> f64 {
+        if self.log_x { logarithm(value) } else { cut(value) }
+    }
+
+    pub(super) fn y(self, value: f64) -> f64 {
+        if self.log_y { logarithm(value) } else { cut(value) }
+    }
+
+    /// The points of a series; some may be gaps.
+    pub(super) fn points<'d>(self, data: &'d Data<'_>) -> impl Iterator<Item = Point> + 'd {
+        data.iter().map(move |(x, y)| (self.x(x), self.y(y)))
+    }
 }
 
 /// The part of a series within the x range, thinned out; still as high as it is.
-pub(super) fn trace(series: &Series, x: &Axis, width: f64) -> Trace {
-    let color = series.color.unwrap_or(0);
+pub(super) fn trace(series: &Series, space: Space, x: &Axis, width: f64) -> Trace {
+    let key = Key::of(series);
     let open = Window { x: (x.low, x.high), y: (f64::NEG_INFINITY, f64::INFINITY) };
-    if series.style == Style::Markers {
-        let dots = finite(&series.data).filter(|p| open.contains(p)).collect();
-        return Trace { parts: vec![dots], key: Key::Dot(color) };
+    let points = space.points(&series.data);
+    if series.style.is_marks() {
+        let marks = points.filter(|p| is_finite(p) && open.contains(p)).collect();
+        return Trace { parts: vec![marks], key };
     }
-    let points = series.data.iter().map(|(x, y)| (cut(x), cut(y)));
     let mut kept = reduce_within(points, open.x, whole(width * DENSITY));
     if series.style == Style::Steps {
         kept = stairs(&kept);
     }
-    Trace { parts: clip(&kept, open), key: Key::Line(color) }
+    Trace { parts: clip(&kept, open), key }
 }
 
 /// Cuts a trace to the y range, once that is known.
 pub(super) fn finish(trace: &mut Trace, series: &Series, (x, y): (&Axis, &Axis), (width, height): Point) {
     let window = Window { x: (x.low, x.high), y: (y.low, y.high) };
     let parts = std::mem::take(&mut trace.parts);
-    trace.parts = if series.style == Style::Markers {
-        let dots = parts.into_iter().flatten().filter(|p| window.contains(p));
-        let cells = (whole(width * DENSITY), whole(height * DENSITY));
-        vec![reduce_markers(dots, (window.x, window.y), cells)]
+    trace.parts = if series.style.is_marks() {
+        // Small dots cover a px or two: finer than a px they would only hide each other.
+        let density = if series.style == Style::Dots { 1.0 } else { DENSITY };
+        let marks = parts.into_iter().flatten().filter(|p| window.contains(p));
+        let cells = (whole(width * density), whole(height * density));
+        vec![reduce_markers(marks, (window.x, window.y), cells)]
     } else {
         let lines = parts.iter().flat_map(|part| clip(part, window));
         lines.map(|line| without_flats(&line)).collect()
     };
 }
 
-pub(super) fn finite<'d>(data: &'d Data<'_>) -> impl Iterator<Item = Point> + 'd {
-    data.iter().filter(is_finite).map(|(x, y)| (cut(x), cut(y)))
+fn logarithm(value: f64) -> f64 {
+    if value > 0.0 { value.log10() } else { f64::NAN }
 }
 
 fn stairs(points: &[Point]) -> Vec<Point> {
@@ -108,5 +167,13 @@ mod tests {
     #[test]
     fn steps_hold_until_the_next_point() {
         assert_eq!(stairs(&[(0.0, 1.0), (1.0, 2.0)]), [(0.0, 1.0), (1.0, 1.0), (1.0, 2.0)]);
+    }
+
+    #[test]
+    fn what_has_no_logarithm_is_a_gap() {
+        let panel = Panel::new("", "", "").log_y();
+        let points = [(1.0, 100.0), (2.0, 0.0), (3.0, -1.0), (-4.0, 10.0)];
+        let kept: Vec<Point> = Space::of(&panel).points(&Data::Points(&points)).filter(is_finite).collect();
+        assert_eq!(kept, [(1.0, 2.0), (-4.0, 1.0)]);
     }
 }

@@ -1,0 +1,167 @@
+//! What must hold for a figure to be drawn.
+
+use super::error::ReportError;
+use super::figure::{Figure, HeatMap, Panel, Scale};
+
+const WIDTHS: (f64, f64) = (200.0, 4000.0);
+const HEIGHTS: (f64, f64) = (30.0, 2000.0);
+const COLUMNS: usize = 6;
+
+pub(super) fn check(figure: &Figure) -> Result<(), ReportError> {
+    if figure.panels.is_empty() {
+        return Err(ReportError::NoPanels { figure: figure.title.clone() });
+    }
+    if !(1..=COLUMNS).contains(&figure.columns) {
+        let (figure, columns) = (figure.title.clone(), figure.columns);
+        return Err(ReportError::InvalidColumns { figure, columns, max: COLUMNS });
+    }
+    check_size("figure width", figure.width, WIDTHS)?;
+    figure.panels.iter().try_for_each(check_panel)
+}
+
+/// Heights that follow from the data are known once the figure is laid out.
+pub(super) fn check_height(panel: &Panel, height: f64) -> Result<(), ReportError> {
+    check_size(&format!("height of panel `{}`", panel.title), height, HEIGHTS)
+}
+
+fn check_panel(panel: &Panel) -> Result<(), ReportError> {
+    check_height(panel, panel.height)?;
+    for series in &panel.series {
+        let (xs, ys) = series.data.lengths();
+        if xs != ys {
+            let (panel, series) = (panel.title.clone(), series.label.clone());
+            return Err(ReportError::LengthMismatch { panel, series, xs, ys });
+        }
+    }
+    if let Some(line) = panel.lines.iter().find(|line| !line.value.is_finite()) {
+        let (panel, line, value) = (panel.title.clone(), line.label.clone(), line.value);
+        return Err(ReportError::InvalidLine { panel, line, value });
+    }
+    if panel.equal_aspect && (panel.log_x || panel.log_y) {
+        return Err(ReportError::LogToScale { panel: panel.title.clone() });
+    }
+    panel.map.iter().try_for_each(|map| check_map(panel, map))?;
+    check_limits(panel)?;
+    check_logarithms(panel)
+}
+
+fn check_map(panel: &Panel, map: &HeatMap) -> Result<(), ReportError> {
+    let (columns, rows, values) = (map.xs.len(), map.ys.len(), map.values.len());
+    if columns == 0 || rows == 0 || columns.checked_mul(rows) != Some(values) {
+        return Err(ReportError::MapSize { panel: panel.title.clone(), columns, rows, values });
+    }
+    check_ascending(panel, "x of the map", map.xs)?;
+    check_ascending(panel, "y of the map", map.ys)?;
+    let Scale::Kinds(names) = &map.scale else { return Ok(()) };
+    let known = |value: f64| value.is_nan() || (value >= 0.0 && value < names.len() as f64 && value.fract() == 0.0);
+    match map.values.iter().find(|&&value| !known(value)) {
+        Some(&value) => Err(ReportError::UnknownKind { panel: panel.title.clone(), value, kinds: names.len() }),
+        None => Ok(()),
+    }
+}
+
+fn check_limits(panel: &Panel) -> Result<(), ReportError> {
+    for band in &panel.bands {
+        let finite = band.limits.iter().map(|limit| limit.0).filter(|x| x.is_finite());
+        check_ascending(panel, &format!("x of band `{}`", band.label), &finite.collect::<Vec<f64>>())?;
+    }
+    let limits = panel.bands.iter().map(|band| band.limits).chain(panel.bars.iter().map(|bars| bars.limits));
+    match limits.flatten().find(|(_, low, high)| low > high) {
+        Some(&(x, low, high)) => Err(ReportError::InvalidLimits { panel: panel.title.clone(), x, low, high }),
+        None => Ok(()),
+    }
+}
+
+fn check_ascending(panel: &Panel, what: &str, values: &[f64]) -> Result<(), ReportError> {
+    let finite = values.iter().find(|value| !value.is_finite()).map(|&value| (value, value));
+    let descent = values.windows(2).find(|pair| pair[0] >= pair[1]).map(|pair| (pair[0], pair[1]));
+    match finite.or(descent) {
+        Some((before, after)) => {
+            let (panel, what) = (panel.title.clone(), what.to_owned());
+            Err(ReportError::NotAscending { panel, what, before, after })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_logarithms(panel: &Panel) -> Result<(), ReportError> {
+    let limits = || panel.bands.iter().map(|b| b.limits).chain(panel.bars.iter().map(|b| b.limits)).flatten();
+    let points = || panel.series.iter().flat_map(|series| series.data.iter());
+    let cells = panel.map.as_ref();
+    let no_positive = |values: &mut dyn Iterator<Item = f64>| {
+        let mut values = values.peekable();
+        values.peek().is_some() && !values.any(|value| value > 0.0)
+    };
+    let mut xs = points().map(|p| p.0).chain(limits().map(|limit| limit.0));
+    let mut ys = points().map(|p| p.1).chain(limits().flat_map(|limit| [limit.1, limit.2]));
+    // A cell at or below 0 has no place on the axis, while a point may be left out.
+    let low_cell = |values: fn(&HeatMap<'_>) -> f64| cells.is_some_and(|map| values(map) <= 0.0);
+    let (first_x, first_y) = (|map: &HeatMap<'_>| map.xs[0], |map: &HeatMap<'_>| map.ys[0]);
+    let axis = if panel.log_x && (no_positive(&mut xs) || low_cell(first_x)) {
+        "x"
+    } else if panel.log_y && (no_positive(&mut ys) || low_cell(first_y)) {
+        "y"
+    } else {
+        return Ok(());
+    };
+    Err(ReportError::NoLogarithm { panel: panel.title.clone(), axis })
+}
+
+fn check_size(what: &str, value: f64, (min, max): (f64, f64)) -> Result<(), ReportError> {
+    if (min..=max).contains(&value) {
+        return Ok(());
+    }
+    Err(ReportError::InvalidSize { what: what.to_owned(), value, min, max })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::Series;
+    use super::*;
+
+    fn error(panel: Panel) -> String {
+        check(&Figure::new("F").panel(panel)).unwrap_err().to_string()
+    }
+
+    fn map(xs: &'static [f64], values: &'static [f64]) -> HeatMap<'static> {
+        HeatMap { xs, ys: &[1.0, 2.0], values, scale: Scale::Kinds(vec!["none".to_owned()]) }
+    }
+
+    #[test]
+    fn maps_that_do_not_fit_are_refused() {
+        let panel = || Panel::new("(m)", "", "");
+        assert!(error(panel().map(map(&[1.0], &[0.0]))).contains("`(m)`: 1 values for a map of 1 x 2 cells"));
+        assert!(error(panel().map(map(&[], &[]))).contains("0 x 2"));
+        assert!(error(panel().map(map(&[2.0, 1.0], &[0.0; 4]))).contains("x of the map: 1 follows 2"));
+        assert!(error(panel().map(map(&[1.0, f64::NAN], &[0.0; 4]))).contains("NaN follows NaN"));
+        assert!(error(panel().map(map(&[1.0], &[0.0, 1.0]))).contains("1 is none of the 1 kinds"));
+        assert!(error(panel().map(map(&[1.0], &[0.5, 0.0]))).contains("0.5 is none"));
+        assert!(error(panel().map(map(&[0.0], &[0.0, 0.0])).log_x()).contains("logarithmic x axis"));
+        assert!(check(&Figure::new("").panel(panel().map(map(&[1.0], &[0.0, f64::NAN])))).is_ok());
+    }
+
+    #[test]
+    fn limits_are_in_order() {
+        let panel = || Panel::new("(b)", "", "");
+        let back = [(1.0, 0.0, 1.0), (0.5, 0.0, 1.0)];
+        assert!(error(panel().band("range", &back, 0)).contains("x of band `range`: 0.5 follows 1"));
+        assert!(error(panel().band("", &[(1.0, 2.0, 1.0)], 0)).contains("2 to 1 at x = 1"));
+        assert!(error(panel().bars(&[(1.0, 2.0, 1.0)], 0)).contains("2 to 1 at x = 1"));
+    }
+
+    #[test]
+    fn logarithmic_axes_need_positive_values_and_no_scale() {
+        let low = [(-1.0, 0.0), (0.0, -3.0)];
+        let panel = || Panel::new("(l)", "", "").series(Series::points("", &low));
+        assert!(error(panel().log_x()).contains("`(l)`: no value on the logarithmic x axis"));
+        assert!(error(panel().log_y()).contains("logarithmic y axis"));
+        assert!(error(Panel::new("", "", "").log_x().equal_aspect()).contains("to scale"));
+        assert!(check(&Figure::new("").panel(Panel::new("", "", "").log_x())).is_ok());
+    }
+
+    #[test]
+    fn columns_are_at_least_one() {
+        let figure = Figure::new("F").columns(0).panel(Panel::new("", "", ""));
+        assert!(check(&figure).unwrap_err().to_string().contains("`F` has 0 columns"));
+    }
+}

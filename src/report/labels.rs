@@ -1,0 +1,88 @@
+//! Words around the frames, on the canvas of the plotting library.
+
+use plotters::element::{Circle, Cross, DashedPathElement, PathElement, Rectangle};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, FontStyle, FontTransform, TextStyle};
+
+use super::draw::{Canvas, INK, failed, ink, stroke, text, units};
+use super::error::ReportError;
+use super::layout::{
+    BAR_GAP, BAR_WIDTH, EDGE, LABEL_ROW, LEGEND_GAP, LEGEND_KEY, PanelPlan, ROW, TEXT_SIZE, X_LABEL_DROP,
+};
+use super::legend::Entry;
+use super::marks::{CROSS, DASH, MARKER, OPACITY};
+use super::trace::Shape;
+
+/// Title and legend.
+pub(super) fn draw_header(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
+    let style = text(TEXT_SIZE, FontStyle::Bold, HPos::Left);
+    put(canvas, &panel.panel.title, &style, (panel.frame.0, panel.top + ROW / 2.0))?;
+    for entry in &panel.legend {
+        draw_key(canvas, entry, panel.top + entry.y)?;
+        let style = text(TEXT_SIZE, FontStyle::Normal, HPos::Left);
+        put(canvas, entry.label, &style, (entry.x + LEGEND_KEY + LEGEND_GAP, panel.top + entry.y))?;
+    }
+    Ok(())
+}
+
+fn draw_key(canvas: &Canvas, entry: &Entry, middle: f64) -> Result<(), ReportError> {
+    let y = units(middle);
+    let (start, end) = (units(entry.x), units(entry.x + LEGEND_KEY));
+    let (center, color) = ((i32::midpoint(start, end), y), ink(entry.key));
+    let line = [(start, y), (end, y)];
+    let area = [(start, y - units(4.0)), (end, y + units(4.0))];
+    let cell = [(end - units(9.0), y - units(4.5)), (end, y + units(4.5))];
+    let width = if entry.key.color.is_some() { 1.5 } else { 0.9 };
+    match entry.key.shape {
+        Shape::Line => canvas.draw(&PathElement::new(line, stroke(color, 2.0))),
+        Shape::Dashes => canvas.draw(&DashedPathElement::new(line, units(DASH.0), units(DASH.1), stroke(color, width))),
+        Shape::Marker => canvas.draw(&Circle::new(center, units(MARKER + 0.6), color.filled())),
+        Shape::Dot => canvas.draw(&Circle::new(center, units(1.3), color.filled())),
+        Shape::Cross => canvas.draw(&Cross::new(center, units(CROSS + 0.4), stroke(color, 1.2))),
+        Shape::Area => canvas.draw(&Rectangle::new(area, color.mix(OPACITY).filled())),
+        Shape::Cell => canvas.draw(&Rectangle::new(cell, color.filled())),
+    }
+    .map_err(failed)
+}
+
+pub(super) fn draw_axis_labels(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
+    let across = text(TEXT_SIZE, FontStyle::Normal, HPos::Center);
+    let top = panel.top + panel.header;
+    if panel.bottom > 0.0 {
+        let middle = f64::midpoint(panel.frame.0, panel.frame.1);
+        put(canvas, &panel.panel.x_label, &across, (middle, top + panel.height + X_LABEL_DROP))?;
+    }
+    let upward = across.transform(FontTransform::Rotate270);
+    let first = panel.label_rows - panel.y_label.len();
+    for (row, line) in panel.y_label.iter().enumerate() {
+        let x = panel.cell.0 + TEXT_SIZE + (first + row) as f64 * LABEL_ROW;
+        put(canvas, line, &upward, (x, top + panel.height / 2.0))?;
+    }
+    Ok(())
+}
+
+/// Outline, ticks and label of the colour bar.
+pub(super) fn draw_bar_labels(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
+    let Some(bar) = &panel.bar else { return Ok(()) };
+    let (top, left) = (panel.top + panel.header, panel.frame.1 + BAR_GAP);
+    let (bottom, right) = (top + panel.height, left + BAR_WIDTH);
+    let outline = [(units(left), units(top)), (units(right), units(bottom))];
+    canvas.draw(&Rectangle::new(outline, stroke(INK, 0.8))).map_err(failed)?;
+    let range = bar.axis.scaled_range();
+    let style = text(TEXT_SIZE, FontStyle::Normal, HPos::Left);
+    for &tick in bar.axis.ticks() {
+        let y = bottom - panel.height * (tick - range.start) / (range.end - range.start);
+        let mark = [(units(right), units(y)), (units(right + 3.0), units(y))];
+        canvas.draw(&PathElement::new(mark, stroke(INK, 0.8))).map_err(failed)?;
+        put(canvas, &bar.axis.label(tick), &style, (right + EDGE, y))?;
+    }
+    let upward = text(TEXT_SIZE, FontStyle::Normal, HPos::Center).transform(FontTransform::Rotate270);
+    put(canvas, bar.label, &upward, (panel.cell.1 - TEXT_SIZE, f64::midpoint(top, bottom)))
+}
+
+pub(super) fn put(canvas: &Canvas, label: &str, style: &TextStyle, at: (f64, f64)) -> Result<(), ReportError> {
+    if label.is_empty() {
+        return Ok(());
+    }
+    canvas.draw_text(label, style, (units(at.0), units(at.1))).map_err(failed)
+}
