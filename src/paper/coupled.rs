@@ -36,8 +36,6 @@ pub struct Driven {
     pub rest_capacitance: f64,
     /// `U_in`, V.
     pub bias_voltage: f64,
-    /// What the coupling makes or loses of the energy moved, as a part of it.
-    pub residual: f64,
 }
 
 /// Mean power in a circuit, W.
@@ -98,7 +96,6 @@ impl Drive {
             eq14: outcome.mechanics.average_power_eq13,
             rest_capacitance,
             bias_voltage,
-            residual: outcome.coupling.relative_residual,
         })
     }
 }
@@ -132,11 +129,6 @@ impl Driven {
         let ratio = formulas::best_release_ratio(self.ratios.clone());
         formulas::best_release_voltage(self.bias_voltage, 1.0 + idle, ratio + idle)
     }
-}
-
-/// Further capacitances `C_2` on the node of a membrane.
-pub fn idle(topology: Topology) -> f64 {
-    if topology == Topology::SharedNode { 1.0 } else { 0.0 }
 }
 
 /// A circuit of which the voltage of release and the load are to be chosen.

@@ -50,9 +50,9 @@ impl Cylinder {
         gamma * self.mass * (TAU * frequency).powi(2) * self.travel / 2.0
     }
 
-    /// Amplitude of the cylinder's motion, m, under the `force`, N, at `frequency`, Hz (Section 5.1).
-    pub fn amplitude(&self, force: f64, frequency: f64) -> f64 {
-        force / (self.mass * (TAU * frequency).powi(2))
+    /// The normalised amplitude of the `force`, N, at `frequency`, Hz: Eq. (16).
+    pub fn gamma(&self, force: f64, frequency: f64) -> f64 {
+        force / self.force(1.0, frequency)
     }
 
     /// Zero start, r = 1, at the normalised amplitude `gamma` and `frequency`, Hz: Section 5.1. The ball starts with

@@ -5,13 +5,18 @@
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
+mod basins;
+mod bifurcation;
 mod coupled;
+mod dynamics;
 mod error;
 mod excitation;
 mod fig16;
 mod fig17;
+mod poincare;
 mod power;
 mod statistics;
+mod stroboscope;
 mod tuning;
 mod workshop;
 
@@ -35,4 +40,6 @@ pub const ITEMS: &[Item] = &[
     Item { name: "fig17", title: "Figure 17", make: fig17::make },
     Item { name: "tuning", title: "Tuning of the circuit", make: tuning::make },
     Item { name: "power", title: "Power density, honestly", make: power::make },
+    Item { name: "dynamics", title: "Poincare sections and bifurcation diagrams", make: dynamics::make },
+    Item { name: "basins", title: "Basins of attraction", make: basins::make },
 ];

@@ -123,7 +123,8 @@ fn findings(maps: &[Map; 2], driven: &Driven) -> Vec<Finding> {
     }
     for map in maps {
         let [voltage, load, gain] = map.best;
-        let reason = format!("at {voltage:.0} V and {load:.1e} ohm, the best point of the map");
+        let released = if gain > 0.01 { "the best point of the map" } else { "where hardly anything is released" };
+        let reason = format!("at {voltage:.0} V and {load:.1e} ohm, {released}");
         findings.push(beyond(&format!("largest net gain, {}", map.name), "uW", gain, reason));
     }
     let [_, better] = maps;
@@ -177,16 +178,19 @@ fn picture(grid: &Grid, maps: &[Map; 2]) -> Result<Picture, PaperError> {
         .caption("Maps of the net gain of two circuits over voltage of release and load resistance.")
         .columns(2)
         .width(960.0);
-    for (index, (map, best)) in maps.iter().zip(&best).enumerate() {
+    for (map, best) in maps.iter().zip(&best) {
         let scale = Scale::Quantity("net gain (uW)".to_owned());
         let mut panel = Panel::new(map.name, "voltage of release (kV)", "load (ohm)")
             .height(300.0)
             .log_y()
-            .map(HeatMap { xs: &kilovolts, ys: &grid.loads, values: &map.gains, scale })
-            .series(Series::points("best", best).style(Style::Markers).color(0));
-        if index == 0 {
-            panel = panel.series(Series::points("2000 V, 1 Gohm", &paper).style(Style::Crosses).color(1));
-        }
+            .map(HeatMap { xs: &kilovolts, ys: &grid.loads, values: &map.gains, scale });
+        // Where a circuit gains nothing, no point is the best.
+        panel = match map.topology {
+            Topology::SharedNode => {
+                panel.series(Series::points("2000 V, 1 Gohm", &paper).style(Style::Crosses).color(1))
+            }
+            Topology::Isolated => panel.series(Series::points("best", best).style(Style::Markers).color(0)),
+        };
         figure = figure.panel(panel);
     }
     let caption = "Net gain, load less supply, of the paper's circuit and of the better one, case of Figure 14, 20 to 60 s. The \
