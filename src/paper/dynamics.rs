@@ -77,7 +77,11 @@ fn text() -> Vec<String> {
             .to_owned(),
         "Each diagram is followed three times: from the saw-tooth start of Section 4.2 at each value, and upwards and downwards \
          with each motion going on from the last state of the one before. Where the three differ, several motions exist \
-         side by side, and it depends on the start which of them comes about."
+         side by side, and it depends on the start which of them comes about: where <U> is the same, they are mirror images \
+         of each other."
+            .to_owned(),
+        "The largest Lyapunov exponent says how fast neighbouring motions part. It is above 0 for Figure 15, too: with r = 0.3 the \
+         motion does not settle, however long one waits, but wanders in a narrow band, which looks like a slow transient."
             .to_owned(),
     ]
 }

@@ -13,6 +13,7 @@ mod error;
 mod excitation;
 mod fig16;
 mod fig17;
+mod lyapunov;
 mod poincare;
 mod power;
 mod statistics;
