@@ -139,10 +139,14 @@ impl CylinderMotion {
 /// (Dekker 1971), so that the fraction is right to rounding however many turns there were.
 pub fn cycle_fraction(frequency: f64, time: f64) -> f64 {
     let product = frequency * time;
-    let (a, b) = split(frequency);
-    let (c, d) = split(time);
-    let error = ((a * c - product) + a * d + b * c) + b * d;
-    (product - product.round()) + error
+    (product - product.round()) + product_error(frequency, time, product)
+}
+
+/// What rounding has taken from the `product` of `x` and `y`.
+pub fn product_error(x: f64, y: f64, product: f64) -> f64 {
+    let (a, b) = split(x);
+    let (c, d) = split(y);
+    ((a * c - product) + a * d + b * c) + b * d
 }
 
 /// High and low half of `x`; their sum is `x`, and products of halves are exact.

@@ -55,6 +55,8 @@ const OUTSIDE: f64 = 1e-9;
 pub struct Flight {
     /// Time at which tau = 0, s.
     pub start: f64,
+    /// dz at that time, m.
+    pub dz: f64,
     coefficients: [f64; 4],
     swing: f64,
     frequency: f64,
@@ -104,19 +106,7 @@ impl Flight {
             external / 2.0,
             drive.external_rate / 6.0,
         ];
-        Self { start, coefficients, swing, frequency: drive.frequency, angle, half_travel }
-    }
-
-    /// c0, m: what remains of dz when polynomial and cosine start at their zeros.
-    pub fn offset(&self) -> f64 {
-        self.coefficients[0]
-    }
-
-    /// The same flight with another c0, m.
-    #[must_use]
-    pub fn with_offset(mut self, offset: f64) -> Self {
-        self.coefficients[0] = offset;
-        self
+        Self { start, dz, coefficients, swing, frequency: drive.frequency, angle, half_travel }
     }
 
     /// s/2, m.

@@ -1,9 +1,11 @@
 //! The vibro-impact harvester: from event to event, exactly under the impulsive law.
 
 mod contact;
+mod course;
 mod energy;
 mod events;
 mod exchange;
+mod foreseen;
 mod occurrence;
 mod snapshot;
 mod tangent;
@@ -20,6 +22,7 @@ use crate::compliant::{Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
+use crate::holds::Holds;
 use crate::membrane::Membrane;
 use crate::noise;
 use crate::parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters};
@@ -79,6 +82,7 @@ pub struct Harvester {
     cylinder: CylinderMotion,
     ball: Ball,
     noise: Noise,
+    holds: Holds,
     search: Search,
     pulses: [Pulses; 2],
     /// The present contact, under the compliant law.
@@ -152,6 +156,7 @@ impl Harvester {
             cylinder,
             ball,
             noise,
+            holds: Holds::new(&p),
             search: Search::new(flight),
             pulses: [Pulses::default(), Pulses::default()],
             touch: None,
@@ -189,15 +194,15 @@ impl Harvester {
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
-        while let Some(event) = self.next_event(time).filter(|event| event.time() <= time) {
+        while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
             let turn = self.turn_at(event);
             self.process(event)?;
             let (impact, peak) = (self.impact_of(event), turn.or_else(|| self.peak_after(event)));
             impact.map(Occurrence::Impact).iter().chain(&peak.map(Occurrence::Peak)).for_each(&mut show);
         }
+        self.follow_noise(time);
         self.time = time;
-        // Look one period ahead, so that the next impact is known; what is found does not depend on the steps.
-        self.next_event(time + 1.0 / self.parameters.frequency);
+        self.look_ahead();
         Ok(())
     }
 
@@ -221,8 +226,13 @@ impl Harvester {
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
         if force / mass != present || rate / mass != drive.external_rate {
             self.restart(self.time, Drive { external: force / mass, external_rate: rate / mass, ..drive });
-            self.next_event(self.time + 1.0 / self.parameters.frequency);
+            self.look_ahead();
         }
+    }
+
+    /// Makes the next impact known; what is found does not depend on the steps.
+    fn look_ahead(&mut self) {
+        self.next_event(self.time + self.horizon(), false);
     }
 
     fn half_travel(&self) -> f64 {
@@ -336,8 +346,9 @@ impl Harvester {
         &self.totals
     }
 
-    /// Time of the next impact, s, if the external force goes on as it is; none if no impact is foreseen within at
-    /// least one excitation period, while the ball rests, or beyond the present sample of the phase noise.
+    /// Time of the next impact, s, if the external force goes on as it is; none while the ball rests or if no
+    /// impact is foreseen within at least one excitation period, or, with phase noise, within at least 256 hold intervals if
+    /// those are shorter; under the compliant law and with a Wiener process, within the present hold interval.
     pub fn next_impact(&self) -> Option<f64> {
         match self.search.found {
             Some(Event::Impact { time, .. }) => Some(time),

@@ -13,14 +13,16 @@
 //! println!("{} impacts, C_left = {:e} F", harvester.totals().impacts, harvester.capacitance(Side::Left));
 //! # Ok::<(), videg_model::ModelError>(())
 //! ```
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod cases;
 mod compliant;
 mod cylinder;
+mod elementary;
 mod error;
 mod flight;
 mod harvester;
+mod holds;
 mod limits;
 mod membrane;
 mod noise;

@@ -1,41 +1,74 @@
-//! Standard normal samples by counter: sample k of a seed is the same however a run is split, saved or sharded.
+//! Standard normal samples by counter: sample k of a seed is the same however a run is split, saved or sharded, and
+//! whether it is made alone or with others.
+#![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use core::f64::consts::TAU;
+use crate::elementary::{ln, sin_cos, unit};
 
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3; SC 2011).
-fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+const LOW: u64 = 0xFFFF_FFFF;
+
+/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3; SC 2011). A word stands in
+/// the low half of a `u64`, where vector instructions can multiply it.
+#[inline(always)]
+fn philox4x32(mut counter: [u64; 4], mut key: [u32; 2]) -> [u64; 4] {
     const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
     const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
     for _ in 0..10 {
-        let [low0, high0] = halves(MULTIPLIER[0] * u64::from(counter[0]));
-        let [low1, high1] = halves(MULTIPLIER[1] * u64::from(counter[2]));
-        counter = [high1 ^ counter[1] ^ key[0], low1, high0 ^ counter[3] ^ key[1], low0];
+        let products = [MULTIPLIER[0] * (counter[0] & LOW), MULTIPLIER[1] * (counter[2] & LOW)];
+        let keys = key.map(u64::from);
+        counter = [
+            products[1] >> 32 ^ counter[1] ^ keys[0],
+            products[1] & LOW,
+            products[0] >> 32 ^ counter[3] ^ keys[1],
+            products[0] & LOW,
+        ];
         key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
     }
     counter
 }
 
-/// Low and high 32 bits of `x`.
-fn halves(x: u64) -> [u32; 2] {
-    #[allow(clippy::cast_possible_truncation)] // taking the low half is the point
-    [x as u32, (x >> 32) as u32]
+/// Samples that are made together, from [`QUARTER`] values of the counter.
+pub const GROUP: usize = 256;
+
+const QUARTER: usize = GROUP / 4;
+
+/// The 128 random bits that belong to `seed` and `counter`.
+#[inline(always)]
+fn bits(seed: i32, counter: u64) -> [u64; 2] {
+    let [a, b, c, d] = philox4x32([counter & LOW, counter >> 32, 0, 0], [seed.cast_unsigned(), 0]);
+    [a << 32 | b, c << 32 | d]
 }
 
-/// Samples 2 `pair` and 2 `pair` + 1 of the standard normal sequence that belongs to `seed` (Box-Muller).
-pub fn normal_pair(seed: i32, pair: u64) -> [f64; 2] {
-    let [low, high] = halves(pair);
-    let [a, b, c, d] = philox4x32([low, high, 0, 0], [seed.cast_unsigned(), 0]);
-    let unit = |x: u32, y: u32| ((u64::from(x) << 32 | u64::from(y)) >> 11) as f64 * (0.5_f64).powi(53);
+/// Two independent standard normal samples (Box-Muller): of the `bits`, 40 make the radius, which reaches 7.4, and 24
+/// the angle.
+#[inline(always)]
+fn pair(bits: u64) -> [f64; 2] {
     // 1 - u lies in (0, 1]: its logarithm is finite.
-    let radius = (-2.0 * (1.0 - unit(a, b)).ln()).sqrt();
-    let (sin, cos) = (TAU * unit(c, d)).sin_cos();
+    let radius = (-2.0 * ln(1.0 - unit(bits & !0xFF_FFFF))).sqrt();
+    let [sin, cos] = sin_cos(unit(bits << 40));
     [radius * cos, radius * sin]
 }
 
-/// Sample `index` of the standard normal sequence that belongs to `seed`.
+/// Samples [`GROUP`] `group` and following of the standard normal sequence that belongs to `seed`.
+#[inline(always)]
+pub fn normals(seed: i32, group: u64) -> [f64; GROUP] {
+    let mut words = [0; 2 * QUARTER];
+    for k in 0..QUARTER {
+        [words[k], words[k + QUARTER]] = bits(seed, group * QUARTER as u64 + k as u64);
+    }
+    let mut samples = [0.0; GROUP];
+    for k in 0..2 * QUARTER {
+        [samples[k], samples[k + 2 * QUARTER]] = pair(words[k]);
+    }
+    samples
+}
+
+/// Sample `index` of the standard normal sequence that belongs to `seed`, as [`normals`] makes it.
 pub fn normal(seed: i32, index: u64) -> f64 {
-    let pair = normal_pair(seed, index / 2);
-    pair[usize::from(index % 2 == 1)]
+    const N: u64 = QUARTER as u64;
+    let (group, place) = (index / GROUP as u64, index % GROUP as u64);
+    let [first, second] = bits(seed, group * N + place % N);
+    let [cos, sin] = pair(if (place / N).is_multiple_of(2) { first } else { second });
+    if place < 2 * N { cos } else { sin }
 }
 
 #[cfg(test)]
@@ -48,27 +81,86 @@ mod tests {
         let zero = [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8];
         assert_eq!(philox4x32([0; 4], [0; 2]), zero);
         let ones = [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd];
-        assert_eq!(philox4x32([u32::MAX; 4], [u32::MAX; 2]), ones);
+        assert_eq!(philox4x32([LOW; 4], [u32::MAX; 2]), ones);
         let counter = [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344];
         let pi = [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1];
         assert_eq!(philox4x32(counter, [0xa409_3822, 0x299f_31d0]), pi);
     }
 
-    #[test]
-    fn samples_have_the_moments_of_a_standard_normal() {
-        let n = 200_000_u64;
-        let moment = |p: i32| (0..n).map(|k| normal(7, k).powi(p)).sum::<f64>() / n as f64;
-        // Standard errors: 1/sqrt(n), sqrt(2/n), sqrt(96/n); five of them allowed.
-        assert!(moment(1).abs() < 0.012, "mean {}", moment(1));
-        assert!((moment(2) - 1.0).abs() < 0.016, "variance {}", moment(2));
-        assert!((moment(4) - 3.0).abs() < 0.11, "fourth moment {}", moment(4));
-        let lag = (1..n).map(|k| normal(7, k) * normal(7, k - 1)).sum::<f64>() / n as f64;
-        assert!(lag.abs() < 0.012, "correlation of neighbours {lag}");
+    /// Samples `from` to `to`, both multiples of [`GROUP`].
+    fn samples(seed: i32, from: u64, to: u64) -> Vec<f64> {
+        let n = GROUP as u64;
+        (from / n..to / n).flat_map(|group| normals(seed, group)).collect()
+    }
+
+    fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+        let n = values.len() as f64;
+        values.sum::<f64>() / n
+    }
+
+    const MANY: u64 = 1 << 21;
+
+    /// Five standard errors of the mean of [`MANY`] values with this variance.
+    fn five_errors(variance: f64) -> f64 {
+        5.0 * (variance / MANY as f64).sqrt()
     }
 
     #[test]
-    fn another_seed_gives_other_samples() {
-        assert_ne!(normal(1, 0), normal(2, 0));
-        assert_ne!(normal(1, 0), normal(-1, 0));
+    fn one_by_one_or_together_samples_have_the_same_bits() {
+        for first in [0, 256 * 777, 1 << 40] {
+            let together = samples(-3, first, first + 512);
+            for (k, sample) in together.iter().enumerate() {
+                assert_eq!(sample.to_bits(), normal(-3, first + k as u64).to_bits(), "{first} + {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn samples_have_the_moments_of_a_standard_normal() {
+        for seed in [7, -1] {
+            let samples = samples(seed, 0, MANY);
+            let moment = |p: i32| mean(samples.iter().map(|xi| xi.powi(p)));
+            // E x^2p = (2 p - 1)!!: 1, 3, 15, 105, 945, 10395, 135135, ...
+            let expected = [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0), (6, 15.0, 10_395.0 - 225.0)];
+            for (p, value, variance) in expected {
+                assert!((moment(p) - value).abs() < five_errors(variance), "moment {p}: {}", moment(p));
+            }
+        }
+    }
+
+    #[test]
+    fn samples_fill_the_tails_as_a_standard_normal_does() {
+        let samples = samples(11, 0, MANY);
+        // erfc(z / sqrt 2): P(|xi| > z).
+        for (z, p) in [(0.5, 0.617_075), (1.0, 0.317_311), (2.0, 0.045_500_3), (3.0, 2.699_80e-3), (4.0, 6.334_25e-5)] {
+            for sign in [1.0, -1.0] {
+                let beyond = mean(samples.iter().map(|xi| f64::from(u8::from(sign * xi > z))));
+                assert!((beyond - 0.5 * p).abs() < five_errors(0.5 * p), "beyond {z}: {beyond}");
+            }
+        }
+        let largest = samples.iter().fold(0.0_f64, |largest, xi| largest.max(xi.abs()));
+        assert!((4.5..6.5).contains(&largest), "{largest}");
+    }
+
+    #[test]
+    fn samples_do_not_depend_on_each_other() {
+        let samples = samples(5, 0, MANY + 1024);
+        // Neighbours, and those that come from the same counter, from the same bits, or from the next group.
+        for lag in [1, 2, 3, QUARTER, 2 * QUARTER, 3 * QUARTER, GROUP, 4 * GROUP] {
+            let pairs = || samples[..samples.len() - 1024].iter().zip(&samples[lag..]);
+            let product = mean(pairs().map(|(a, b)| a * b));
+            assert!(product.abs() < five_errors(1.0), "lag {lag}: {product}");
+            let squares = mean(pairs().map(|(a, b)| (a * a - 1.0) * (b * b - 1.0)));
+            assert!(squares.abs() < five_errors(4.0), "squares, lag {lag}: {squares}");
+        }
+    }
+
+    #[test]
+    fn samples_of_other_seeds_are_independent() {
+        let [a, b, c] = [1, 2, -1].map(|seed| samples(seed, 0, MANY));
+        for (a, b) in [(&a, &b), (&a, &c), (&b, &c)] {
+            let product = mean(a.iter().zip(b).map(|(a, b)| a * b));
+            assert!(product.abs() < five_errors(1.0), "{product}");
+        }
     }
 }

@@ -129,6 +129,32 @@ proptest! {
     }
 
     #[test]
+    fn splitting_a_run_with_the_noise_of_the_paper_changes_no_bit(
+        p in any_parameters(),
+        noise in prop_oneof![Just(0.02), Just(0.5), Just(1.0), Just(4.0), Just(10.0)],
+        seed in any::<i32>(),
+        cuts in prop::collection::vec(0.0..0.4, 0..40),
+        on_grid in any::<bool>(),
+        force in -0.05..0.05,
+    ) {
+        let p = Parameters { phase_noise: noise, seed, ..p };
+        let mut cuts = cuts;
+        cuts.sort_by(f64::total_cmp);
+        let runs = [&cuts[..], &[]].map(|cuts| {
+            let mut harvester = Harvester::new(&p, 0.0).unwrap();
+            harvester.set_external_force(force, -0.1).unwrap();
+            for cut in cuts {
+                // At the ends of hold intervals and in between; one step after the other through a block.
+                harvester.advance(if on_grid { (cut / 1e-5).round() * 1e-5 } else { *cut }).unwrap();
+                harvester.advance(harvester.time() + 3e-6).unwrap();
+            }
+            harvester.advance(0.41).unwrap();
+            harvester
+        });
+        prop_assert_eq!(&runs[0], &runs[1]);
+    }
+
+    #[test]
     fn energy_of_the_ball_in_the_frame_of_a_cylinder_at_rest_never_grows(
         velocity in 0.01..1.0, restitution in 0.0..=1.0,
     ) {

@@ -67,6 +67,16 @@ fn a_restored_harvester_sees_the_same_noise() {
 }
 
 #[test]
+fn a_restored_harvester_sees_the_noise_of_the_paper_in_the_middle_of_a_block() {
+    for phase_noise in [0.5, 1.0, 4.0] {
+        let parameters = Parameters { phase_noise, ..fig14() };
+        assert_goes_on_alike(&parameters, (0..8).map(|k| f64::from(k) * 0.100_371));
+        let resting = Parameters { phase_noise: 0.1, ..resting() };
+        assert_goes_on_alike(&resting, (1..4).map(|k| f64::from(k) * 0.037));
+    }
+}
+
+#[test]
 fn a_restored_ball_still_rests() {
     let parameters = resting();
     let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.005).collect();

@@ -217,7 +217,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within the present hold interval)",
+        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; if it is a Wiener process or contacts last, within the present one)",
     )
     .discrete()
     .depends_on(&STATES)

@@ -72,6 +72,24 @@ fn derivatives_inside_the_gap_agree_with_central_differences() {
 }
 
 #[test]
+fn those_of_an_impact_some_noise_samples_ahead_agree_with_central_differences() {
+    let start = [
+        ("initial.ballPosition", -0.02),
+        ("initial.ballVelocity", -0.3),
+        ("excitation.phaseNoise", 1.5),
+        ("excitation.noiseHold", 1e-3),
+    ];
+    let settings = with(&start);
+    let next = Host::initializing(fmi2CoSimulation, 0.0, &settings).get("impact.nextTime");
+    assert!((5e-3..1e-2).contains(&next), "{next}");
+    let [not_zero, undecided] = check_start(0.0, &settings);
+    assert_eq!(undecided, []);
+    for known in ["phaseNoise", "noiseHold", "frequency", "phase", "amplitude"] {
+        assert!(not_zero.iter().any(|(name, by)| *name == "impact.nextTime" && by.ends_with(known)), "{known}");
+    }
+}
+
+#[test]
 fn derivatives_of_a_start_beyond_a_membrane_agree_with_central_differences() {
     for side in [1.0, -1.0] {
         // The ball is put on the membrane and recedes from it.

@@ -1,5 +1,6 @@
 //! The events of the motion: what comes next, and what it does.
 
+use super::course::Boundary;
 use super::tangent::Hit;
 use super::{Ball, Harvester, phase};
 use crate::cylinder::Drive;
@@ -69,13 +70,16 @@ pub(super) struct Search {
     /// Windows before this one hold no event.
     window: u64,
     pub(super) found: Option<Event>,
+    /// With phase noise: the begin of the first hold interval that has not been searched, or of that in which the event is
+    /// that has been found, unless it is the present one.
+    pub(super) ahead: Option<Boundary>,
     /// No event will ever come.
     exhausted: bool,
 }
 
 impl Search {
     pub(super) fn new(flight: Flight) -> Self {
-        Self { flight, window: 0, found: None, exhausted: false }
+        Self { flight, window: 0, found: None, ahead: None, exhausted: false }
     }
 
     /// No search at all: no event is foreseen.
@@ -124,8 +128,9 @@ impl Harvester {
         self.search = Search::new(flight);
     }
 
-    /// The next event, if there is one before the search windows have passed `until`, s.
-    pub(super) fn next_event(&mut self, until: f64) -> Option<Event> {
+    /// The next event, if there is one before the search windows have passed `until`, s. If the caller is to get there,
+    /// `follow` spares it the way.
+    pub(super) fn next_event(&mut self, until: f64, follow: bool) -> Option<Event> {
         if let Some(touch) = &self.touch {
             let end = touch.end();
             let limit = self.noise_limit().filter(|limit| *limit <= end);
@@ -133,9 +138,23 @@ impl Harvester {
         }
         let limit = self.noise_limit();
         let start = self.search.flight.start;
-        let limit_elapsed = limit.map_or(f64::INFINITY, |time| time - start);
+        let in_blocks = self.in_blocks();
+        let limit_elapsed = match limit {
+            Some(_) if in_blocks => self.rest_of_hold(start),
+            Some(time) => time - start,
+            None => f64::INFINITY,
+        };
         while self.search.found.is_none() && !self.search.exhausted {
+            if let Some(boundary) = self.search.ahead {
+                self.search_ahead(boundary, until, follow);
+                break;
+            }
             let begin = self.search.window as f64 * self.search.flight.window_length();
+            if begin >= limit_elapsed && in_blocks {
+                self.search.window = 0;
+                self.search.ahead = Some(self.next_boundary());
+                continue;
+            }
             if begin >= limit_elapsed {
                 self.search.found = limit.map(|time| Event::NoiseSample { time });
                 break;
@@ -145,15 +164,20 @@ impl Harvester {
             }
             self.search_window(limit_elapsed);
         }
+        if in_blocks && self.search.found.is_some() {
+            self.search.window = 0; // whether it was found from here or ahead
+        }
         self.search.found
     }
 
     /// Searches one window of the flight or of the rest.
     fn search_window(&mut self, limit: f64) {
         let Search { flight, window, .. } = self.search;
+        let end = self.noise_limit().unwrap_or(f64::INFINITY);
+        let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if let Some(side) = self.ball.resting {
             let release = flight.release_in_window(side, window, limit);
-            self.search.found = release.map(|elapsed| Event::Release { time: flight.start + elapsed });
+            self.search.found = release.map(|elapsed| Event::Release { time: time(elapsed) });
             self.search.window += 1;
             // Without a force that changes, the ball rests for ever.
             self.search.exhausted = release.is_none() && self.cylinder.drive.is_constant() && limit == f64::INFINITY;
@@ -168,12 +192,14 @@ impl Harvester {
             return;
         };
         let contact = flight.contact_in_window(window, limit);
-        self.search.found =
-            contact.map(|contact| Event::Impact { time: flight.start + contact.elapsed, side: contact.side });
+        self.search.found = contact.map(|contact| Event::Impact { time: time(contact.elapsed), side: contact.side });
         self.search.window = window + 1;
     }
 
     pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
+        if let Some(boundary) = self.search.ahead {
+            self.enter(boundary);
+        }
         match event {
             Event::Impact { time, side } => {
                 self.spend(time)?;

@@ -8,6 +8,7 @@ use crate::compliant::{ContactSnapshot, Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
+use crate::holds::Holds;
 use crate::membrane::Membrane;
 use crate::parameters::{ContactLaw, Parameters};
 use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
@@ -31,7 +32,7 @@ pub struct Snapshot {
     pub ball: [f64; 3],
     /// The membrane on which the ball rests.
     pub resting: Option<Side>,
-    /// Start of the present search for events, s, and the constant term of `z_M` - `z_m` counted from there, m.
+    /// Start of the present search for events, s, and `z_M` - `z_m`, m, there.
     pub flight: [f64; 2],
     /// Number of the phase-noise sample in force.
     pub noise_sample: u64,
@@ -68,7 +69,7 @@ impl Harvester {
             external: [cylinder.drive.external, cylinder.drive.external_rate],
             ball: [ball.since, ball.position, ball.velocity],
             resting: ball.resting,
-            flight: [self.search.flight.start, self.search.flight.offset()],
+            flight: [self.search.flight.start, self.search.flight.dz],
             noise_sample: noise.sample,
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
@@ -130,9 +131,9 @@ impl Harvester {
         let mut tangent = Tangent::of_force(since, p.cylinder_mass);
         (tangent.ball, tangent.totals) = ([position_change, velocity_change], totals);
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
-        let [start, offset] = snapshot.flight;
+        let [start, dz] = snapshot.flight;
         let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
-        let flight = Flight::new(&cylinder, start, 0.0, ball_velocity, p.travel() / 2.0).with_offset(offset);
+        let flight = Flight::new(&cylinder, start, dz, ball_velocity, p.travel() / 2.0);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
@@ -141,6 +142,7 @@ impl Harvester {
             cylinder,
             ball,
             noise,
+            holds: Holds::new(&p),
             search: Search::none(flight),
             pulses: snapshot.pulses.clone().map(Pulses::from_inner),
             touch: snapshot.contact.as_ref().map(Touch::restored),

@@ -6,7 +6,6 @@
 //! the impacts change with the relative speed that it then has. A ball at rest moves with the wall. A release comes
 //! where the acceleration of both is the same, zero, or at a jump of it, so that its time does not matter to first order.
 
-use super::events::Event;
 use super::{Harvester, Side};
 use crate::cylinder::DriveChange;
 use crate::membrane::MembraneChange;
@@ -50,15 +49,18 @@ impl Direction {
 
 /// What changes besides the force, if the parameters do.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct ParameterChange {
+pub(super) struct ParameterChange {
     /// Of `z_M`, m, and `z_M'`, m/s, at the start.
     cylinder: [f64; 2],
-    drive: DriveChange,
+    pub(super) drive: DriveChange,
+    /// Of the intensity of the phase noise, rad, and of its hold time, s.
+    pub(super) intensity: f64,
+    pub(super) hold: f64,
     half_travel: f64,
     restitution: f64,
     bias: f64,
     membrane: MembraneChange,
-    shape: ShapeChange,
+    pub(super) shape: ShapeChange,
 }
 
 /// Changes that are carried along.
@@ -72,7 +74,7 @@ pub(super) struct Tangent {
     pub(super) ball: [f64; 2],
     /// Of the sums in [`Totals`](super::Totals): relative speed of the last impact, m/s; voltage gain, V; energy, J.
     pub(super) totals: [f64; 3],
-    parameters: Option<ParameterChange>,
+    pub(super) parameters: Option<ParameterChange>,
 }
 
 /// An impact and its surroundings.
@@ -124,11 +126,11 @@ pub struct Sensitivities {
 }
 
 /// Whether an impact at relative `speed`, m/s, grazes, under the wall's `acceleration`, m/s^2.
-fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {
+pub(super) fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {
     speed <= 0.0 || (speed < GRAZING_SPEED && side.sign() * acceleration <= 0.0)
 }
 
-fn bounded(change: f64) -> f64 {
+pub(super) fn bounded(change: f64) -> f64 {
     change.clamp(-LIMIT, LIMIT)
 }
 
@@ -156,6 +158,8 @@ impl Tangent {
         let change = ParameterChange {
             cylinder: [d.cylinder_position, d.cylinder_velocity],
             drive,
+            intensity: d.phase_noise,
+            hold: d.noise_hold,
             half_travel,
             restitution: d.restitution,
             bias: d.bias_voltage,
@@ -194,7 +198,7 @@ impl Harvester {
         let by_force = [0.5 * push * elapsed * elapsed, push * elapsed];
         let Some(change) = &self.tangent.parameters else { return by_force };
         let [position, velocity] = change.cylinder;
-        let by_drive = self.cylinder.change(time, &change.drive);
+        let by_drive = self.change_by_force(time, change);
         [by_force[0] + position + velocity * elapsed + by_drive[0], by_force[1] + velocity + by_drive[1]]
     }
 
@@ -209,7 +213,7 @@ impl Harvester {
     }
 
     /// Time by which an impact at `time` on `side` at relative `speed` comes later.
-    fn delay(&self, time: f64, side: Side, speed: f64) -> f64 {
+    pub(super) fn delay(&self, time: f64, side: Side, speed: f64) -> f64 {
         let approach = self.cylinder_change(time)[0] - self.ball_change(time)[0];
         bounded((self.tangent.half_travel() - side.sign() * approach) / speed)
     }
@@ -308,36 +312,5 @@ impl Harvester {
             next_impact,
             next_knot: self.next_knot_change(next_impact),
         }
-    }
-
-    /// Changes of [`Harvester::next_impact`] and [`Harvester::next_knot`] per unit of `z_M` - `z_m` and of its rate at the
-    /// present time.
-    pub fn next_times_by_displacement(&self) -> [[f64; 2]; 2] {
-        let next_impact = match self.foreseen() {
-            Some((time, side, speed)) => {
-                [1.0, time - self.time].map(|approach| bounded(-side.sign() * approach / speed))
-            }
-            None => [0.0; 2],
-        };
-        let is_knot = self.next_impact().is_some() && self.next_impact() == self.next_knot();
-        [next_impact, if is_knot { next_impact } else { [0.0; 2] }]
-    }
-
-    /// The next impact, unless it grazes: time, side and relative speed.
-    fn foreseen(&self) -> Option<(f64, Side, f64)> {
-        let Some(Event::Impact { time, side }) = self.search.found else { return None };
-        let speed = side.sign() * (self.cylinder.velocity(time) - self.ball.velocity);
-        (!grazes(side, speed, self.cylinder.acceleration(time))).then_some((time, side, speed))
-    }
-
-    fn next_impact_change(&self) -> f64 {
-        self.foreseen().map_or(0.0, |(time, side, speed)| self.delay(time, side, speed))
-    }
-
-    fn next_knot_change(&self, next_impact_change: f64) -> f64 {
-        let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
-        let pulses = self.pulse_knots().map(|knot| (knot.time, knot.change(&self.shape, &shape)));
-        let next_impact = self.next_impact().map(|time| (time, next_impact_change));
-        pulses.chain(next_impact).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, change)| change)
     }
 }

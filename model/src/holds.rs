@@ -1,0 +1,224 @@
+//! What the harmonic force does in the hold intervals of the phase noise, many of them at once.
+//!
+//! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by
+//! (A / M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force
+//! by constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out for a
+//! block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector instructions.
+#![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
+
+use core::f64::consts::{PI, TAU};
+
+use crate::cylinder::{cycle_fraction, product_error};
+use crate::elementary::sin_cos;
+use crate::noise;
+use crate::parameters::Parameters;
+
+/// Hold intervals in a block.
+pub const BLOCK: usize = noise::GROUP;
+
+/// The hold intervals of one block.
+#[derive(Clone)]
+pub struct Block {
+    number: u64,
+    /// Changes of `z_M'`, m/s.
+    pub velocity: [f64; BLOCK],
+    /// Changes of `z_M` besides `z_M'` h, m.
+    pub position: [f64; BLOCK],
+}
+
+impl Block {
+    const EMPTY: Self = Self { number: u64::MAX, velocity: [0.0; BLOCK], position: [0.0; BLOCK] };
+}
+
+/// The harmonic force with held phase noise.
+#[derive(Clone, Copy)]
+struct Force {
+    seed: i32,
+    intensity: f64,
+    phase: f64,
+    frequency: f64,
+    hold: f64,
+    /// Turns of the force in one hold interval, without whole ones.
+    turn: f64,
+    /// Change of velocity, m/s, at cos a = 1.
+    push: f64,
+    /// Changes of position, m, at cos a = 1 and at sin a = 1.
+    shift: [f64; 2],
+}
+
+impl Force {
+    fn new(p: &Parameters) -> Self {
+        let (hold, x) = (p.noise_hold, PI * p.frequency * p.noise_hold);
+        let push = p.amplitude / p.cylinder_mass * hold;
+        Self {
+            seed: p.seed,
+            intensity: p.phase_noise,
+            phase: p.phase,
+            frequency: p.frequency,
+            hold,
+            turn: cycle_fraction(p.frequency, hold),
+            push: push * x.sin() / x,
+            shift: [0.5 * push * hold * x.sin() / x, push * hold * lag(x)],
+        }
+    }
+
+    /// Angle in the middle of hold interval `sample`, in turns, without phase and noise.
+    fn carrier(&self, sample: u64) -> f64 {
+        let middle = sample as f64 + 0.5;
+        let time = middle * self.hold;
+        cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time)
+    }
+
+    /// Works out block `number`, with the widest vectors that this machine has.
+    fn fill(&self, block: &mut Block, number: u64) {
+        #[cfg(target_arch = "x86_64")]
+        #[allow(unsafe_code)] // the only way to call a function that needs more than the oldest machine has
+        {
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+                // SAFETY: the machine has just said that it has these instructions.
+                return unsafe { self.fill_by_eight(block, number) };
+            }
+            if is_x86_feature_detected!("avx2") {
+                // SAFETY: as above.
+                return unsafe { self.fill_by_four(block, number) };
+            }
+        }
+        self.fill_plainly(block, number);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512dq")]
+    fn fill_by_eight(&self, block: &mut Block, number: u64) {
+        self.fill_plainly(block, number);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn fill_by_four(&self, block: &mut Block, number: u64) {
+        self.fill_plainly(block, number);
+    }
+
+    #[inline(always)]
+    fn fill_plainly(&self, block: &mut Block, number: u64) {
+        block.number = number;
+        let carrier = self.carrier(number * BLOCK as u64);
+        let samples = noise::normals(self.seed, number);
+        for (k, xi) in samples.iter().enumerate() {
+            let phase = self.phase + self.intensity * xi;
+            let [sin, cos] = sin_cos(carrier + (k as f64 * self.turn + phase * (1.0 / TAU)));
+            block.velocity[k] = self.push * cos;
+            block.position[k] = self.shift[0] * cos + self.shift[1] * sin;
+        }
+    }
+}
+
+/// (sin x - x cos x) / (2 x^2) for x up to pi, as a series that loses no digits at small x.
+fn lag(x: f64) -> f64 {
+    let (mut term, mut sum) = (x / 6.0, 0.0);
+    for n in 1..24 {
+        let n = f64::from(n);
+        sum += term; // n x^(2 n - 1) / (2 n + 1)!, signs alternate
+        term *= -x * x * (n + 1.0) / (n * (2.0 * n + 2.0) * (2.0 * n + 3.0));
+    }
+    sum
+}
+
+/// The block in which a harvester is and the next one. They follow from its parameters, so that all are equal, and a
+/// copy works them out again.
+pub struct Holds {
+    force: Force,
+    blocks: Option<Box<[Block; 2]>>,
+}
+
+impl Holds {
+    /// Hold intervals of a harvester with these parameters; they must not be longer than a period of the force.
+    pub fn new(parameters: &Parameters) -> Self {
+        Self { force: Force::new(parameters), blocks: None }
+    }
+
+    /// The block with hold interval number `sample`, and the place of that in it.
+    pub fn block(&mut self, sample: u64) -> (&Block, usize) {
+        let number = sample / BLOCK as u64;
+        let blocks = self.blocks.get_or_insert_with(|| Box::new([Block::EMPTY; 2]));
+        let block = &mut blocks[usize::from(number % 2 == 1)];
+        if block.number != number {
+            self.force.fill(block, number);
+        }
+        #[allow(clippy::cast_possible_truncation)] // less than BLOCK
+        (block, (sample % BLOCK as u64) as usize)
+    }
+}
+
+impl Clone for Holds {
+    fn clone(&self) -> Self {
+        Self { force: self.force, blocks: None }
+    }
+}
+
+impl PartialEq for Holds {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl core::fmt::Debug for Holds {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        formatter.debug_struct("Holds").finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cylinder::{CylinderMotion, Drive};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_block_has_the_closed_form_of_each_hold_interval(
+            intensity in 0.0_f64..20.0, frequency in 0.5_f64..50.0, hold in prop_oneof![1e-6_f64..1e-4, 1e-3..2e-2],
+            number in prop_oneof![0..4_u64, 1_000_000..1_000_010_u64], seed in any::<i32>(), phase in -7.0_f64..7.0,
+        ) {
+            let p = Parameters { phase_noise: intensity, frequency, noise_hold: hold, ..Parameters::default() };
+            let p = Parameters { phase, seed, ..p };
+            let mut block = Block::EMPTY;
+            Force::new(&p).fill(&mut block, number);
+            let amplitude = p.amplitude / p.cylinder_mass;
+            for k in 0..BLOCK {
+                let sample = number * BLOCK as u64 + k as u64;
+                let phase = phase + intensity * noise::normal(seed, sample);
+                let drive = Drive { amplitude, frequency, phase, external: 0.0, external_rate: 0.0 };
+                let [start, end] = [sample, sample + 1].map(|sample| sample as f64 * hold);
+                let motion = CylinderMotion::new(start, 0.0, 0.0, drive);
+                // Rounding of the times, of the angles and of the differences that the closed form consists of.
+                let angle = 16.0 * f64::EPSILON * (phase.abs() + TAU) + TAU * frequency * 4.0 * f64::EPSILON * end;
+                let (time, swing) = (4.0 * f64::EPSILON * end, amplitude / (TAU * frequency).powi(2));
+                let velocity = amplitude * (time + angle / (TAU * frequency));
+                let position = amplitude * hold * time + swing * (1.0 + TAU * frequency * hold) * angle;
+                prop_assert!((block.velocity[k] - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
+                prop_assert!((block.position[k] - motion.position(end)).abs() <= position, "position, {k}");
+            }
+        }
+
+        #[test]
+        fn vectors_of_any_width_give_the_same_bits(
+            seed in any::<i32>(), number in 0..1_000_000_u64, intensity in 0.0..10.0,
+        ) {
+            let force = Force::new(&Parameters { phase_noise: intensity, seed, ..Parameters::default() });
+            let (mut plain, mut wide) = (Block::EMPTY, Block::EMPTY);
+            force.fill_plainly(&mut plain, number);
+            force.fill(&mut wide, number);
+            prop_assert_eq!(plain.velocity.map(f64::to_bits), wide.velocity.map(f64::to_bits));
+            prop_assert_eq!(plain.position.map(f64::to_bits), wide.position.map(f64::to_bits));
+        }
+    }
+
+    #[test]
+    fn the_lag_is_the_limit_of_small_hold_intervals_and_right_at_large_ones() {
+        for x in [0.3_f64, 1.0, 2.0, PI] {
+            let exact = (x.sin() - x * x.cos()) / (2.0 * x * x);
+            assert!((lag(x) - exact).abs() < 1e-14 * exact, "{x}");
+        }
+        assert!((lag(1e-5) - 1e-5 / 6.0 * (1.0 - 1e-11)).abs() < 1e-21);
+    }
+}
