@@ -5,22 +5,35 @@
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
+mod basins;
+mod bifurcation;
+mod coupled;
+mod dynamics;
 mod ensemble;
 mod error;
+mod excitation;
+mod fig16;
+mod fig17;
 mod fig4;
 mod fig7;
 mod fixed_step;
+mod lyapunov;
 mod motion;
 mod motion_findings;
 mod orbit;
 mod patterns;
 mod peak;
+mod poincare;
+mod power;
 mod recording;
 mod stability;
+mod statistics;
+mod stroboscope;
 mod table1;
 mod table2;
 mod table2_output;
 mod table3;
+mod tuning;
 mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
@@ -51,4 +64,10 @@ pub const ITEMS: &[Item] = &[
     Item { name: "fig13", title: "Figure 13", make: |workshop| motion::make(workshop, 13) },
     Item { name: "fig14", title: "Figure 14", make: |workshop| motion::make(workshop, 14) },
     Item { name: "fig15", title: "Figure 15", make: |workshop| motion::make(workshop, 15) },
+    Item { name: "fig16", title: "Figure 16", make: fig16::make },
+    Item { name: "fig17", title: "Figure 17", make: fig17::make },
+    Item { name: "tuning", title: "Tuning of the circuit", make: tuning::make },
+    Item { name: "power", title: "Power density, honestly", make: power::make },
+    Item { name: "dynamics", title: "Poincare sections and bifurcation diagrams", make: dynamics::make },
+    Item { name: "basins", title: "Basins of attraction", make: basins::make },
 ];

@@ -1,0 +1,169 @@
+//! Bifurcation diagrams: how the motion changes along a parameter.
+
+use super::excitation::Cylinder;
+use super::stroboscope::{Orbit, Start, Stroboscope};
+use super::{Effort, PaperError, Picture, Sheet, Workshop};
+use crate::report::{Column, Figure, Panel, Series, Style, Table};
+
+/// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
+const TRANSIENT: u32 = 200;
+const TAKEN: u32 = 60;
+/// Largest distance, m, after a recurrence.
+const TOLERANCE: f64 = 1e-6;
+
+/// A parameter and where it goes.
+pub struct Path {
+    /// Name of the files, e.g. `bifurcation-r`.
+    pub name: &'static str,
+    /// Axis label.
+    pub axis: &'static str,
+    /// Ends.
+    pub range: [f64; 2],
+    /// What is kept.
+    pub caption: &'static str,
+    /// The saw-tooth start at a value of the parameter.
+    pub start: fn(&Cylinder, f64) -> Start,
+}
+
+/// How the motion at a value of the parameter is reached.
+const WAYS: [&str; 3] = ["saw-tooth start", "followed upwards", "followed downwards"];
+
+/// A diagram: for each way, the motion at each value.
+pub struct Diagram {
+    xs: Vec<f64>,
+    ways: Vec<Vec<Orbit>>,
+}
+
+impl Diagram {
+    /// Follows `path`.
+    pub fn new(workshop: &Workshop<'_>, cylinder: &Cylinder, path: &Path) -> Result<Self, PaperError> {
+        let count = match workshop.effort {
+            Effort::Full => 400_u32,
+            Effort::Quick => 100,
+        };
+        let [from, to] = path.range;
+        let xs: Vec<f64> = (0..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)).collect();
+        let orbit = |start: &Start| -> Result<Orbit, PaperError> {
+            Stroboscope::new(workshop, &start.settings(cylinder), start.frequency)?.take(TRANSIENT, TAKEN)
+        };
+        let fresh = workshop.each(&xs, |&x| orbit(&(path.start)(cylinder, x)))?;
+        // Each motion begins where the one before has ended, so these are one task each.
+        let followed = workshop.each(&[false, true], |&downwards| {
+            let mut orbits: Vec<Orbit> = Vec::new();
+            for k in 0..xs.len() {
+                let x = if downwards { xs[xs.len() - 1 - k] } else { xs[k] };
+                let start = (path.start)(cylinder, x);
+                orbits.push(orbit(&orbits.last().map_or(start, |before| start.from(before.last())))?);
+            }
+            if downwards {
+                orbits.reverse();
+            }
+            Ok(orbits)
+        })?;
+        Ok(Self { xs, ways: std::iter::once(fresh).chain(followed).collect() })
+    }
+
+    /// Values at which two ways lead to different `<U>`, by more than a part in a thousand, though both are periodic.
+    pub fn coexisting(&self) -> Vec<f64> {
+        let periodic = |orbit: &Orbit| orbit.recurrence(TOLERANCE).map(|n| orbit.voltage_gain(n));
+        let differs = |index: usize| {
+            let gains: Vec<f64> = self.ways.iter().filter_map(|orbits| periodic(&orbits[index])).collect();
+            let [low, high] = [f64::min, f64::max].map(|pick| gains.iter().copied().reduce(pick).unwrap_or_default());
+            high - low > 1e-3 * high
+        };
+        self.xs.iter().enumerate().filter(|(index, _)| differs(*index)).map(|(_, &x)| x).collect()
+    }
+
+    /// Stretches of the parameter over which the saw-tooth start leads to one number of periods; `None` is no recurrence.
+    pub fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {
+        let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
+        for (&x, orbit) in self.xs.iter().zip(self.ways.iter().flatten()) {
+            let recurrence = orbit.recurrence(TOLERANCE);
+            match found.last_mut() {
+                Some(last) if last.2 == recurrence => last.1 = x,
+                _ => found.push((x, x, recurrence)),
+            }
+        }
+        found
+    }
+
+    /// The longer stretches as a table.
+    pub fn table(&self, path: &Path) -> Table {
+        let symbol = path.axis.split(' ').next().unwrap_or_default();
+        let columns = [
+            Column::numbers(format!("{symbol} from")),
+            Column::numbers(format!("{symbol} to")),
+            Column::words("motion comes back after"),
+        ];
+        let spacing = self.xs.get(1).zip(self.xs.first()).map_or(0.0, |(b, a)| b - a);
+        let long = self.stretches().into_iter().filter(|(from, to, _)| to - from > 2.5 * spacing);
+        long.fold(Table::new(columns), |table, (from, to, recurrence)| {
+            let words = match recurrence {
+                Some(1) => "1 period".to_owned(),
+                Some(n) => format!("{n} periods"),
+                None => format!("more than {} periods: chaos, or a slow transient", TAKEN / 2),
+            };
+            table.row([format!("{from:.4}"), format!("{to:.4}"), words])
+        })
+    }
+
+    /// Displacements over the parameter, each way, and `<U>`.
+    pub fn picture(&self, path: &Path) -> Result<Picture, PaperError> {
+        let clouds: Vec<Vec<(f64, f64)>> = self.ways.iter().map(|orbits| self.cloud(orbits)).collect();
+        let gain = |orbit: &Orbit| 1e-3 * orbit.voltage_gain(TAKEN as usize);
+        let gains: Vec<Vec<(f64, f64)>> =
+            self.ways.iter().map(|orbits| self.xs.iter().copied().zip(orbits.iter().map(gain)).collect()).collect();
+        let [from, to] = path.range;
+        let panel = |title: &str, label: &str, height: f64| {
+            Panel::new(title, path.axis, label).x_range(from, to).height(height).share_x_with_next()
+        };
+        let dots = |index: usize| Series::points(WAYS[index], &clouds[index]).style(Style::Dots).color(index);
+        let displacement = "z_M - z_m (mm)";
+        let mut output = panel("(c)", "<U> (kV/s)", 160.0);
+        output.share_x_with_next = false;
+        let output = (0..WAYS.len()).rev().fold(output, |panel, index| {
+            panel.series(Series::points(WAYS[index], &gains[index]).style(Style::Dots).color(index))
+        });
+        let figure = Figure::new("Bifurcation diagram")
+            .caption("Relative displacement once a period, and average voltage gain, over a parameter.")
+            .panel(panel("(a)", displacement, 240.0).series(dots(0)))
+            .panel(panel("(b)", displacement, 240.0).series(dots(1)).series(dots(2)))
+            .panel(output);
+        let caption = format!(
+            "{} Relative displacement at the start of each period, when the cylinder is at the end of its swing: {TAKEN} periods \
+             after {TRANSIENT}; (a) from the saw-tooth start, (b) each motion going on from the one before along the parameter, \
+             upwards and downwards; (c) <U> of Eq. (15) over the {TAKEN} periods.",
+            path.caption
+        );
+        Ok(Picture::new(path.name, &figure, caption)?)
+    }
+
+    /// Dots to draw, mm: of those that nobody could tell apart, one.
+    fn cloud(&self, orbits: &[Orbit]) -> Vec<(f64, f64)> {
+        const RESOLUTION: f64 = 0.05;
+        let dots = |orbit: &Orbit| {
+            let mut values: Vec<f64> =
+                orbit.flashes.iter().map(|flash| (1e3 * flash.displacement / RESOLUTION).round()).collect();
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            values
+        };
+        let column = |(&x, orbit): (&f64, &Orbit)| dots(orbit).into_iter().map(move |value| (x, value * RESOLUTION));
+        self.xs.iter().zip(orbits).flat_map(column).collect()
+    }
+
+    /// Every flash of the periodic or chaotic motions: one row each until the motion comes back.
+    pub fn sheet(&self, path: &Path) -> Sheet {
+        let columns = [path.axis, "way (1)", "displacement (m)", "velocity (m/s)", "<U> (V/s)", "recurrence (periods)"];
+        let rows = self.ways.iter().zip([0.0, 1.0, 2.0]).flat_map(|(orbits, way)| {
+            self.xs.iter().zip(orbits).flat_map(move |(&x, orbit)| {
+                let recurrence = orbit.recurrence(TOLERANCE);
+                let gain = orbit.voltage_gain(recurrence.unwrap_or(TAKEN as usize));
+                let taken = orbit.flashes.iter().take(recurrence.unwrap_or(usize::MAX));
+                let recurrence = recurrence.map_or(f64::NAN, |n| n as f64);
+                taken.map(move |flash| vec![x, way, flash.displacement, flash.velocity, gain, recurrence])
+            })
+        });
+        Sheet { name: path.name.to_owned(), columns: columns.map(str::to_owned).to_vec(), rows: rows.collect() }
+    }
+}

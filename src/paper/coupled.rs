@@ -1,0 +1,171 @@
+//! Circuits driven by one run of the harvester: what they gain in a second.
+
+use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
+
+use super::{PaperError, Workshop};
+use crate::cosim::{CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row};
+use crate::scenario::{Request, Setting};
+
+/// A run of a case of the paper that drives circuits.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// The case.
+    pub case: &'static str,
+    /// What differs from it.
+    pub settings: Vec<Setting>,
+    /// Averaging window, s; the run ends with it.
+    pub window: [f64; 2],
+    /// Largest error of C(t) within a communication step, relative to its value.
+    pub tolerance: f64,
+}
+
+/// What a [`Drive`] comes to.
+#[derive(Debug, Clone)]
+pub struct Driven {
+    /// Length of the window, s.
+    pub time: f64,
+    /// Averages of the circuits over the window, in their order.
+    pub power: Vec<Power>,
+    /// Highest voltages of the membranes in the window, V, in the order of the circuits.
+    pub peaks: Vec<f64>,
+    /// `C_3` / `C_2` of each impact in the window.
+    pub ratios: Vec<f64>,
+    /// P, Eq. (14), W, over the window.
+    pub eq14: f64,
+    /// `C_2`, F.
+    pub rest_capacitance: f64,
+    /// `U_in`, V.
+    pub bias_voltage: f64,
+}
+
+/// Mean power in a circuit, W.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Power {
+    /// From the supply.
+    pub supply: f64,
+    /// Into the load.
+    pub load: f64,
+    /// Into the Zener diodes.
+    pub zener: f64,
+}
+
+impl Power {
+    /// What a user gains: load - supply, W.
+    pub fn surplus(&self) -> f64 {
+        self.load - self.supply
+    }
+
+    fn between(start: &Ledger, end: &Ledger, time: f64) -> Self {
+        let mean = |energy: fn(&Ledger) -> f64| (energy(end) - energy(start)) / time;
+        Self { supply: mean(|l| l.supply), load: mean(|l| l.load), zener: mean(|l| l.zener) }
+    }
+}
+
+impl Drive {
+    /// Runs the harvester with `circuits`; without circuits, for its impacts alone.
+    ///
+    /// # Errors
+    /// What the FMU or a circuit says.
+    pub fn run(&self, workshop: &Workshop<'_>, circuits: &[Settings]) -> Result<Driven, PaperError> {
+        let [from, to] = self.window;
+        let request = Request {
+            case: Some(self.case.to_owned()),
+            settings: self.settings.clone(),
+            until: Some(to),
+            window: Some(self.window),
+            ..Request::default()
+        };
+        let scenario = request.resolve()?;
+        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
+        let [rest_capacitance, other] = harvester.sample()?.capacitance();
+        let bias_voltage = harvester.bias_voltage();
+        let slaves = circuits.iter().map(|settings| -> Result<Box<dyn CircuitSlave>, CosimError> {
+            Ok(Box::new(EmbeddedCircuit::new("embedded", settings, [rest_capacitance, other])?))
+        });
+        let slaves = slaves.collect::<Result<_, _>>()?;
+        let coupling = Coupling { tolerance: Some(self.tolerance), ..Coupling::default() };
+        let mut books =
+            Books { from, bias_voltage, gain: 0.0, start: None, peaks: vec![0.0; circuits.len()], ratios: Vec::new() };
+        let outcome = Master::new(harvester, slaves, &scenario, coupling)?.run(&mut [&mut books])?;
+        let ends = books.start.iter().flatten().zip(&outcome.circuits);
+        Ok(Driven {
+            time: to - from,
+            power: ends.map(|(start, end)| Power::between(start, &end.ledger, to - from)).collect(),
+            peaks: books.peaks,
+            ratios: books.ratios,
+            eq14: outcome.mechanics.average_power_eq13,
+            rest_capacitance,
+            bias_voltage,
+        })
+    }
+}
+
+impl Driven {
+    /// Net gain, W, of the impacts in the window by the closed form of a quick release at `voltage`, V, from a node that holds
+    /// `idle` further capacitances `C_2`: (`C_3` `U_in` - `C_2` `U_r`) (`U_r` - `U_in`) each.
+    pub fn quick_release(&self, voltage: f64, idle: f64) -> f64 {
+        let c2 = self.rest_capacitance;
+        let gain = |ratio: &f64| {
+            formulas::release_net_gain(self.bias_voltage, voltage, c2 * (1.0 + idle), c2 * (ratio + idle))
+        };
+        self.ratios.iter().map(gain).sum::<f64>() / self.time
+    }
+
+    /// Highest `U_DE4` of an impact in the window, V, Eq. (12).
+    pub fn highest_voltage(&self) -> f64 {
+        self.bias_voltage * self.ratios.iter().copied().fold(1.0, f64::max)
+    }
+
+    /// Largest net gain, W, that each impact in the window by itself allows on isolated membranes: constant charge up to
+    /// `U_DE4`, then slow discharge at `C_2`.
+    pub fn largest_gain(&self) -> f64 {
+        let c2 = self.rest_capacitance;
+        let gain = |ratio: &f64| formulas::largest_net_gain(self.bias_voltage, c2, ratio * c2);
+        self.ratios.iter().map(gain).sum::<f64>() / self.time
+    }
+
+    /// The voltage, V, at which that is largest.
+    pub fn best_voltage(&self, idle: f64) -> f64 {
+        let ratio = formulas::best_release_ratio(self.ratios.clone());
+        formulas::best_release_voltage(self.bias_voltage, 1.0 + idle, ratio + idle)
+    }
+}
+
+/// A circuit of which the voltage of release and the load are to be chosen.
+pub fn circuit(topology: Topology, release: Release, voltage: f64, resistance: f64) -> Settings {
+    let mut settings = Settings::default();
+    settings.circuit.topology = topology;
+    settings.circuit.release = release;
+    settings.circuit.zener_voltage = voltage;
+    settings.circuit.load_resistance = resistance;
+    settings
+}
+
+/// Notes the ledgers at the start of the window, and voltages and impacts in it; impacts within one communication step count as one.
+struct Books {
+    from: f64,
+    bias_voltage: f64,
+    gain: f64,
+    start: Option<Vec<Ledger>>,
+    peaks: Vec<f64>,
+    ratios: Vec<f64>,
+}
+
+impl Observer for Books {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        let gain = row.harvester.voltage_gain();
+        if gain > self.gain && row.time > self.from {
+            self.ratios.push(1.0 + (gain - self.gain) / self.bias_voltage);
+        }
+        self.gain = gain;
+        if self.start.is_none() && row.time >= self.from {
+            self.start = Some(row.circuits.iter().map(|circuit| circuit.ledger).collect());
+        }
+        if self.start.is_some() {
+            for (peak, circuit) in self.peaks.iter_mut().zip(row.circuits) {
+                *peak = circuit.voltage.into_iter().fold(*peak, f64::max);
+            }
+        }
+        Ok(())
+    }
+}

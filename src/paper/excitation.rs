@@ -1,0 +1,74 @@
+//! What the cases set: presets of the paper, and the excitation by its normalised amplitude.
+
+use std::f64::consts::TAU;
+
+use super::{PaperError, Workshop};
+use crate::scenario::{Request, Setting};
+
+/// The variable called `name` at `value`, to the last bit.
+pub fn set(name: &str, value: f64) -> Setting {
+    Setting { name: name.to_owned(), value: format!("{value:?}") }
+}
+
+/// Settings of the case of the paper called `name`.
+///
+/// # Errors
+/// If there is none.
+pub fn preset(name: &str) -> Result<Vec<Setting>, PaperError> {
+    Ok(Request { case: Some(name.to_owned()), ..Request::default() }.resolve()?.settings)
+}
+
+/// The cylinder as the FMU has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cylinder {
+    /// M, kg.
+    mass: f64,
+    /// s, m: largest distance that the ball moves.
+    travel: f64,
+}
+
+impl Cylinder {
+    /// Reads the start values of the FMU, those of Section 4.2.
+    ///
+    /// # Errors
+    /// An FMU that lacks a variable.
+    pub fn new(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
+        let references = [workshop.reference("cylinder.mass")?, workshop.reference("ball.travel")?];
+        let mut values = [0.0; 2];
+        workshop.start(&[])?.get_real(&references, &mut values)?;
+        let [mass, travel] = values;
+        Ok(Self { mass, travel })
+    }
+
+    /// s, m.
+    pub fn travel(&self) -> f64 {
+        self.travel
+    }
+
+    /// A, N, of the normalised amplitude `gamma` at `frequency`, Hz: Eq. (16).
+    pub fn force(&self, gamma: f64, frequency: f64) -> f64 {
+        gamma * self.mass * (TAU * frequency).powi(2) * self.travel / 2.0
+    }
+
+    /// The normalised amplitude of the `force`, N, at `frequency`, Hz: Eq. (16).
+    pub fn gamma(&self, force: f64, frequency: f64) -> f64 {
+        force / self.force(1.0, frequency)
+    }
+
+    /// Zero start, r = 1, at the normalised amplitude `gamma` and `frequency`, Hz: Section 5.1. The ball starts with
+    /// `nudge`, m/s.
+    pub fn elastic(&self, gamma: f64, frequency: f64, nudge: f64) -> Vec<Setting> {
+        vec![
+            set("membrane.restitution", 1.0),
+            set("excitation.amplitude", self.force(gamma, frequency)),
+            set("excitation.frequency", frequency),
+            set("initial.ballVelocity", nudge),
+        ]
+    }
+}
+
+/// Velocity of the ball, m/s, in the `index`-th of `count` starts so close to each other that nobody could tell them
+/// apart: evenly spaced over 1e-6 m/s about 0. A chaotic motion forgets them within seconds.
+pub fn nudge(index: usize, count: usize) -> f64 {
+    1e-6 * ((index as f64 + 0.5) / count as f64 - 0.5)
+}

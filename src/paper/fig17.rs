@@ -1,0 +1,285 @@
+//! Figure 17: `<U>` under phase noise.
+
+use super::excitation::{Cylinder, nudge, set};
+use super::statistics::{Summary, TWO_SIDED, mean, slope};
+use super::{Artefact, Averages, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, Workshop};
+use crate::report::{Figure, Panel, Series, Style};
+use crate::scenario::Setting;
+
+/// gamma and `f_0`, Hz, of the figure.
+const GAMMA: f64 = 5.0;
+const FREQUENCY: f64 = 2.0;
+/// D = sigma^2: densely where the output falls, and both values of the paper's smaller plots.
+const INTENSITIES: [f64; 19] =
+    [0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 64.0, 81.0, 100.0];
+/// D of the paper's smaller plots, which show a voltage pattern each.
+const PATTERNS: [f64; 2] = [1.0, 81.0];
+/// What the patterns show, s. The paper does not say which seconds its plots show.
+const SHOWN: [f64; 2] = [50.0, 60.0];
+/// Window of the averages, s: the paper's.
+const WINDOW: [f64; 2] = [50.0, 100.0];
+
+/// Samples a point; the paper has 100.
+fn samples(effort: Effort) -> usize {
+    match effort {
+        Effort::Full => 100,
+        Effort::Quick => 10,
+    }
+}
+
+/// All samples of one D.
+struct Point {
+    intensity: f64,
+    samples: Vec<Averages>,
+    gain: Summary,
+}
+
+impl Point {
+    fn new(intensity: f64, samples: &[Averages]) -> Self {
+        let gains: Vec<f64> = samples.iter().map(|sample| sample.voltage_gain).collect();
+        Self { intensity, samples: samples.to_vec(), gain: Summary::new(&gains) }
+    }
+
+    /// Impacts a second.
+    fn rate(&self) -> f64 {
+        mean(self.samples.iter().map(|sample| f64::from(sample.impacts))) / (WINDOW[1] - WINDOW[0])
+    }
+
+    /// `U_DE4` - `U_in` of an impact, V: mean over all impacts of all samples.
+    fn gain_per_impact(&self) -> f64 {
+        self.gain.mean / self.rate()
+    }
+}
+
+/// Makes the figure.
+pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let cylinder = Cylinder::new(workshop)?;
+    let count = samples(workshop.effort);
+    let settings = |point| (0..count).map(move |sample| settings(&cylinder, point, sample, count));
+    let runs: Vec<Run> =
+        (0..INTENSITIES.len()).flat_map(settings).map(|settings| Run { settings, window: WINDOW }).collect();
+    let averages = workshop.averages(&runs)?;
+    let points: Vec<Point> =
+        INTENSITIES.into_iter().zip(averages.chunks(count)).map(|(d, a)| Point::new(d, a)).collect();
+    let mut patterns = Vec::new();
+    for intensity in PATTERNS {
+        let point = INTENSITIES.iter().position(|&d| d == intensity).unwrap_or_default();
+        patterns.push(Pattern::new(workshop, &self::settings(&cylinder, point, 0, count))?);
+    }
+    Ok(Artefact {
+        findings: findings(&points),
+        text: text(count),
+        tables: Vec::new(),
+        pictures: vec![curve(&points)?, voltages(&patterns)?],
+        sheets: vec![sheet(&points), samples_sheet(&points)],
+    })
+}
+
+/// What sample number `sample` of point number `point` sets. Its seed is 1000 `point` + `sample` + 1: no two are alike. The
+/// starts are nudged as in Figure 16, so that the samples without noise are not one and the same run.
+fn settings(cylinder: &Cylinder, point: usize, sample: usize, count: usize) -> Vec<Setting> {
+    let mut settings = cylinder.elastic(GAMMA, FREQUENCY, nudge(sample, count));
+    settings.push(set("excitation.phaseNoise", INTENSITIES[point].sqrt()));
+    let seed = 1000 * point + sample + 1;
+    settings.push(Setting { name: "excitation.seed".to_owned(), value: seed.to_string() });
+    settings
+}
+
+/// Voltage peaks of some seconds of a run.
+struct Pattern {
+    /// Spikes from `U_in` to `U_DE4`, s and kV, of the left and the right membrane.
+    spikes: [Vec<(f64, f64)>; 2],
+}
+
+impl Pattern {
+    /// Communication step, s: impacts within one count as one with their mean voltage.
+    const STEP: f64 = 1e-3;
+
+    fn new(workshop: &Workshop<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
+        let reals = [
+            workshop.reference("gain.voltage")?,
+            workshop.reference("relativeDisplacement")?,
+            workshop.reference("biasVoltage")?,
+        ];
+        let count = [workshop.reference("impact.count")?];
+        let mut instance = workshop.start(settings)?;
+        let [from, to] = SHOWN;
+        instance.do_step(0.0, from)?;
+        let (mut values, mut impacts) = ([0.0; 3], [0]);
+        let mut spikes = [vec![(from, f64::NAN)], vec![(from, f64::NAN)]];
+        let (mut before, mut seen) = (f64::NAN, 0);
+        let mut index = 0.0;
+        let mut time = from;
+        while time <= to {
+            instance.get_real(&reals, &mut values)?;
+            instance.get_integer(&count, &mut impacts)?;
+            let [gain, displacement, bias] = values;
+            if impacts[0] > seen && before.is_finite() {
+                let peak = bias + (gain - before) / f64::from(impacts[0] - seen);
+                // Left is the end that the ball meets when z_M - z_m = +s/2.
+                let spikes = &mut spikes[usize::from(displacement < 0.0)];
+                spikes.extend([(time, 1e-3 * bias), (time, 1e-3 * peak), (time, f64::NAN)]);
+            }
+            (before, seen) = (gain, impacts[0]);
+            instance.do_step(time, Self::STEP)?;
+            index += 1.0;
+            time = from + index * Self::STEP;
+        }
+        Ok(Self { spikes })
+    }
+}
+
+fn curve(points: &[Point]) -> Result<Picture, PaperError> {
+    let of =
+        |value: fn(&Summary) -> f64| points.iter().map(|p| (p.intensity, 1e-3 * value(&p.gain))).collect::<Vec<_>>();
+    let (means, medians) = (of(|gain| gain.mean), of(|gain| gain.median));
+    let interval = |p: &Point| (p.intensity, 1e-3 * p.gain.interval[0], 1e-3 * p.gain.interval[1]);
+    let intervals: Vec<_> = points.iter().map(interval).collect();
+    let panel = Panel::new("", "D = sigma^2 (1)", "<U> (kV/s)")
+        .height(300.0)
+        .series(Series::points("mean, with its 95 % interval", &means).style(Style::Crosses).color(0))
+        .series(Series::points("median", &medians).style(Style::Dashed).color(1))
+        .bars(&intervals, 0);
+    let figure = Figure::new("Figure 17: output under phase noise")
+        .caption("Average voltage gain over the intensity of the phase noise.")
+        .panel(panel);
+    let count = points.first().map_or(0, |point| point.samples.len());
+    let caption = format!(
+        "Voltage gain <U> of Eq. (15) over 50 to 100 s against the intensity D of the phase noise: gamma = 5, f0 = 2 Hz, \
+         r = 1, zero start, {count} samples a point. Bars: 95 % bootstrap interval of the mean."
+    );
+    Ok(Picture::new("fig17", &figure, caption)?)
+}
+
+fn voltages(patterns: &[Pattern]) -> Result<Picture, PaperError> {
+    let mut figure = Figure::new("Figure 17: voltage patterns")
+        .caption("Voltage peaks of both membranes at low and at high intensity of the phase noise.");
+    for (index, (pattern, intensity)) in patterns.iter().zip(PATTERNS).enumerate() {
+        let mut panel = Panel::new(format!("D = {intensity}"), "time (s)", "voltage (kV)")
+            .height(150.0)
+            .x_range(SHOWN[0], SHOWN[1])
+            .line("", 2.0);
+        for (side, spikes) in ["left", "right"].into_iter().zip(&pattern.spikes) {
+            let label = if index == 0 { side } else { "" };
+            panel = panel.series(Series::points(label, spikes));
+        }
+        if index == 0 {
+            panel = panel.share_x_with_next();
+        }
+        figure = figure.panel(panel);
+    }
+    let caption = "Each line rises from U_in = 2 kV to U_DE4 of an impact, left and right membrane, made from the steps of the \
+                   FMU's output gain.voltage. First sample of the point each, 50 to 60 s; the paper does not say which \
+                   seconds it shows.";
+    Ok(Picture::new("fig17-voltage", &figure, caption)?)
+}
+
+fn findings(points: &[Point]) -> Vec<Finding> {
+    let at = |d: f64| points.iter().find(|point| point.intensity == d);
+    let finding = |quantity: &str, unit: &str, videg: f64, verdict: Verdict, reason: String| Finding {
+        place: "Figure 17".to_owned(),
+        quantity: quantity.to_owned(),
+        unit: unit.to_owned(),
+        paper: None,
+        videg,
+        verdict,
+        reason,
+    };
+    let judged = |holds: bool| if holds { Verdict::Agrees } else { Verdict::Differs };
+    let mut findings = Vec::new();
+    if let Some((pure, best)) = at(0.0).zip(points.iter().max_by(|a, b| a.gain.mean.total_cmp(&b.gain.mean))) {
+        // A higher mean elsewhere counts if the intervals say so, too.
+        let holds = best.gain.interval[0] <= pure.gain.interval[1];
+        let reason = format!(
+            "the paper: most at D = 0; here the largest mean is {:.0} V/s at D = {}",
+            best.gain.mean, best.intensity
+        );
+        findings.push(finding("<U> without noise", "V/s", pure.gain.mean, judged(holds), reason));
+    }
+    if let Some((weak, strong)) = at(0.5).zip(at(4.0)) {
+        let ratio = strong.gain.mean / weak.gain.mean;
+        let reason = format!("the paper: drops significantly; {:.0} to {:.0} V/s", weak.gain.mean, strong.gain.mean);
+        findings.push(finding("<U> at D = 4 over that at D = 0.5", "1", ratio, judged(ratio < 0.5), reason));
+    }
+    findings.push(plateau(points, finding));
+    if let Some((weak, strong)) = at(PATTERNS[0]).zip(at(PATTERNS[1])) {
+        let fewer = strong.rate() / weak.rate();
+        let reason = format!("the paper: visibly fewer; {:.2} against {:.2} a second", strong.rate(), weak.rate());
+        findings.push(finding("impacts at D = 81 over those at D = 1", "1", fewer, judged(fewer < 1.0), reason));
+        let weaker = strong.gain_per_impact() / weak.gain_per_impact();
+        let [low, high] = [strong, weak].map(Point::gain_per_impact);
+        let reason = format!("the paper: significantly weaker; {low:.0} against {high:.0} V an impact");
+        findings.push(finding(
+            "gain of an impact at D = 81 over that at D = 1",
+            "1",
+            weaker,
+            judged(weaker < 1.0),
+            reason,
+        ));
+    }
+    findings
+}
+
+/// From D = 10 to 100 the paper sees no change: the slope of all samples over D.
+fn plateau(points: &[Point], finding: impl Fn(&str, &str, f64, Verdict, String) -> Finding) -> Finding {
+    let samples = points.iter().filter(|point| point.intensity >= 10.0);
+    let all: Vec<_> =
+        samples.flat_map(|point| point.samples.iter().map(|sample| (point.intensity, sample.voltage_gain))).collect();
+    let (slope, error) = slope(&all);
+    let holds = slope.abs() <= TWO_SIDED * error;
+    let verdict = if holds { Verdict::Agrees } else { Verdict::Explained };
+    let reason = format!(
+        "the paper: almost the same; standard error of the slope {error:.1}, {}",
+        if holds {
+            "no trend beyond 1.96 of them"
+        } else {
+            "a trend: an ever whiter force drives the cylinder ever slower"
+        }
+    );
+    finding("slope of <U> over D, D = 10 to 100", "V/s", slope, verdict, reason)
+}
+
+fn sheet(points: &[Point]) -> Sheet {
+    let columns = [
+        "D (1)",
+        "mean <U> (V/s)",
+        "95 % from (V/s)",
+        "95 % to (V/s)",
+        "standard error (V/s)",
+        "median (V/s)",
+        "impacts (1/s)",
+    ];
+    let row = |point: &Point| {
+        let Summary { mean, interval: [low, high], standard_error, median } = point.gain;
+        vec![point.intensity, mean, low, high, standard_error, median, point.rate()]
+    };
+    Sheet {
+        name: "fig17".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: points.iter().map(row).collect(),
+    }
+}
+
+fn samples_sheet(points: &[Point]) -> Sheet {
+    let columns = ["D (1)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"].map(str::to_owned).to_vec();
+    let rows = points.iter().enumerate().flat_map(|(index, point)| {
+        point.samples.iter().enumerate().map(move |(sample, averages)| {
+            let seed = (1000 * index + sample + 1) as f64;
+            vec![point.intensity, sample as f64, seed, averages.voltage_gain, f64::from(averages.impacts)]
+        })
+    });
+    Sheet { name: "fig17-samples".to_owned(), columns, rows: rows.collect() }
+}
+
+fn text(samples: usize) -> Vec<String> {
+    vec![
+        format!(
+            "F = A cos(2 pi f0 t + sigma xi), a fresh Gaussian xi every 10 us (the paper's time step), D = sigma^2. {samples} \
+             samples a point; the paper has 100. Sample k of point j (both from 0) runs with excitation.seed = 1000 j + k + 1."
+        ),
+        "A held sample multiplies the mean force by exp(-D/2): at D = 10 less than 1 % of the harmonic is left, and the rest is \
+         noise. The cylinder then drifts as in a random walk, and with r = 1 nothing slows the ball: few samples with fast balls \
+         make the mean, so the median stands beside it."
+            .to_owned(),
+    ]
+}
