@@ -17,6 +17,9 @@ use crate::holds::{BLOCK, Block};
 use crate::parameters::{ContactLaw, NoiseModel};
 
 /// State at the begin of a hold interval.
+///
+/// Position and dz stand side by side: compilers pack neighbours into one vector, and the velocity, which both wait for, must
+/// not wait for them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Boundary {
     /// Number of the interval.
@@ -93,6 +96,9 @@ impl Pace {
     /// block.
     fn pass(&self, mut from: Boundary, (block, place): (&Block, usize)) -> Boundary {
         let (near, doubt) = (self.near(&from), self.doubt());
+        if self.resting.is_none() && from.dz.abs() >= near {
+            return from;
+        }
         let mut external = self.by(from.external);
         for (velocity, position) in block.velocity[place..].iter().zip(&block.position[place..]) {
             let next = self.after(&from, velocity + external[0], position + external[1]);
