@@ -6,6 +6,7 @@
 //! - [`cosim`] couples the harvester FMU with a circuit and records what happens;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] holds both, and the closed forms of the paper, against each other;
+//! - [`paper`] reproduces every table and figure of the paper;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`cli`] is the command-line tool.
 
@@ -15,5 +16,6 @@ pub mod crosscheck;
 pub mod fmi;
 pub mod ngspice;
 pub mod package;
+pub mod paper;
 pub mod report;
 pub mod scenario;

@@ -1,6 +1,6 @@
 //! What a figure shows: panels, series, reference lines.
 
-/// A column of panels, rendered by [`render_svg`](super::render_svg).
+/// Panels, rendered by [`render_svg`](super::render_svg).
 #[derive(Debug, Clone)]
 pub struct Figure<'a> {
     /// Drawn above the panels, and the accessible name; an empty title takes no space.
@@ -9,14 +9,16 @@ pub struct Figure<'a> {
     pub caption: String,
     /// Nominal width in px; the SVG scales with its container.
     pub width: f64,
-    /// From top to bottom.
+    /// Panels that stand side by side; 1 unless said otherwise.
+    pub columns: usize,
+    /// Row by row, from left to right.
     pub panels: Vec<Panel<'a>>,
 }
 
 impl<'a> Figure<'a> {
     /// A figure of 720 px without panels.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), caption: String::new(), width: 720.0, panels: Vec::new() }
+        Self { title: title.into(), caption: String::new(), width: 720.0, columns: 1, panels: Vec::new() }
     }
 
     /// Sets the long description.
@@ -26,7 +28,21 @@ impl<'a> Figure<'a> {
         self
     }
 
-    /// Adds a panel below the others.
+    /// Puts `columns` panels side by side.
+    #[must_use]
+    pub fn columns(mut self, columns: usize) -> Self {
+        self.columns = columns;
+        self
+    }
+
+    /// Sets the nominal width in px.
+    #[must_use]
+    pub fn width(mut self, width: f64) -> Self {
+        self.width = width;
+        self
+    }
+
+    /// Adds a panel behind the others.
     #[must_use]
     pub fn panel(mut self, panel: Panel<'a>) -> Self {
         self.panels.push(panel);
@@ -55,6 +71,18 @@ pub struct Panel<'a> {
     pub series: Vec<Series<'a>>,
     /// Horizontal reference lines.
     pub lines: Vec<ReferenceLine>,
+    /// Areas between two curves, drawn below the series.
+    pub bands: Vec<Band<'a>>,
+    /// Vertical bars, such as confidence intervals, drawn in the colour of their series.
+    pub bars: Vec<Bars<'a>>,
+    /// A quantity over the plane, drawn below everything else.
+    pub map: Option<HeatMap<'a>>,
+    /// Logarithmic x axis: values of 0 and below leave a gap.
+    pub log_x: bool,
+    /// Logarithmic y axis: values of 0 and below leave a gap.
+    pub log_y: bool,
+    /// One unit of x is as long as one of y: for drawings to scale. The height follows from the ranges.
+    pub equal_aspect: bool,
 }
 
 impl<'a> Panel<'a> {
@@ -70,6 +98,12 @@ impl<'a> Panel<'a> {
             height: 130.0,
             series: Vec::new(),
             lines: Vec::new(),
+            bands: Vec::new(),
+            bars: Vec::new(),
+            map: None,
+            log_x: false,
+            log_y: false,
+            equal_aspect: false,
         }
     }
 
@@ -115,6 +149,92 @@ impl<'a> Panel<'a> {
         self.lines.push(ReferenceLine { label: label.into(), value });
         self
     }
+}
+
+impl<'a> Panel<'a> {
+    /// Adds the area between two curves, in the colour of palette entry `color`; an empty label keeps it out of the legend.
+    #[must_use]
+    pub fn band(mut self, label: impl Into<String>, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
+        self.bands.push(Band { label: label.into(), limits, color });
+        self
+    }
+
+    /// Adds vertical bars in the colour of palette entry `color`.
+    #[must_use]
+    pub fn bars(mut self, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
+        self.bars.push(Bars { limits, color });
+        self
+    }
+
+    /// Sets the map.
+    #[must_use]
+    pub fn map(mut self, map: HeatMap<'a>) -> Self {
+        self.map = Some(map);
+        self
+    }
+
+    /// Makes the x axis logarithmic.
+    #[must_use]
+    pub fn log_x(mut self) -> Self {
+        self.log_x = true;
+        self
+    }
+
+    /// Makes the y axis logarithmic.
+    #[must_use]
+    pub fn log_y(mut self) -> Self {
+        self.log_y = true;
+        self
+    }
+
+    /// Draws x and y to one scale.
+    #[must_use]
+    pub fn equal_aspect(mut self) -> Self {
+        self.equal_aspect = true;
+        self
+    }
+}
+
+/// The area between two curves.
+#[derive(Debug, Clone)]
+pub struct Band<'a> {
+    /// Text in the legend; empty for none.
+    pub label: String,
+    /// x, lower and upper y, by ascending x.
+    pub limits: &'a [(f64, f64, f64)],
+    /// Index into the palette.
+    pub color: usize,
+}
+
+/// Vertical bars.
+#[derive(Debug, Clone)]
+pub struct Bars<'a> {
+    /// x, lower and upper y.
+    pub limits: &'a [(f64, f64, f64)],
+    /// Index into the palette.
+    pub color: usize,
+}
+
+/// A quantity over the plane, cell by cell.
+#[derive(Debug, Clone)]
+pub struct HeatMap<'a> {
+    /// Middles of the columns of cells, ascending and evenly spaced (by logarithm on a logarithmic axis).
+    pub xs: &'a [f64],
+    /// Middles of the rows likewise.
+    pub ys: &'a [f64],
+    /// One value a cell, row by row from the lowest y; NaN leaves a cell empty.
+    pub values: &'a [f64],
+    /// What the colours mean.
+    pub scale: Scale,
+}
+
+/// What the colours of a map mean.
+#[derive(Debug, Clone)]
+pub enum Scale {
+    /// A quantity with this label and unit: one hue of growing depth; two, white at 0, if values have both signs.
+    Quantity(String),
+    /// Values 0, 1, 2, ... stand for these names, each in a colour of the palette.
+    Kinds(Vec<String>),
 }
 
 /// A horizontal reference line.
@@ -212,4 +332,10 @@ pub enum Style {
     Steps,
     /// A dot at each point.
     Markers,
+    /// A small dot at each point, for clouds of them.
+    Dots,
+    /// A cross at each point.
+    Crosses,
+    /// Straight dashed lines from point to point.
+    Dashed,
 }

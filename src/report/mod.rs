@@ -20,6 +20,7 @@
 mod axis;
 mod clip;
 mod draw;
+mod drawing;
 mod error;
 mod figure;
 mod html;
@@ -29,8 +30,9 @@ mod reduce;
 mod svg;
 mod trace;
 
+pub use drawing::Drawing;
 pub use error::ReportError;
-pub use figure::{Data, Figure, Panel, ReferenceLine, Series, Style};
+pub use figure::{Band, Bars, Data, Figure, HeatMap, Panel, ReferenceLine, Scale, Series, Style};
 pub use html::render_html;
 pub use page::{Align, Column, Illustration, Note, NoteKind, Report, Section, Table};
 pub use reduce::reduce;

@@ -1,0 +1,84 @@
+//! What making a table or figure comes to.
+
+use crate::report::{Drawing, Figure, ReportError, Table};
+
+/// A table or figure, reproduced.
+#[derive(Debug, Clone, Default)]
+pub struct Artefact {
+    /// Its numbers beside the paper's: rows of the summary table.
+    pub findings: Vec<Finding>,
+    /// What a reader should know, in paragraphs of plain text.
+    pub text: Vec<String>,
+    /// Tables for the report.
+    pub tables: Vec<Table>,
+    /// Pictures, each a file and a part of the report.
+    pub pictures: Vec<Picture>,
+    /// Data, each a CSV file.
+    pub sheets: Vec<Sheet>,
+}
+
+/// One number of the paper beside ours.
+#[derive(Debug, Clone)]
+pub struct Finding {
+    /// Where the paper has it, e.g. `Table 2, Figure 14`.
+    pub place: String,
+    /// What it is, e.g. `<U>, Eq. (15)`.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// What the paper prints, if it prints a number.
+    pub paper: Option<f64>,
+    /// What comes out here.
+    pub videg: f64,
+    /// How the two go together.
+    pub verdict: Verdict,
+    /// Why, in a few words; empty where there is nothing to explain.
+    pub reason: String,
+}
+
+/// How the paper's number and ours go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within what the paper's digits and method allow.
+    Agrees,
+    /// The motion is chaotic: the paper's value lies within the range of nearby starts.
+    WithinEnsemble,
+    /// They differ, for a reason that is shown.
+    Explained,
+    /// They differ, and the reason is not known.
+    Differs,
+    /// The paper prints no number.
+    Beyond,
+}
+
+/// Columns of numbers that become a CSV file.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Name of the file, without extension.
+    pub name: String,
+    /// Headings with the unit, e.g. `time (s)`.
+    pub columns: Vec<String>,
+    /// One value a column; NaN for an empty cell.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// A figure, drawn.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    /// Name of the file, without extension.
+    pub name: String,
+    /// The drawing.
+    pub drawing: Drawing,
+    /// Text below it, with the parameters.
+    pub caption: String,
+}
+
+impl Picture {
+    /// Draws `figure`.
+    ///
+    /// # Errors
+    /// A figure that makes no sense.
+    pub fn new(name: impl Into<String>, figure: &Figure<'_>, caption: impl Into<String>) -> Result<Self, ReportError> {
+        Ok(Self { name: name.into(), drawing: Drawing::new(figure)?, caption: caption.into() })
+    }
+}
