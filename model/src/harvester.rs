@@ -15,6 +15,7 @@ pub use self::occurrence::{Impact, Occurrence, Peak};
 pub use self::snapshot::Snapshot;
 pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
 
+use self::course::hold_at;
 use self::energy::Ledger;
 use self::events::{Event, Search};
 use self::tangent::Tangent;
@@ -379,13 +380,7 @@ fn first_sample(parameters: &Parameters, start: f64) -> Result<u64, ModelError> 
     if !(start >= -MAX_START && start <= max) {
         return Err(ModelError::Bounds { name: "start time", value: start, unit: "s", min: -MAX_START, max });
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 2^52; negative ones become 0
-    let mut sample = if noisy { (start / parameters.noise_hold) as u64 } else { 0 };
-    // The quotient is rounded, the grid is the product: make sure that the sample's interval ends after the start.
-    while noisy && (sample + 1) as f64 * parameters.noise_hold <= start {
-        sample += 1;
-    }
-    Ok(sample)
+    Ok(if noisy { hold_at(parameters.noise_hold, start) } else { 0 })
 }
 
 /// Phase of the harmonic force under the present noise sample, rad.

@@ -205,12 +205,24 @@ mod tests {
             seed in any::<i32>(), number in 0..1_000_000_u64, intensity in 0.0..10.0,
         ) {
             let force = Force::new(&Parameters { phase_noise: intensity, seed, ..Parameters::default() });
-            let (mut plain, mut wide) = (Block::EMPTY, Block::EMPTY);
-            force.fill_plainly(&mut plain, number);
-            force.fill(&mut wide, number);
-            prop_assert_eq!(plain.velocity.map(f64::to_bits), wide.velocity.map(f64::to_bits));
-            prop_assert_eq!(plain.position.map(f64::to_bits), wide.position.map(f64::to_bits));
+            let mut blocks = [Block::EMPTY, Block::EMPTY, Block::EMPTY];
+            force.fill_plainly(&mut blocks[0], number);
+            force.fill(&mut blocks[1], number);
+            fill_by_four_if_possible(&force, &mut blocks[2], number);
+            let bits = blocks.map(|block| [block.velocity, block.position].map(|list| list.map(f64::to_bits)));
+            prop_assert_eq!(bits[0], bits[1]);
+            prop_assert_eq!(bits[0], bits[2]);
         }
+    }
+
+    fn fill_by_four_if_possible(force: &Force, block: &mut Block, number: u64) {
+        #[cfg(target_arch = "x86_64")]
+        #[allow(unsafe_code)] // as in Force::fill
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just said that it has these instructions.
+            return unsafe { force.fill_by_four(block, number) };
+        }
+        force.fill_plainly(block, number);
     }
 
     #[test]

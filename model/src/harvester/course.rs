@@ -17,16 +17,19 @@ use crate::holds::{BLOCK, Block};
 use crate::parameters::{ContactLaw, NoiseModel};
 
 /// State at the begin of a hold interval.
+///
+/// Position and dz stand side by side: compilers pack neighbours into one vector, and the velocity, which both wait for, must
+/// not wait for them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Boundary {
     /// Number of the interval.
     pub(super) sample: u64,
     /// `z_M`, m.
     position: f64,
-    /// `z_M'`, m/s.
-    velocity: f64,
     /// `z_M` - `z_m`, m.
     dz: f64,
+    /// `z_M'`, m/s.
+    velocity: f64,
     /// External force over M, m/s^2.
     external: f64,
 }
@@ -47,49 +50,69 @@ struct Pace {
 }
 
 impl Pace {
-    /// The begin of the next interval, whose harmonic force changes velocity and position by this much.
+    /// What an external force over M, m/s^2, at the begin of an interval adds to velocity, m/s, and position, m.
+    #[inline]
+    fn by(&self, external: f64) -> [f64; 2] {
+        let (hold, change) = (self.hold, self.rate * self.hold);
+        [hold * (external + change / 2.0), hold * hold * (external / 2.0 + change / 6.0)]
+    }
+
+    /// The begin of the next interval, in which the forces change the velocity by this much, and the position besides.
     #[inline]
     fn after(&self, from: &Boundary, velocity: f64, position: f64) -> Boundary {
-        let Self { hold, rate, .. } = *self;
-        let shift = position + hold * hold * (0.5 * from.external + rate * hold / 6.0);
+        let glide = self.hold * from.velocity;
+        let dz = if self.resting.is_some() { 0.0 } else { (glide - self.hold * self.ball) + position };
         Boundary {
             sample: from.sample + 1,
-            position: from.position + (hold * from.velocity + shift),
-            velocity: from.velocity + (velocity + hold * (from.external + 0.5 * rate * hold)),
-            dz: from.dz + (hold * (from.velocity - self.ball) + shift),
-            external: from.external + hold * rate,
+            position: from.position + (glide + position),
+            velocity: from.velocity + velocity,
+            dz: from.dz + dz,
+            external: from.external + self.hold * self.rate,
         }
     }
 
-    /// The interval with this begin, of `block`, and the next one.
+    /// The begin of the interval after that with this begin, which has this place in `block`.
     fn step(&self, from: &Boundary, (block, place): (&Block, usize)) -> Boundary {
-        let next = self.after(from, block.velocity[place], block.position[place]);
-        if self.resting.is_some() { Boundary { dz: from.dz, ..next } } else { next }
+        let [velocity, position] = self.by(from.external);
+        self.after(from, block.velocity[place] + velocity, block.position[place] + position)
+    }
+
+    /// Goes on from `from`, in `block`, to the begin of interval `target` or of the next block.
+    fn walk(&self, mut from: Boundary, (block, place): (&Block, usize), target: u64) -> Boundary {
+        let mut external = self.by(from.external);
+        for (velocity, position) in block.velocity[place..].iter().zip(&block.position[place..]) {
+            if from.sample == target {
+                break;
+            }
+            from = self.after(&from, velocity + external[0], position + external[1]);
+            if self.rate != 0.0 {
+                external = self.by(from.external);
+            }
+        }
+        from
     }
 
     /// Goes on from `from`, in `block`, to the begin of the first interval in which something might happen, or of the next
     /// block.
     fn pass(&self, mut from: Boundary, (block, place): (&Block, usize)) -> Boundary {
-        let (velocities, positions) = (&block.velocity[place..], &block.position[place..]);
-        let intervals = velocities.iter().zip(positions);
-        if let Some(side) = self.resting {
-            let doubt = self.doubt();
-            for (velocity, position) in intervals {
-                let push = velocity + self.hold * (from.external + 0.5 * self.rate * self.hold);
-                if side.sign() * push <= doubt {
-                    break;
-                }
-                from = Boundary { dz: from.dz, ..self.after(&from, *velocity, *position) };
-            }
+        let (near, doubt) = (self.near(&from), self.doubt());
+        if self.resting.is_none() && from.dz.abs() >= near {
             return from;
         }
-        let near = self.near(&from);
-        for (velocity, position) in intervals {
-            let next = self.after(&from, *velocity, *position);
-            if next.dz.abs() >= near {
+        let mut external = self.by(from.external);
+        for (velocity, position) in block.velocity[place..].iter().zip(&block.position[place..]) {
+            let next = self.after(&from, velocity + external[0], position + external[1]);
+            let doubtful = match self.resting {
+                Some(side) => side.sign() * (velocity + external[0]) <= doubt,
+                None => next.dz.abs() >= near,
+            };
+            if doubtful {
                 break;
             }
             from = next;
+            if self.rate != 0.0 {
+                external = self.by(from.external);
+            }
         }
         from
     }
@@ -106,6 +129,20 @@ impl Pace {
     fn doubt(&self) -> f64 {
         1.001 * self.hold * self.hold * (self.amplitude * self.omega + self.rate.abs())
     }
+}
+
+/// Number of the hold interval of length `hold`, s, that `time`, s, is in; 0 before t = 0.
+pub(super) fn hold_at(hold: f64, time: f64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+    let mut sample = (time / hold) as u64;
+    // The quotient is rounded, the grid is the product.
+    while (sample + 1) as f64 * hold <= time {
+        sample += 1;
+    }
+    while sample > 0 && sample as f64 * hold > time {
+        sample -= 1;
+    }
+    sample
 }
 
 impl Harvester {
@@ -209,10 +246,10 @@ impl Harvester {
         if !self.in_blocks() || self.noise_limit().is_none_or(|limit| time < limit) {
             return;
         }
-        let pace = self.pace();
+        let (pace, target) = (self.pace(), hold_at(self.parameters.noise_hold, time));
         let mut boundary = self.next_boundary();
-        while self.hold_start(boundary.sample + 1) <= time {
-            boundary = pace.step(&boundary, self.holds.block(boundary.sample));
+        while boundary.sample < target {
+            boundary = pace.walk(boundary, self.holds.block(boundary.sample), target);
         }
         self.enter(boundary);
     }
@@ -220,11 +257,9 @@ impl Harvester {
     /// Searches the hold intervals ahead for an event, block by block, until one begins after `until`, s. If the caller is
     /// to get there, `follow` spares it the way.
     pub(super) fn search_ahead(&mut self, mut boundary: Boundary, until: f64, follow: bool) {
-        let pace = self.pace();
+        let (pace, mut reached) = (self.pace(), None);
         while self.search.found.is_none() && self.hold_start(boundary.sample) <= until {
-            if follow {
-                self.enter(boundary);
-            }
+            reached = Some(boundary);
             let block_end = (boundary.sample / BLOCK as u64 + 1) * BLOCK as u64;
             while boundary.sample < block_end {
                 boundary = pace.pass(boundary, self.holds.block(boundary.sample));
@@ -239,7 +274,10 @@ impl Harvester {
             }
         }
         self.search.ahead = Some(boundary);
-        self.forget_the_way();
+        match reached.filter(|_| follow) {
+            Some(reached) => self.enter(reached),
+            None => self.forget_the_way(),
+        }
     }
 
     /// The event in the hold interval with this begin, in closed form.

@@ -176,6 +176,16 @@ fn impacts_under_an_external_force_and_with_other_hold_times_are_those_of_brute_
 }
 
 #[test]
+fn in_long_hold_intervals_a_ball_that_comes_back_before_the_end_is_not_missed() {
+    let mut tally = Tally::default();
+    for seed in 1..=40 {
+        let p = Parameters { phase_noise: 1.0, noise_hold: 0.05, restitution: 1.0, seed, ..Parameters::default() };
+        compare(&p, [0.0, 0.0], 4.0, &mut tally);
+    }
+    assert!(tally.flights > 500, "{tally:?}");
+}
+
+#[test]
 fn a_ball_at_rest_is_released_as_by_brute_force() {
     let table3 = (Case::find("table3-2hz").unwrap().parameters)();
     for sigma in [0.05, 0.3] {

@@ -1,0 +1,64 @@
+//! Phase noise with the hold time of the paper, over whole runs.
+#![allow(clippy::unwrap_used)] // helpers outside of #[test] functions fail a test, too
+
+use videg_model::{ContactLaw, Harvester, Parameters};
+
+/// Fig. 17: gamma = 5, `f_0` = 2 Hz, r = 1, D = sigma^2.
+fn fig17(intensity: f64, seed: i32) -> Parameters {
+    let p = Parameters { restitution: 1.0, phase_noise: intensity.sqrt(), seed, ..Parameters::default() };
+    Parameters { amplitude: p.amplitude * 5.0 / p.normalized_amplitude(), ..p }
+}
+
+/// Mean of the voltage gain, V/s, over runs of 100 s with `seeds` seeds.
+fn mean_gain(intensity: f64, seeds: i32) -> f64 {
+    let gain = |seed| {
+        let mut harvester = Harvester::new(&fig17(intensity, seed), 0.0).unwrap();
+        harvester.advance(100.0).unwrap();
+        harvester.totals().voltage_gain / 100.0
+    };
+    (1..=seeds).map(gain).sum::<f64>() / f64::from(seeds)
+}
+
+#[test]
+fn the_voltage_gain_falls_with_the_intensity_of_the_noise_as_in_fig_17() {
+    // A single run with noise deviates by as much as the mean: a heavy tail of runs in which elastic impacts gain energy.
+    let [none, weak, strong] = [(0.0, 1), (4.0, 8), (10.0, 8)].map(|(intensity, seeds)| mean_gain(intensity, seeds));
+    assert!((none - 31_700.0).abs() < 1_500.0, "{none} V/s without noise");
+    assert!((3_000.0..26_000.0).contains(&weak), "{weak} V/s at D = 4");
+    assert!((500.0..20_000.0).contains(&strong), "{strong} V/s at D = 10");
+}
+
+#[test]
+fn the_cylinder_has_the_diffusion_of_white_noise_under_a_random_phase() {
+    // At large sigma the phase is as good as uniform in each hold interval, and the velocity is a random walk of steps
+    // A / M h cos(phase), of variance (A h / M)^2 / 2 each.
+    let runs = 400;
+    let (p, until) = (Parameters { phase_noise: 20.0, ..Parameters::default() }, 0.05);
+    let step = p.amplitude / p.cylinder_mass * p.noise_hold;
+    let expected = 0.5 * step * step * until / p.noise_hold;
+    let velocity = |seed| {
+        let mut harvester = Harvester::new(&Parameters { seed, ..p }, 0.0).unwrap();
+        harvester.advance(until).unwrap();
+        harvester.cylinder_velocity()
+    };
+    let variance = (0..runs).map(|seed| velocity(seed).powi(2)).sum::<f64>() / f64::from(runs);
+    // Five standard errors of a variance.
+    let allowed = 5.0 * (2.0 / f64::from(runs)).sqrt();
+    assert!((variance / expected - 1.0).abs() < allowed, "{variance:e} against {expected:e}");
+}
+
+#[test]
+fn a_seed_gives_the_same_samples_whichever_law_moves_the_ball() {
+    let p = Parameters { phase_noise: 1.0, ..Parameters::default() };
+    let compliant = Parameters { contact_law: ContactLaw::Compliant, ..p };
+    let [mut blocks, mut one_by_one] = [p, compliant].map(|p| Harvester::new(&p, 0.0).unwrap());
+    for k in 1..=20 {
+        let time = 1e-3 * f64::from(k) + 3e-6;
+        for harvester in [&mut blocks, &mut one_by_one] {
+            harvester.advance(time).unwrap();
+        }
+        let difference = blocks.cylinder_position() - one_by_one.cylinder_position();
+        assert!(difference.abs() < 1e-15, "{difference:e} m at {time} s");
+        assert!((blocks.cylinder_acceleration() - one_by_one.cylinder_acceleration()).abs() < 1e-13);
+    }
+}
