@@ -144,9 +144,11 @@ fn finding(case: &Case, basins: &Basins) -> Finding {
     let gains: Vec<f64> = basins.attractors.iter().map(|(attractor, _)| attractor.gain).collect();
     let [low, high] = [f64::min, f64::max].map(|pick| gains.iter().copied().reduce(pick).unwrap_or(f64::NAN));
     let never = basins.attractors.iter().filter(|(attractor, _)| attractor.recurrence.is_none());
-    let share: f64 = never.map(|(_, share)| 100.0 * share).sum();
+    let share = never.fold(0.0, |sum, (_, share)| sum + 100.0 * share);
+    // The paper: the difference due to initial conditions becomes almost invisible.
+    let alike = high - low <= 0.01 * high;
     let reason = format!(
-        "<U> from {low:.0} to {high:.0} V/s; {share:.1} % of the starts lead to one that does not come back in {} periods",
+        "the paper: almost no difference; <U> from {low:.0} to {high:.0} V/s; {share:.1} % of the starts lead to one that does not come back in {} periods",
         TAKEN / 2
     );
     Finding {
@@ -155,7 +157,7 @@ fn finding(case: &Case, basins: &Basins) -> Finding {
         unit: "1".to_owned(),
         paper: None,
         videg: gains.len() as f64,
-        verdict: Verdict::Beyond,
+        verdict: if alike { Verdict::Agrees } else { Verdict::Differs },
         reason,
     }
 }
@@ -225,8 +227,8 @@ fn text() -> Vec<String> {
              of the periods within 0.1 mm; motions that never come back are one within 2 % and 5 mm. The cylinder is symmetric: a motion that is not has a mirror image half a period \
              later, with the same <U>."
         ),
-        "The paper says that with inelastic impacts the difference due to initial conditions becomes almost invisible. The maps \
-         show for which r that holds."
+        "The paper says that with inelastic impacts the difference due to initial conditions becomes almost invisible. In <U> it \
+         does: what the starts decide is whether the motion or its mirror image comes about."
             .to_owned(),
     ]
 }

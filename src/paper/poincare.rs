@@ -62,7 +62,6 @@ pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
         let style = if section.orbit.recurrence(TOLERANCE).is_some() { Style::Markers } else { Style::Dots };
         let panel = Panel::new(section.title, "z_M - z_m (mm)", "z_M' - z_m' (m/s)")
             .height(300.0)
-            .x_range(-22.5, 22.5)
             .series(Series::points("", dots).style(style));
         figure = figure.panel(panel);
     }
