@@ -1,5 +1,5 @@
-//! Trends over excitation and noise, and what lies beyond the paper, through the packaged FMU. All with `Effort::Quick`: fewer
-//! samples and coarser grids than in the report.
+//! Trends over excitation and noise, and what lies beyond the paper, through the packaged FMU. All with
+//! `Effort::Quick`: fewer samples and coarser grids than in the report.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use std::sync::LazyLock;
@@ -69,8 +69,8 @@ fn phase_noise_takes_most_of_the_output() {
     assert!(strong < 0.6 * weak && strong > 0.0, "{weak} {strong}");
 }
 
-/// The voltage of the closed form, and the surplus of the paper's circuit, are those of the README's energy table: 2911 V,
-/// and -19.445 mJ in 100 s.
+/// The voltage of the closed form, and the surplus of the paper's circuit, are those of the README's energy table: 2911
+/// V, and -19.445 mJ in 100 s.
 #[test]
 fn the_best_voltage_of_a_quick_release_is_that_of_the_closed_form() {
     let tuning = make("tuning");
