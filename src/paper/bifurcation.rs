@@ -74,7 +74,8 @@ impl Diagram {
         self.xs.iter().enumerate().filter(|(index, _)| differs(*index)).map(|(_, &x)| x).collect()
     }
 
-    /// Stretches of the parameter over which the saw-tooth start leads to one number of periods; `None` is no recurrence.
+    /// Stretches of the parameter over which the saw-tooth start leads to one number of periods; `None` is no
+    /// recurrence.
     pub fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {
         let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
         for (&x, orbit) in self.xs.iter().zip(self.ways.iter().flatten()) {
@@ -130,9 +131,9 @@ impl Diagram {
             .panel(panel("(b)", displacement, 240.0).series(dots(1)).series(dots(2)))
             .panel(output);
         let caption = format!(
-            "{} Relative displacement at the start of each period, when the cylinder is at the end of its swing: {TAKEN} periods \
-             after {TRANSIENT}; (a) from the saw-tooth start, (b) each motion going on from the one before along the parameter, \
-             upwards and downwards; (c) <U> of Eq. (15) over the {TAKEN} periods.",
+            "{} Relative displacement at the start of each period, when the cylinder is at the end of its swing: \
+             {TAKEN} periods after {TRANSIENT}; (a) from the saw-tooth start, (b) each motion going on from the one \
+             before along the parameter, upwards and downwards; (c) <U> of Eq. (15) over the {TAKEN} periods.",
             path.caption
         );
         Ok(Picture::new(path.name, &figure, caption)?)

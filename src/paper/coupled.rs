@@ -101,8 +101,8 @@ impl Drive {
 }
 
 impl Driven {
-    /// Net gain, W, of the impacts in the window by the closed form of a quick release at `voltage`, V, from a node that holds
-    /// `idle` further capacitances `C_2`: (`C_3` `U_in` - `C_2` `U_r`) (`U_r` - `U_in`) each.
+    /// Net gain, W, of the impacts in the window by the closed form of a quick release at `voltage`, V, from a node
+    /// that holds `idle` further capacitances `C_2`: (`C_3` `U_in` - `C_2` `U_r`) (`U_r` - `U_in`) each.
     pub fn quick_release(&self, voltage: f64, idle: f64) -> f64 {
         let c2 = self.rest_capacitance;
         let gain = |ratio: &f64| {
@@ -116,8 +116,8 @@ impl Driven {
         self.bias_voltage * self.ratios.iter().copied().fold(1.0, f64::max)
     }
 
-    /// Largest net gain, W, that each impact in the window by itself allows on isolated membranes: constant charge up to
-    /// `U_DE4`, then slow discharge at `C_2`.
+    /// Largest net gain, W, that each impact in the window by itself allows on isolated membranes: constant charge up
+    /// to `U_DE4`, then slow discharge at `C_2`.
     pub fn largest_gain(&self) -> f64 {
         let c2 = self.rest_capacitance;
         let gain = |ratio: &f64| formulas::largest_net_gain(self.bias_voltage, c2, ratio * c2);
@@ -141,7 +141,8 @@ pub fn circuit(topology: Topology, release: Release, voltage: f64, resistance: f
     settings
 }
 
-/// Notes the ledgers at the start of the window, and voltages and impacts in it; impacts within one communication step count as one.
+/// Notes the ledgers at the start of the window, and voltages and impacts in it; impacts within one communication step
+/// count as one.
 struct Books {
     from: f64,
     bias_voltage: f64,

@@ -71,17 +71,19 @@ fn coexistence(path: &Path, diagram: &Diagram) -> Finding {
 
 fn text() -> Vec<String> {
     vec![
-        "The motion is looked at once a period, when the force has its largest value. It counts as periodic if it comes back to \
-         within 1 um after at most 30 periods, all through 60 periods; what does not is chaotic, quasi-periodic or still on its \
-         way. The tables list the stretches that at least four neighbouring values of the parameter share."
+        "The motion is looked at once a period, when the force has its largest value. It counts as periodic if it \
+         comes back to within 1 um after at most 30 periods, all through 60 periods; what does not is chaotic, \
+         quasi-periodic or still on its way. The tables list the stretches that at least four neighbouring values of \
+         the parameter share."
             .to_owned(),
-        "Each diagram is followed three times: from the saw-tooth start of Section 4.2 at each value, and upwards and downwards \
-         with each motion going on from the last state of the one before. Where the three differ, several motions exist \
-         side by side, and it depends on the start which of them comes about: where <U> is the same, they are mirror images \
-         of each other."
+        "Each diagram is followed three times: from the saw-tooth start of Section 4.2 at each value, and upwards and \
+         downwards with each motion going on from the last state of the one before. Where the three differ, several \
+         motions exist side by side, and it depends on the start which of them comes about: where <U> is the same, \
+         they are mirror images of each other."
             .to_owned(),
-        "The largest Lyapunov exponent says how fast neighbouring motions part. It is above 0 for Figure 15, too: with r = 0.3 the \
-         motion does not settle, however long one waits, but wanders in a narrow band, which looks like a slow transient."
+        "The largest Lyapunov exponent says how fast neighbouring motions part. It is above 0 for Figure 15, too: with \
+         r = 0.3 the motion does not settle, however long one waits, but wanders in a narrow band, which looks like a \
+         slow transient."
             .to_owned(),
     ]
 }

@@ -138,8 +138,8 @@ fn picture(halves: &[(Half, Vec<Curve>)]) -> Result<Picture, PaperError> {
         }
         figure = figure.panel(panel);
     }
-    let caption = "Voltage gain <U> of Eq. (15) over 50 to 100 s, r = 1, zero start: (a) over gamma of Eq. (16), (b) over \
-                   f0. Crosses are means over nearby starts, bars their 95 % confidence intervals.";
+    let caption = "Voltage gain <U> of Eq. (15) over 50 to 100 s, r = 1, zero start: (a) over gamma of Eq. (16), (b) \
+                   over f0. Crosses are means over nearby starts, bars their 95 % confidence intervals.";
     Ok(Picture::new("fig16", &figure, caption)?)
 }
 
@@ -178,13 +178,14 @@ fn falls(points: &[(f64, Summary)]) -> usize {
 
 fn text(starts: usize) -> Vec<String> {
     vec![
-        "The paper's text names neither the frequencies and amplitudes of its curves nor the ends of its axes: gamma from 1 to \
-         10 (below 0.5 a membrane never reaches the ball, which starts in the middle) and f0 from 1 to 5 Hz are chosen here."
+        "The paper's text names neither the frequencies and amplitudes of its curves nor the ends of its axes: gamma \
+         from 1 to 10 (below 0.5 a membrane never reaches the ball, which starts in the middle) and f0 from 1 to 5 Hz \
+         are chosen here."
             .to_owned(),
         format!(
-            "With r = 1 the motion is chaotic, and one run is one draw. Each point is the mean over {starts} runs whose balls \
-             start at velocities within 1e-6 m/s about zero, with the 95 % bootstrap interval of that mean. Rising is \
-             judged by Spearman's rank correlation of the means."
+            "With r = 1 the motion is chaotic, and one run is one draw. Each point is the mean over {starts} runs \
+             whose balls start at velocities within 1e-6 m/s about zero, with the 95 % bootstrap interval of that \
+             mean. Rising is judged by Spearman's rank correlation of the means."
         ),
     ]
 }

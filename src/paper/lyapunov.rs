@@ -8,10 +8,10 @@ const DISTANCE: f64 = 1e-9;
 /// Distance, m, below which nothing but rounding is left of it.
 const NOTHING: f64 = 1e-17;
 
-/// The largest Lyapunov exponent, 1/s, along `periods` that go on from the end of `orbit`: the mean growth, by logarithm, of
-/// the distance to a neighbour, which is brought back along its direction after each period (Benettin's method). Above 0 the
-/// motion is chaotic, below 0 it takes its neighbours in. Where `orbit` rests on a membrane at the start of a period its
-/// neighbour is put there, too.
+/// The largest Lyapunov exponent, 1/s, along `periods` that go on from the end of `orbit`: the mean growth, by
+/// logarithm, of the distance to a neighbour, which is brought back along its direction after each period (Benettin's
+/// method). Above 0 the motion is chaotic, below 0 it takes its neighbours in. Where `orbit` rests on a membrane at the
+/// start of a period its neighbour is put there, too.
 ///
 /// # Errors
 /// What the FMU says.

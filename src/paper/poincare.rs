@@ -62,12 +62,12 @@ pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
         let style = if section.orbit.recurrence(TOLERANCE).is_some() { Style::Markers } else { Style::Dots };
         let panel = Panel::new(section.title, "z_M - z_m (mm)", "z_M' - z_m' (m/s)")
             .height(300.0)
-            .x_range(-22.5, 22.5)
             .series(Series::points("", dots).style(style));
         figure = figure.panel(panel);
     }
-    let caption = "Relative displacement and velocity at the start of each period, when the force has its largest value, from 100 s \
-                   on: thousands of periods of Figures 13 and 15, and 100 of Figure 14, which meets two points again and again.";
+    let caption = "Relative displacement and velocity at the start of each period, when the force has its largest \
+                   value, from 100 s on: thousands of periods of Figures 13 and 15, and 100 of Figure 14, which meets \
+                   two points again and again.";
     Ok(Picture::new("poincare", &figure, caption)?)
 }
 

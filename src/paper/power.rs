@@ -1,5 +1,5 @@
-//! Beyond the paper: power and power density against the electromagnetic harvester of Section 5.3, by Eq. (14) and by what a
-//! user gains.
+//! Beyond the paper: power and power density against the electromagnetic harvester of Section 5.3, by Eq. (14) and by
+//! what a user gains.
 
 use videg_circuit::{Release, Topology};
 use videg_model::{Limit, Membrane, Parameters};
@@ -13,8 +13,8 @@ use crate::report::{Column, Figure, Panel, Table};
 const CASES: [(&str, &str); 2] = [("table3-2hz", "2 Hz"), ("table3-5hz", "5 Hz")];
 /// Window of the averages, s: the paper's.
 const WINDOW: [f64; 2] = [50.0, 100.0];
-/// Largest error of C(t) within a communication step, relative to its value: a thousandfold finer one moves the net gains by
-/// 0.2 % at most.
+/// Largest error of C(t) within a communication step, relative to its value: a thousandfold finer one moves the net
+/// gains by 0.2 % at most.
 const TOLERANCE: f64 = 1e-2;
 /// Volume of the device, cm^3, and power density of the electromagnetic one, mW/cm^3 (Section 5.3).
 const VOLUME: f64 = 42.2;
@@ -59,8 +59,8 @@ pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
     })
 }
 
-/// The highest voltage, V, at which the flat film does not break down, by the bounds commonly quoted for VHB 4910. The film is
-/// that of all cases.
+/// The highest voltage, V, at which the flat film does not break down, by the bounds commonly quoted for VHB 4910. The
+/// film is that of all cases.
 fn bearable_voltage() -> f64 {
     /// Any film breaks down at this voltage.
     const HUGE: f64 = 1e9;
@@ -107,7 +107,7 @@ fn findings(case: &str, counts: &[Count], bearable: f64) -> Vec<Finding> {
         let over = count.density() / ELECTROMAGNETIC;
         let strength = if count.voltage > 1.001 * bearable { "the film stands" } else { "within the" };
         let reason = format!(
-            "{over:.3} times the electromagnetic harvester's {ELECTROMAGNETIC} mW/cm^3, at up to {:.1} kV; {strength} {:.1} kV",
+            "{over:.3} times the electromagnetic {ELECTROMAGNETIC} mW/cm^3, at up to {:.1} kV; {strength} {:.1} kV",
             1e-3 * count.voltage,
             1e-3 * bearable
         );
@@ -127,25 +127,26 @@ fn findings(case: &str, counts: &[Count], bearable: f64) -> Vec<Finding> {
 fn text(bearable: f64, highest: f64) -> Vec<String> {
     vec![
         format!(
-            "Table 3 takes P of Eq. (14) for what the harvester puts out. What a user gains is what the load gets less what the \
-             supply gives; here both stand side by side, for a volume of {VOLUME} cm^3, averaged over 50 to 100 s. C(t) is \
-             resolved to {:.0} % by a communication step that adapts: 1 ms would lose a seventh of the energy at 2 Hz.",
+            "Table 3 takes P of Eq. (14) for what the harvester puts out. What a user gains is what the load gets less \
+             what the supply gives; here both stand side by side, for a volume of {VOLUME} cm^3, averaged over 50 to \
+             100 s. C(t) is resolved to {:.0} % by a communication step that adapts: 1 ms would lose a seventh of the \
+             energy at 2 Hz.",
             100.0 * TOLERANCE
         ),
         format!(
-            "Mind the voltages. The ball presses membranes of 8 mm radius in by some 50 mm; C3/C2 goes up to {highest:.0}, the \
-             area ratio to {:.1}, where the film ruptures at 9, and constant charge would reach {:.0} kV, where the flat film \
-             breaks down at {:.1} kV (VHB 4910, as commonly quoted). With a load of 1 Gohm even the paper's circuit gains, \
-             because its membranes rise far above the Zener voltage; with one of 10 kohm, which takes the charge at U_z as \
-             Section 4.1 has it, it loses. What can be held against the electromagnetic harvester, rupture apart, is the last \
-             circuit: a switch at the breakdown voltage.",
+            "Mind the voltages. The ball presses membranes of 8 mm radius in by some 50 mm; C3/C2 goes up to \
+             {highest:.0}, the area ratio to {:.1}, where the film ruptures at 9, and constant charge would reach \
+             {:.0} kV, where the flat film breaks down at {:.1} kV (VHB 4910, as commonly quoted). With a load of 1 \
+             Gohm even the paper's circuit gains, because its membranes rise far above the Zener voltage; with one of \
+             10 kohm, which takes the charge at U_z as Section 4.1 has it, it loses. What can be held against the \
+             electromagnetic harvester, rupture apart, is the last circuit: a switch at the breakdown voltage.",
             highest.sqrt(),
             1e-3 * BIAS * highest,
             1e-3 * bearable
         ),
-        "The circuits do not act back on the ball here (impulsive contacts, as in the paper). The last but one row of the table \
-         is what the membranes take from the ball: a circuit that gains as much as that would change the motion, and its number \
-         is no more than a bound."
+        "The circuits do not act back on the ball here (impulsive contacts, as in the paper). The last but one row of \
+         the table is what the membranes take from the ball: a circuit that gains as much as that would change the \
+         motion, and its number is no more than a bound."
             .to_owned(),
     ]
 }
@@ -194,8 +195,8 @@ fn picture(counts: &[Vec<Count>]) -> Result<Picture, PaperError> {
         }
         figure = figure.panel(panel);
     }
-    let caption = "Power density of the cases of Table 3 by Eq. (14) and as net gain in different circuits, in the order of the \
-                   table; dashed: the electromagnetic harvester of the paper's comparison.";
+    let caption = "Power density of the cases of Table 3 by Eq. (14) and as net gain in different circuits, in the \
+                   order of the table; dashed: the electromagnetic harvester of the paper's comparison.";
     Ok(Picture::new("power", &figure, caption)?)
 }
 

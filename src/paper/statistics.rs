@@ -51,8 +51,8 @@ pub fn rank_correlation(points: &[(f64, f64)]) -> f64 {
     xy / (xx * yy).sqrt()
 }
 
-/// Slope of the straight line through `(x, y)` pairs by least squares, and its standard error from the scatter about the
-/// line.
+/// Slope of the straight line through `(x, y)` pairs by least squares, and its standard error from the scatter about
+/// the line.
 pub fn slope(points: &[(f64, f64)]) -> (f64, f64) {
     let [xx, xy, yy] = moments(points.iter().copied());
     let slope = xy / xx;

@@ -94,8 +94,8 @@ impl Orbit {
         self.flashes.last().copied().unwrap_or(Flash { displacement: f64::NAN, velocity: f64::NAN, gain: f64::NAN })
     }
 
-    /// The smallest number of periods, up to half of those taken, after which the motion comes back to within `tolerance`:
-    /// in displacement, m, and in velocity by that a period's 2 pi-th.
+    /// The smallest number of periods, up to half of those taken, after which the motion comes back to within
+    /// `tolerance`: in displacement, m, and in velocity by that a period's 2 pi-th.
     pub fn recurrence(&self, tolerance: f64) -> Option<usize> {
         let flashes = &self.flashes;
         let near = |a: &Flash, b: &Flash| {

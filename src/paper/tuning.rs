@@ -8,8 +8,8 @@ use crate::report::{Figure, HeatMap, Panel, Scale, Series, Style};
 
 /// Window of the averages, s: Figure 14 is periodic by then.
 const WINDOW: [f64; 2] = [20.0, 60.0];
-/// Largest error of C(t) within a communication step, relative to its value: a thousandfold finer one moves the net gain of
-/// the better circuit by less than 0.2 %.
+/// Largest error of C(t) within a communication step, relative to its value: a thousandfold finer one moves the net
+/// gain of the better circuit by less than 0.2 %.
 const TOLERANCE: f64 = 1e-2;
 /// The paper's voltage of release, V (Section 4.1), and a load: the paper gives none.
 const PAPER: [f64; 2] = [2000.0, 1e9];
@@ -115,7 +115,7 @@ fn findings(maps: &[Map; 2], driven: &Driven) -> Vec<Finding> {
     let mut findings = Vec::new();
     if let Some(power) = driven.power.first() {
         let reason = format!(
-            "at U_z = 2000 V and 1 Gohm; P of Eq. (14) is {:.1} uW, but the Zener burns {:.1} uW of what the supply gives",
+            "at U_z = 2000 V and 1 Gohm; P of Eq. (14) is {:.1} uW, but the Zener burns {:.1} uW of the supply's",
             1e6 * driven.eq14,
             1e6 * power.zener
         );
@@ -151,19 +151,19 @@ fn text(maps: &[Map; 2], driven: &Driven) -> Vec<String> {
     let [_, better] = maps;
     let ([voltage, load, gain], closed) = (better.best, driven.best_voltage(0.0));
     vec![
-        "Net gain is what the load gets less what the supply gives. The harvester FMU drives all circuits of a row of the map in \
-         one co-simulation of the case of Figure 14, averaged over 20 to 60 s; diodes and switches are ideal. C(t) does not \
-         depend on the circuit."
+        "Net gain is what the load gets less what the supply gives. The harvester FMU drives all circuits of a row of \
+         the map in one co-simulation of the case of Figure 14, averaged over 20 to 60 s; diodes and switches are \
+         ideal. C(t) does not depend on the circuit."
             .to_owned(),
-        "The paper's circuit gains nowhere: its Zener burns U_z for each charge that passes, for which the supply gave U_in, and \
-         U_z is at least U_in. What is left for the load, U_DE4 - U_z, would have to exceed U_in. The best that can be \
-         done with it is not to release at all."
+        "The paper's circuit gains nowhere: its Zener burns U_z for each charge that passes, for which the supply gave \
+         U_in, and U_z is at least U_in. What is left for the load, U_DE4 - U_z, would have to exceed U_in. The best \
+         that can be done with it is not to release at all."
             .to_owned(),
         format!(
-            "The closed form U_in (C3/C2 + 1)/2 = {closed:.0} V is for a load that takes the charge as fast as the membrane \
-             gives it, at the voltage of release. A larger load lets the voltage rise to U_DE4 first and takes the charge slowly, \
-             from above: with {load:.1e} ohm, behind a switch at {voltage:.0} V, the gain is {gain:.1} uW in place of {:.1} uW. A \
-             still larger load does not get the charge before the next impact.",
+            "The closed form U_in (C3/C2 + 1)/2 = {closed:.0} V is for a load that takes the charge as fast as the \
+             membrane gives it, at the voltage of release. A larger load lets the voltage rise to U_DE4 first and \
+             takes the charge slowly, from above: with {load:.1e} ohm, behind a switch at {voltage:.0} V, the gain is \
+             {gain:.1} uW in place of {:.1} uW. A still larger load does not get the charge before the next impact.",
             better.quick[2]
         ),
     ]
@@ -193,8 +193,8 @@ fn picture(grid: &Grid, maps: &[Map; 2]) -> Result<Picture, PaperError> {
         };
         figure = figure.panel(panel);
     }
-    let caption = "Net gain, load less supply, of the paper's circuit and of the better one, case of Figure 14, 20 to 60 s. The \
-                   paper's voltage of release is 2000 V; it gives no load.";
+    let caption = "Net gain, load less supply, of the paper's circuit and of the better one, case of Figure 14, 20 to \
+                   60 s. The paper's voltage of release is 2000 V; it gives no load.";
     Ok(Picture::new("tuning", &figure, caption)?)
 }
 
@@ -224,8 +224,8 @@ fn cuts(grid: &Grid, maps: &[Map; 2], driven: &Driven) -> Result<Picture, PaperE
     let figure = Figure::new("Net gain over the voltage of release")
         .caption("Cuts through the maps of the net gain, beside the closed form.")
         .panel(panel);
-    let caption = "Net gain over the voltage of release, case of Figure 14, 20 to 60 s. The closed form \
-                   (C3 U_in - C2 U_r)(U_r - U_in), summed over the impacts, is that of a load that takes the charge at once.";
+    let caption = "Net gain over the voltage of release, case of Figure 14, 20 to 60 s. The closed form (C3 U_in - C2 \
+                   U_r)(U_r - U_in), summed over the impacts, is that of a load that takes the charge at once.";
     Ok(Picture::new("tuning-cuts", &figure, caption)?)
 }
 
