@@ -193,11 +193,17 @@ impl Book<'_> {
 
     fn text(&self, report: &Path) -> String {
         let mut table = format::table(&["where and what", "unit", "paper", "videg", "deviation", "verdict"]);
-        for finding in self.findings() {
+        for finding in self.findings().filter(|finding| finding.is_compared()) {
             let [place, quantity, unit, paper, videg, deviation, verdict, _] = page::cells(finding);
             table.add_row(format::row(&[format!("{place}: {quantity}"), unit, paper, videg, deviation, verdict]));
         }
         let files: usize = self.chapters.iter().map(|chapter| chapter.files.len()).sum();
-        format!("{table}\n\n{files} files with data and pictures, and the report: {}", report.display())
+        format!(
+            "{table}\n\n{} more numbers, of which the paper says nothing, are in {}; {files} files with data and pictures; \
+             the report: {}",
+            self.findings().filter(|finding| !finding.is_compared()).count(),
+            self.folder.join("summary.csv").display(),
+            report.display()
+        )
     }
 }

@@ -25,6 +25,8 @@ impl Chapter {
     pub fn new(name: &'static str, title: &'static str, artefact: Artefact, files: Vec<PathBuf>) -> Self {
         let Artefact { findings, text, tables, pictures, .. } = artefact;
         let section = text.into_iter().fold(Section::new(title).id(name), Section::text);
+        let numbers = findings.iter().fold(Table::new(columns()), |table, finding| table.row(row(None, finding)));
+        let section = if findings.is_empty() { section } else { section.table(numbers) };
         let section = tables.into_iter().fold(section, Section::table);
         let section =
             pictures.into_iter().fold(section, |section, picture| section.drawing(picture.drawing, picture.caption));
@@ -101,12 +103,11 @@ pub fn write(
 }
 
 fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
-    let columns = HEADINGS
-        .iter()
-        .enumerate()
-        .map(|(k, heading)| if (3..=5).contains(&k) { Column::numbers(*heading) } else { Column::words(*heading) });
-    let rows = chapters.iter().flat_map(|chapter| chapter.findings.iter().map(move |finding| row(chapter, finding)));
-    let table = rows.fold(Table::new(columns), Table::row);
+    let rows = chapters.iter().flat_map(|chapter| {
+        let compared = chapter.findings.iter().filter(|finding| finding.is_compared());
+        compared.map(|finding| row(Some(chapter.name), finding))
+    });
+    let table = rows.fold(Table::new(columns()), Table::row);
     let mut section = Section::new("Summary").id("summary").table(table);
     if quick {
         section = section.warning("Made with --quick: the large ensembles have a tenth of their samples.");
@@ -114,8 +115,15 @@ fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
     warnings.iter().cloned().fold(section, Section::warning)
 }
 
-/// The row of a finding, with a link to its chapter and the verdict as a badge.
-fn row(chapter: &Chapter, finding: &Finding) -> [Cell; 8] {
+fn columns() -> impl Iterator<Item = Column> {
+    ["where", "quantity", "paper", "videg", "deviation", "verdict", "reason"].into_iter().map(|heading| {
+        let number = ["paper", "videg", "deviation"].contains(&heading);
+        if number { Column::numbers(heading) } else { Column::words(heading) }
+    })
+}
+
+/// The row of a finding, with a link to the chapter of this id if there is one, and the verdict as a badge.
+fn row(chapter: Option<&str>, finding: &Finding) -> [Cell; 7] {
     let [place, quantity, unit, paper, videg, deviation, verdict, reason] = cells(finding);
     let tone = match finding.verdict {
         Verdict::Agrees => Tone::Good,
@@ -124,16 +132,14 @@ fn row(chapter: &Chapter, finding: &Finding) -> [Cell; 8] {
         Verdict::Differs => Tone::Bad,
         Verdict::Beyond => Tone::Neutral,
     };
-    let words = |text: String| Cell::from(text);
     [
-        Cell::link(place, chapter.name),
-        words(quantity),
-        words(unit),
-        words(paper),
-        words(videg),
-        words(deviation),
+        chapter.map_or_else(|| Cell::from(place.clone()), |chapter| Cell::link(place.clone(), chapter)),
+        Cell::from(if unit == "1" { quantity } else { format!("{quantity} ({unit})") }),
+        Cell::from(paper),
+        Cell::from(videg),
+        Cell::from(deviation),
         Cell::badge(verdict, tone),
-        words(reason),
+        Cell::from(reason),
     ]
 }
 

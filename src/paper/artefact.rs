@@ -38,6 +38,13 @@ pub struct Finding {
     pub reason: String,
 }
 
+impl Finding {
+    /// Whether the paper says something that it can be compared with.
+    pub fn is_compared(&self) -> bool {
+        self.verdict != Verdict::Beyond
+    }
+}
+
 /// How the paper's number and ours go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
