@@ -33,7 +33,7 @@ impl Case {
         ),
         figure("fig13", "zero start, A = 0.5 N, r = 1: chaotic", || zero_start(0.5, 1.0), Some(6989.0)),
         figure("fig14", "saw-tooth start, A = 0.5 N, r = 0.6: periodic", || saw_tooth(0.5, 0.6), Some(8079.0)),
-        figure("fig15", "saw-tooth start, A = 0.5 N, r = 0.3: slow transient", || saw_tooth(0.5, 0.3), Some(8652.0)),
+        figure("fig15", "saw-tooth start, A = 0.5 N, r = 0.3: weakly chaotic", || saw_tooth(0.5, 0.3), Some(8652.0)),
         flashlight("table3-2hz", "size of the electromagnetic flashlight, 2 Hz", || flashlight_sized(2.0), 0.061),
         flashlight("table3-5hz", "size of the electromagnetic flashlight, 5 Hz", || flashlight_sized(5.0), 0.132),
     ];

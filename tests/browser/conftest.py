@@ -28,6 +28,8 @@ def run(*command):
 def make_report(kind, folder):
     if kind == "figures":
         run("--example", "figures", "--", str(folder / "report.html"))
+    elif kind == "reproduce":
+        run("--", "reproduce", "--quick", "all", "--output", str(folder))
     else:
         run("--", "cosim", "--until", "10", "--output", str(folder))
     return folder / "report.html"
@@ -36,13 +38,13 @@ def make_report(kind, folder):
 def kinds():
     """Of the reports to test: those of VIDEG_REPORTS, paths with colons between, or those that the tests make."""
     given = os.environ.get("VIDEG_REPORTS")
-    return given.split(":") if given else ["figures", "cosim"]
+    return given.split(":") if given else ["figures", "cosim", "reproduce"]
 
 
 @pytest.fixture(scope="session", params=kinds())
 def report(request, tmp_path_factory):
     """Path of a report, and a name for it."""
-    if request.param in ("figures", "cosim"):
+    if request.param in ("figures", "cosim", "reproduce"):
         return make_report(request.param, tmp_path_factory.mktemp(request.param)), request.param
     path = Path(request.param).resolve()
     assert path.is_file(), f"{path} is no file"
