@@ -24,20 +24,25 @@ fn run(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// What the paper prints in Tables 2 and 3, beside what comes out here.
+/// What the paper prints in Tables 2 and 3, beside what comes out here. The chaotic cases are left to the text: a last bit,
+/// which differs between C libraries, takes them elsewhere.
 fn paper_table() -> String {
-    let mut table = String::from("\n| where | quantity | paper | videg | deviation | verdict |\n|---|---|---|---|---|---|\n");
+    let mut table =
+        String::from("\n| where | quantity | paper | videg | deviation | verdict |\n|---|---|---|---|---|---|\n");
     let result = run(&["reproduce", "--quick", "table2", "table3"]);
     let items = result["items"].as_array().unwrap();
     for finding in items.iter().flat_map(|item| item["findings"].as_array().unwrap()) {
-        let Some(paper) = finding["paper"].as_f64() else { continue };
+        let chaotic = ["Table 2, Figure 11", "Table 2, Figure 12", "Table 2, Figure 13"]
+            .contains(&finding["place"].as_str().unwrap());
+        let Some(paper) = finding["paper"].as_f64().filter(|_| !chaotic) else { continue };
         let found = finding["videg"].as_f64().unwrap();
         let unit = finding["unit"].as_str().unwrap();
         let shown = if unit == "V/s" { format!("{found:.1}") } else { format!("{found:.5}") };
         let text = |key: &str| finding[key].as_str().unwrap().replace("<U>", "`<U>`");
         let deviation = 100.0 * finding["deviation"].as_f64().unwrap();
         let (place, quantity, verdict) = (text("place"), text("quantity"), text("verdict"));
-        writeln!(table, "| {place} | {quantity}, {unit} | {paper} | {shown} | {deviation:+.3} % | {verdict} |").unwrap();
+        writeln!(table, "| {place} | {quantity}, {unit} | {paper} | {shown} | {deviation:+.3} % | {verdict} |")
+            .unwrap();
     }
     table
 }
