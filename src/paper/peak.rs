@@ -29,7 +29,7 @@ pub(super) fn largest(workshop: &Workshop<'_>, case: &str, [from, to]: [f64; 2])
     let mut time = from;
     instance.do_step(0.0, from)?;
     while time < to {
-        let next = next_knot(&instance, &ahead)?.min(to);
+        let next = next_knot(&instance, ahead)?.min(to);
         instance.do_step(time, next - time)?;
         time = next;
         let mut values = [0.0; 6];
@@ -44,8 +44,8 @@ pub(super) fn largest(workshop: &Workshop<'_>, case: &str, [from, to]: [f64; 2])
     Ok(largest)
 }
 
-fn next_knot(instance: &Instance, ahead: &[u32; 2]) -> Result<f64, PaperError> {
+fn next_knot(instance: &Instance, ahead: [u32; 2]) -> Result<f64, PaperError> {
     let mut times = [0.0; 2];
-    instance.get_real(ahead, &mut times)?;
+    instance.get_real(&ahead, &mut times)?;
     Ok(times[0].min(times[1]))
 }

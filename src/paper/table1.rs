@@ -104,8 +104,10 @@ fn stages(workshop: &Workshop<'_>) -> Result<[Stage; 4], PaperError> {
     ])
 }
 
-/// What the columns are: heading with unit, and the value in it.
-const COLUMNS: [(&str, fn(&Stage) -> f64); 6] = [
+/// A heading with unit, and the value under it.
+type StageColumn = (&'static str, fn(&Stage) -> f64);
+
+const COLUMNS: [StageColumn; 6] = [
     ("radius (mm)", |s| 1e3 * s.radius.unwrap_or(f64::NAN)),
     ("area (mm^2)", |s| 1e6 * s.area),
     ("thickness (mm)", |s| 1e3 * s.thickness),

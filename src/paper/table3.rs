@@ -138,9 +138,8 @@ fn findings(compared: &Compared) -> Vec<Finding> {
         finding("P, Eq. (14)", "W", printed.power, *power),
         finding("power density", "mW/cm^3", printed.density, 1e3 * power / VOLUME),
     ];
-    let mut method = finding("P by the paper's stepping at 1e-5 s", "W", printed.power, method);
-    method.reason = "the method of the paper, not ours".to_owned();
-    findings.push(method);
+    let method = finding("P by the paper's stepping at 1e-5 s", "W", printed.power, method);
+    findings.push(Finding { reason: "the method of the paper, not ours".to_owned(), ..method });
     findings
 }
 
