@@ -173,14 +173,14 @@ fn the_chaotic_cases_have_one_distribution() {
     for case in ["fig11", "fig12 (", "fig13"] {
         let gains = column(nearby, case);
         let mean = gains.iter().sum::<f64>() / gains.len() as f64;
-        // 40 starts: the standard error of their mean is below 50 V/s.
-        assert_relative_eq!(mean, 7043.0, max_relative = 0.025);
+        // 200 starts: the standard error of their mean is some 20 V/s.
+        assert_relative_eq!(mean, 7043.0, max_relative = 0.01);
         pooled.extend(gains);
     }
     pooled.sort_by(f64::total_cmp);
-    assert_eq!(pooled.len(), 120);
-    assert_relative_eq!(pooled[6], 6825.0, max_relative = 0.02);
-    assert_relative_eq!(pooled[113], 7270.0, max_relative = 0.02);
+    assert_eq!(pooled.len(), 600);
+    assert_relative_eq!(pooled[30], 6825.0, max_relative = 0.02);
+    assert_relative_eq!(pooled[569], 7270.0, max_relative = 0.02);
 }
 
 #[test]
@@ -189,7 +189,8 @@ fn both_rules_of_figure_12_stand_side_by_side() {
     assert_relative_eq!(free.videg, 10_490.0, max_relative = 2e-3);
     let nearby = sheet(&TABLE_2, "table2-nearby");
     let [project, free] = ["fig12 (", "fig12 free"].map(|heading| column(nearby, heading));
-    assert!(project.iter().all(|gain| *gain < 9500.0) && free.iter().all(|gain| *gain > 10_400.0));
+    let calm = project.iter().filter(|gain| **gain < 9500.0).count();
+    assert!(calm >= 190 && free.iter().all(|gain| *gain > 10_400.0), "{calm}");
 }
 
 #[test]

@@ -103,6 +103,45 @@ fn a_name_that_does_not_exist_is_an_error_with_a_hint_and_nothing_is_written() {
 }
 
 #[test]
+fn without_ngspice_only_the_crosscheck_by_name_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+        command.args(["reproduce", name, "--json", "--output"]).arg(folder.path()).env("VIDEG_NGSPICE", "/nowhere");
+        command.output().unwrap()
+    };
+    let named = run("crosscheck");
+    assert_eq!(named.status.code(), Some(2));
+    assert!(String::from_utf8(named.stderr).unwrap().contains("/nowhere"));
+    assert_eq!(run("table1").status.code(), Some(0));
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes_of_data_on_any_number_of_cores() {
+    let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let items = ["fig11", "fig16", "table1", "--quick"];
+    let cores = std::thread::available_parallelism().unwrap().get();
+    made(folders[0].path(), &items);
+    // One core, where the system can be asked for it.
+    let mut alone = Command::new("taskset");
+    alone.args(["-c", "0", env!("CARGO_BIN_EXE_videg"), "reproduce", "--json", "--output"]).arg(folders[1].path());
+    let alone = alone.args(items).output();
+    if cores == 1 || !alone.is_ok_and(|output| output.status.success()) {
+        made(folders[1].path(), &items);
+    }
+    let mut compared = 0;
+    for entry in fs::read_dir(folders[0].path()).unwrap() {
+        let name = entry.unwrap().file_name();
+        if Path::new(&name).extension().is_some_and(|extension| extension == "csv" || extension == "svg") {
+            let [one, other] = folders.each_ref().map(|folder| fs::read(folder.path().join(&name)).unwrap());
+            assert!(one == other, "{}", name.display());
+            compared += 1;
+        }
+    }
+    assert!(compared >= 8, "{compared} files");
+}
+
+#[test]
 fn a_folder_that_cannot_be_made_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
