@@ -93,7 +93,7 @@ fn net_gain_depends_on_the_circuit_where_eq_14_does_not() {
     let eq14 = [&power.sheets[0].rows[0], &power.sheets[0].rows[6]].map(|row| row[2]);
     assert!((eq14[0] / 0.05306 - 1.0).abs() < 1e-3 && (eq14[1] / 0.13217 - 1.0).abs() < 1e-3, "{eq14:?}");
     assert!(found(&power, "10 kohm").videg < 0.0);
-    let bearable = found(&power, "what the film bears");
+    let bearable = found(&power, "what the film stands");
     assert!(bearable.videg > 0.123 && bearable.reason.contains("within the 11.8 kV"), "{bearable:?}");
 }
 

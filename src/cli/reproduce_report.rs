@@ -108,9 +108,13 @@ fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
         compared.map(|finding| row(Some(chapter.name), finding))
     });
     let table = rows.fold(Table::new(columns()), Table::row);
-    let mut section = Section::new("Summary").id("summary").table(table);
+    let legend = "Verdicts: agrees - within what the paper's digits and method allow or, where it prints no number, what it \
+                  says in words holds; within ensemble - the motion is chaotic, and the paper's value lies within the \
+                  middle 95 % of nearby starts; in the tail - it lies outside of these; explained - the reason beside it \
+                  accounts for the difference. Numbers of which the paper says nothing stand with each figure below.";
+    let mut section = Section::new("Summary").id("summary").text(legend).table(table);
     if quick {
-        section = section.warning("Made with --quick: the large ensembles have a tenth of their samples.");
+        section = section.warning("Made with --quick: fewer samples and coarser grids.");
     }
     warnings.iter().cloned().fold(section, Section::warning)
 }
@@ -128,7 +132,7 @@ fn row(chapter: Option<&str>, finding: &Finding) -> [Cell; 7] {
     let tone = match finding.verdict {
         Verdict::Agrees => Tone::Good,
         Verdict::WithinEnsemble => Tone::Near,
-        Verdict::Explained => Tone::Noted,
+        Verdict::Tail | Verdict::Explained => Tone::Noted,
         Verdict::Differs => Tone::Bad,
         Verdict::Beyond => Tone::Neutral,
     };

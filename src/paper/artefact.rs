@@ -48,10 +48,12 @@ impl Finding {
 /// How the paper's number and ours go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within what the paper's digits and method allow.
+    /// Within what the paper's digits and method allow; where it prints no number, what it says in words holds.
     Agrees,
-    /// The motion is chaotic: the paper's value lies within the range of nearby starts.
+    /// The motion is chaotic: the paper's value lies within the middle 95 % of nearby starts.
     WithinEnsemble,
+    /// The motion is chaotic: the paper's value lies among the outermost of nearby starts, or beyond.
+    Tail,
     /// They differ, for a reason that is shown.
     Explained,
     /// They differ, and the reason is not known.
@@ -66,6 +68,7 @@ impl Verdict {
         match self {
             Self::Agrees => "agrees",
             Self::WithinEnsemble => "within ensemble",
+            Self::Tail => "in the tail",
             Self::Explained => "explained",
             Self::Differs => "differs",
             Self::Beyond => "beyond the paper",

@@ -63,7 +63,7 @@ impl Attractor {
         match self.recurrence {
             Some(1) => "1 period".to_owned(),
             Some(n) => format!("{n} periods"),
-            None => "never".to_owned(),
+            None => "aperiodic".to_owned(),
         }
     }
 

@@ -177,7 +177,7 @@ impl Curves {
         let [in_positions, in_relative] = &self.circled;
         if !in_positions.is_empty() {
             let marked = |label: &str, points| Series::points(label, points).style(Style::Markers).color(1);
-            positions = positions.series(marked("as circled in the paper", in_positions));
+            positions = positions.series(marked("of the kind circled in the paper", in_positions));
             relative = relative.series(marked("", in_relative));
         }
         [

@@ -41,21 +41,28 @@ fn low_values(computation: &Computation) -> String {
     let Computation { cases, pooled, .. } = computation;
     let chaotic = || cases.iter().filter(|case| case.is_chaotic());
     let low: Vec<f64> = chaotic().map(|case| case.printed.gain).filter(|gain| *gain < pooled.quantile(0.05)).collect();
-    let Some(highest) = low.iter().copied().reduce(f64::max).filter(|_| low.len() == 2) else { return String::new() };
+    let Some(highest) = low.iter().copied().reduce(f64::max) else { return String::new() };
     let share = pooled.below(highest) as f64 / pooled.len() as f64;
-    let chance = share * share * (3.0 - 2.0 * share); // at least two of three independent draws
+    let (count, draws) = (low.len(), chaotic().count());
+    let chance = at_least(count, draws, share);
     let stepped = chaotic().filter_map(|case| case.stepped.as_ref()).flat_map(|stepped| stepped.values().to_vec());
     let stepped = Ensemble::new(stepped.collect());
     let below = low.iter().map(|gain| format!("{} of {} lie below {gain}", stepped.below(*gain), stepped.len()));
     format!(
-        "That two of the paper's three values stand as low as {highest} or lower has a chance of {:.2} %. The paper's \
-         own stepping does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied where a step ends beyond the \
+        "That {count} of the paper's {draws} values stand as low as {highest} or lower has a chance of {:.2} %, which \
+         nothing here explains. The paper's own stepping does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied where a step ends beyond the \
          membrane, starts nudged by up to {STEPPED_NUDGE:e} m/s have a median of {:.0} V/s, and {}. The voltages do \
          not either: the same formulas give Figure 14 to within its last digit.",
         100.0 * chance,
         stepped.quantile(0.5),
         below.collect::<Vec<_>>().join(" and "),
     )
+}
+
+/// Chance of at least `count` hits in so many independent `draws`, each with the chance `share`.
+fn at_least(count: usize, draws: usize, share: f64) -> f64 {
+    let ways = |hits: usize| (0..hits).fold(1.0, |ways, k| ways * (draws - k) as f64 / (k + 1) as f64);
+    (count..=draws).map(|hits| ways(hits) * share.powf(hits as f64) * (1.0 - share).powf((draws - hits) as f64)).sum()
 }
 
 pub(super) fn table(computation: &Computation) -> Table {

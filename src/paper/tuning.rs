@@ -155,7 +155,7 @@ fn text(maps: &[Map; 2], driven: &Driven) -> Vec<String> {
          the map in one co-simulation of the case of Figure 14, averaged over 20 to 60 s; diodes and switches are \
          ideal. C(t) does not depend on the circuit."
             .to_owned(),
-        "The paper's circuit gains nowhere: its Zener burns U_z for each charge that passes, for which the supply gave \
+        "The paper's circuit gains next to nothing anywhere: its Zener burns U_z for each charge that passes, for which the supply gave \
          U_in, and U_z is at least U_in. What is left for the load, U_DE4 - U_z, would have to exceed U_in. The best \
          that can be done with it is not to release at all."
             .to_owned(),

@@ -10,10 +10,10 @@ use crate::scenario::{Request, Setting};
 /// How much work the large ensembles may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Effort {
-    /// As many samples as the paper.
+    /// As many samples as the paper, and fine grids.
     #[default]
     Full,
-    /// A tenth of it, for a look.
+    /// Fewer samples and coarser grids, for a look.
     Quick,
 }
 
