@@ -94,7 +94,10 @@ fn net_gain_depends_on_the_circuit_where_eq_14_does_not() {
     assert!((eq14[0] / 0.05306 - 1.0).abs() < 1e-3 && (eq14[1] / 0.13217 - 1.0).abs() < 1e-3, "{eq14:?}");
     assert!(found(&power, "10 kohm").videg < 0.0);
     let bearable = found(&power, "what the film stands");
-    assert!(bearable.videg > 0.123 && bearable.reason.contains("within the 11.8 kV"), "{bearable:?}");
+    assert!(bearable.videg > 0.123, "{bearable:?}");
+    // More than U_in, and less than the 11.8 kV of the flat film: a switch opens while the film is stretched.
+    let voltages = [&power.sheets[0].rows[4], &power.sheets[0].rows[10]].map(|row| row[4]);
+    assert!(voltages.iter().all(|voltage| (5e3..8e3).contains(voltage)), "{voltages:?}");
 }
 
 /// The paper calls Figure 13 almost chaotic; Figure 14 is periodic, and Figure 15 is not, though it looks like it.
