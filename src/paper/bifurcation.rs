@@ -74,6 +74,11 @@ impl Diagram {
         self.xs.iter().enumerate().filter(|(index, _)| differs(*index)).map(|(_, &x)| x).collect()
     }
 
+    /// How many values of the parameter were looked at.
+    pub fn values(&self) -> usize {
+        self.xs.len()
+    }
+
     /// Stretches of the parameter over which the saw-tooth start leads to one number of periods; `None` is no
     /// recurrence.
     pub fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {

@@ -54,7 +54,7 @@ fn coexistence(path: &Path, diagram: &Diagram) -> Finding {
     let coexisting = diagram.coexisting();
     let reason = match (coexisting.first(), coexisting.last()) {
         (Some(first), Some(last)) => {
-            format!("between {first:.4} and {last:.4}; of values where the motions are periodic")
+            format!("of the {} looked at; between {first:.4} and {last:.4}", diagram.values())
         }
         _ => "one <U> wherever the motions are periodic".to_owned(),
     };
@@ -77,7 +77,7 @@ fn text() -> Vec<String> {
          the parameter share."
             .to_owned(),
         "Each diagram is followed three times: from the saw-tooth start of Section 4.2 at each value, and upwards and \
-         downwards with each motion going on from the last state of the one before. Where the three differ, several \
+         downwards with each motion going on from the last state of the one before. Where the three are periodic and differ, several \
          motions exist side by side, and it depends on the start which of them comes about: where <U> is the same, \
          they are mirror images of each other."
             .to_owned(),

@@ -1,21 +1,13 @@
-//! What the cases set: presets of the paper, and the excitation by its normalised amplitude.
+//! The excitation by its normalised amplitude.
 
 use std::f64::consts::TAU;
 
 use super::{PaperError, Workshop};
-use crate::scenario::{Request, Setting};
+use crate::scenario::Setting;
 
 /// The variable called `name` at `value`, to the last bit.
 pub fn set(name: &str, value: f64) -> Setting {
     Setting { name: name.to_owned(), value: format!("{value:?}") }
-}
-
-/// Settings of the case of the paper called `name`.
-///
-/// # Errors
-/// If there is none.
-pub fn preset(name: &str) -> Result<Vec<Setting>, PaperError> {
-    Ok(Request { case: Some(name.to_owned()), ..Request::default() }.resolve()?.settings)
 }
 
 /// The cylinder as the FMU has it.

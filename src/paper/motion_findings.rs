@@ -211,7 +211,9 @@ fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: &Period) -> F
     let (from, to) = (LATE[0], LATE[1]);
     if period.difference < REPEATS * setup.travel {
         let cycles = fact(shown, "cycles after which the motion repeats", "1");
-        let reason = format!("z_M - z_m differs by at most {:.0e} mm, {from} to {to} s", 1e3 * period.difference);
+        let difference = 1e3 * period.difference;
+        let shown = if difference == 0.0 { "0".to_owned() } else { format!("{difference:.0e}") };
+        let reason = format!("z_M - z_m differs by at most {shown} mm, {from} to {to} s");
         findings.push(cycles.own(f64::from(period.cycles), reason));
         return (findings, Vec::new());
     }

@@ -1,6 +1,6 @@
 //! Poincare sections: the motion once a period, in the plane of relative displacement and velocity.
 
-use super::excitation::{Cylinder, preset};
+use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
 use super::{Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop, lyapunov};
 use crate::report::{Figure, Panel, Series, Style};
@@ -38,7 +38,7 @@ pub fn sections(workshop: &Workshop<'_>) -> Result<Vec<Section>, PaperError> {
         ("fig15", "Figure 15, r = 0.3", 0.3, many),
     ];
     workshop.each(&cases, |&(case, title, restitution, periods)| {
-        let orbit = Stroboscope::new(workshop, &preset(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
+        let orbit = Stroboscope::new(workshop, &workshop.case(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
         let start = Start::saw_tooth(&cylinder, restitution, cylinder.gamma(FORCE, FREQUENCY), FREQUENCY);
         let exponent = lyapunov::exponent(workshop, &cylinder, start, &orbit, many / 4)?;
         Ok(Section { case, title, orbit, exponent })
@@ -65,9 +65,13 @@ pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
             .series(Series::points("", dots).style(style));
         figure = figure.panel(panel);
     }
-    let caption = "Relative displacement and velocity at the start of each period, when the force has its largest \
-                   value, from 100 s on: thousands of periods of Figures 13 and 15, and 100 of Figure 14, which meets \
-                   two points again and again.";
+    let periods: Vec<_> =
+        sections.iter().map(|section| format!("{} ({})", section.orbit.flashes.len() - 1, section.title)).collect();
+    let caption = format!(
+        "Relative displacement and velocity at the start of each period, when the force has its largest value, after \
+         {TRANSIENT} periods, over so many periods: {}. The panels have scales of their own.",
+        periods.join(", ")
+    );
     Ok(Picture::new("poincare", &figure, caption)?)
 }
 

@@ -5,7 +5,6 @@ use videg_circuit::{Release, Topology};
 use videg_model::{Case, Limit, Membrane};
 
 use super::coupled::{Drive, circuit};
-use super::excitation::preset;
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
 use crate::report::{Column, Figure, Panel, Table};
 
@@ -129,7 +128,7 @@ fn counts(workshop: &Workshop<'_>, case: &'static str) -> Result<Vec<Count>, Pap
 /// What the membranes take from the ball, W: the FMU's own books of (1 - r^2) m v^2 / 2.
 fn loss(workshop: &Workshop<'_>, case: &str) -> Result<f64, PaperError> {
     let energy = [workshop.reference("energy.impactLoss")?];
-    let mut instance = workshop.start(&preset(case)?)?;
+    let mut instance = workshop.start(&workshop.case(case)?)?;
     let [from, to] = WINDOW;
     let (mut start, mut end) = ([0.0], [0.0]);
     instance.do_step(0.0, from)?;
