@@ -145,7 +145,8 @@ proptest! {
             harvester.set_external_force(force, -0.1).unwrap();
             for cut in cuts {
                 // At the ends of hold intervals and in between; one step after the other through a block.
-                harvester.advance(if on_grid { (cut / 1e-5).round() * 1e-5 } else { *cut }).unwrap();
+                let time = if on_grid { (cut / 1e-5).round() * 1e-5 } else { *cut };
+                harvester.advance(time.max(harvester.time())).unwrap();
                 harvester.advance(harvester.time() + 3e-6).unwrap();
             }
             harvester.advance(0.41).unwrap();
