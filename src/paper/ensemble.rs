@@ -1,5 +1,6 @@
 //! Many starts beside one: how they are nudged, and how they are spread.
 
+use super::excitation::set;
 use super::{PaperError, Run, Workshop};
 use crate::scenario::Setting;
 
@@ -24,10 +25,7 @@ pub(super) fn nearby(
 ) -> Result<Vec<Vec<Setting>>, PaperError> {
     const NUDGED: &str = "initial.ballVelocity";
     let [velocity] = workshop.reals(&workshop.start(settings)?, [NUDGED])?;
-    let nudged = |nudge: &f64| {
-        let value = format!("{:?}", velocity + nudge);
-        settings.iter().cloned().chain([Setting { name: NUDGED.to_owned(), value }]).collect()
-    };
+    let nudged = |nudge: &f64| settings.iter().cloned().chain([set(NUDGED, velocity + nudge)]).collect();
     Ok(nudges.iter().map(nudged).collect())
 }
 

@@ -2,11 +2,8 @@
 
 use super::excitation::{Cylinder, nudge};
 use super::statistics::{Summary, rank_correlation};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
 use crate::report::{Figure, Panel, Series, Style};
-
-/// Window of the averages, s: the paper's.
-const WINDOW: [f64; 2] = [50.0, 100.0];
 
 /// Nearby starts that are averaged.
 fn starts(effort: Effort) -> usize {

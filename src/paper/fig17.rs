@@ -2,7 +2,7 @@
 
 use super::excitation::{Cylinder, nudge, set};
 use super::statistics::{Summary, TWO_SIDED, mean, slope};
-use super::{Artefact, Averages, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, Workshop};
+use super::{Artefact, Averages, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
 use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
 
@@ -16,9 +16,6 @@ const INTENSITIES: [f64; 19] =
 const PATTERNS: [f64; 2] = [1.0, 81.0];
 /// What the patterns show, s. The paper does not say which seconds its plots show.
 const SHOWN: [f64; 2] = [50.0, 60.0];
-/// Window of the averages, s: the paper's.
-const WINDOW: [f64; 2] = [50.0, 100.0];
-
 /// Samples a point; the paper has 100.
 fn samples(effort: Effort) -> usize {
     match effort {
@@ -75,12 +72,17 @@ pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
     })
 }
 
-/// What sample number `sample` of point number `point` sets. Its seed is 1000 `point` + `sample` + 1: no two are alike.
-/// The starts are nudged as in Figure 16, so that the samples without noise are not one and the same run.
+/// Seed of sample number `sample` of point number `point`: no two are alike.
+fn seed(point: usize, sample: usize) -> usize {
+    1000 * point + sample + 1
+}
+
+/// What sample number `sample` of point number `point` sets. The starts are nudged as in Figure 16, so that the samples
+/// without noise are not one and the same run.
 fn settings(cylinder: &Cylinder, point: usize, sample: usize, count: usize) -> Vec<Setting> {
     let mut settings = cylinder.elastic(GAMMA, FREQUENCY, nudge(sample, count));
     settings.push(set("excitation.phaseNoise", INTENSITIES[point].sqrt()));
-    let seed = 1000 * point + sample + 1;
+    let seed = seed(point, sample);
     settings.push(Setting { name: "excitation.seed".to_owned(), value: seed.to_string() });
     settings
 }
@@ -282,7 +284,7 @@ fn samples_sheet(points: &[Point]) -> Sheet {
     let columns = ["D (1)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"].map(str::to_owned).to_vec();
     let rows = points.iter().enumerate().flat_map(|(index, point)| {
         point.samples.iter().enumerate().map(move |(sample, averages)| {
-            let seed = (1000 * index + sample + 1) as f64;
+            let seed = seed(index, sample) as f64;
             vec![point.intensity, sample as f64, seed, averages.voltage_gain, f64::from(averages.impacts)]
         })
     });

@@ -1,5 +1,7 @@
 //! Figure 4: the fitted force law, Eq. (2), and the force that the ball feels in the FMU.
 
+use super::excitation::set;
+use super::statistics::{mean, slope};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
 use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
@@ -60,13 +62,12 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 
 /// The contact of a ball that flies into the membrane of a cylinder at rest, sampled.
 fn contact(workshop: &Workshop<'_>, restitution: f64) -> Result<Vec<Point>, PaperError> {
-    let set = |name: &str, value: String| Setting { name: name.to_owned(), value };
     let instance = &mut workshop.start(&[
-        set("contact.law", "compliant".to_owned()),
-        set("excitation.amplitude", "0".to_owned()),
-        set("initial.ballPosition", "0".to_owned()),
-        set("initial.ballVelocity", format!("{SPEED:?}")),
-        set("membrane.restitution", format!("{restitution:?}")),
+        Setting { name: "contact.law".to_owned(), value: "compliant".to_owned() },
+        set("excitation.amplitude", 0.0),
+        set("initial.ballPosition", 0.0),
+        set("initial.ballVelocity", SPEED),
+        set("membrane.restitution", restitution),
     ])?;
     let [travel, mass] = workshop.reals(instance, ["ball.travel", "ball.mass"])?;
     let mut time = travel / 2.0 / SPEED;
@@ -88,11 +89,9 @@ fn contact(workshop: &Workshop<'_>, restitution: f64) -> Result<Vec<Point>, Pape
 /// K and n of F = K x^n by least squares of the logarithms.
 fn fit(points: &[Point]) -> [f64; 2] {
     let logs: Vec<Point> = points.iter().map(|(x, force)| (x.ln(), force.ln())).collect();
-    let mean = |value: fn(&Point) -> f64| logs.iter().map(value).sum::<f64>() / logs.len() as f64;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let slope =
-        logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>();
-    [(y - slope * x).exp(), slope]
+    let (exponent, _) = slope(&logs);
+    let intercept = mean(logs.iter().map(|log| log.1)) - exponent * mean(logs.iter().map(|log| log.0));
+    [intercept.exp(), exponent]
 }
 
 fn picture(elastic: &[Point], lossy: &[Point], law: impl Fn(&Point) -> Point) -> Result<Picture, PaperError> {

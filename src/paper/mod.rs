@@ -40,6 +40,12 @@ pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
 pub use error::PaperError;
 pub use workshop::{Averages, Effort, Run, Watch, Workshop};
 
+/// Averaging window of the paper, s (Section 5).
+const WINDOW: [f64; 2] = [50.0, 100.0];
+
+/// Volume of the device of Table 3, cm^3 (Section 5.3).
+const VOLUME: f64 = 42.2;
+
 /// A table or figure that can be made.
 pub struct Item {
     /// What the command line calls it, e.g. `fig14`.

@@ -3,11 +3,8 @@
 use super::motion::{Setup, Shown};
 use super::patterns::{Pattern, mean_falling_row};
 use super::recording::{BALL, DISPLACEMENT, Impact, Recording, Sample, impacts, record};
-use super::{Finding, PaperError, Verdict, Workshop};
+use super::{Finding, PaperError, Verdict, WINDOW, Workshop};
 use crate::scenario::Setting;
-
-/// Where steady states are looked at, s: the averaging window of the paper.
-const STEADY: [f64; 2] = [50.0, 100.0];
 
 /// Where it is asked whether a motion repeats, s: any transient is long over.
 const LATE: [f64; 2] = [990.0, 1000.0];
@@ -68,10 +65,10 @@ pub(super) fn findings(
 ) -> Result<Found, PaperError> {
     let settings = workshop.case(shown.case)?;
     if shown.number == 9 {
-        let whole = record(workshop, &settings, [0.0, STEADY[1]], 0.01)?;
+        let whole = record(workshop, &settings, [0.0, WINDOW[1]], 0.01)?;
         return Ok((without_impacts(shown, setup, &whole), Vec::new()));
     }
-    let steady = impacts(workshop, &settings, STEADY)?;
+    let steady = impacts(workshop, &settings, WINDOW)?;
     Ok(match shown.number {
         10 => (saw_tooth(shown, setup, &steady), Vec::new()),
         11 => short_flights(shown, setup, recording, &steady),
@@ -100,7 +97,7 @@ fn without_impacts(shown: &Shown, setup: &Setup, run: &Recording) -> Vec<Finding
 
 /// Figure 10.
 fn saw_tooth(shown: &Shown, setup: &Setup, steady: &[Impact]) -> Vec<Finding> {
-    let periods = (STEADY[1] - STEADY[0]) * setup.frequency;
+    let periods = (WINDOW[1] - WINDOW[0]) * setup.frequency;
     let each = steady.len() as f64 / periods;
     let [low, high] = extremes(steady);
     let spread = high / low - 1.0;
@@ -188,7 +185,7 @@ fn counts(shown: &Shown, setup: &Setup, recording: &Recording) -> Vec<Finding> {
 
 /// Figures 14 and 15: "a high peak is followed by a moderate peak and then a very small one".
 fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: &Period) -> Found {
-    let periods = (STEADY[1] - STEADY[0]) * setup.frequency;
+    let periods = (WINDOW[1] - WINDOW[0]) * setup.frequency;
     let [low, high] = extremes(steady).map(|gain| setup.bias_voltage + gain);
     let left = steady.iter().filter(|impact| impact.left).count() as f64 / steady.len() as f64;
     let row = mean_falling_row(steady);

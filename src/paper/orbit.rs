@@ -9,6 +9,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use super::excitation::set;
 use super::{PaperError, Workshop};
 use crate::scenario::Setting;
 
@@ -115,7 +116,7 @@ impl Orbit {
             ("initial.ballPosition", ball[0]),
             ("initial.ballVelocity", ball[1]),
         ];
-        values.map(|(name, value)| Setting { name: name.to_owned(), value: format!("{value:?}") }).to_vec()
+        values.map(|(name, value)| set(name, value)).to_vec()
     }
 
     /// Distance of a relative displacement and velocity from the orbit's in the middle, in units of s/2 and V.

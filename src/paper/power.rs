@@ -5,18 +5,15 @@ use videg_circuit::{Release, Topology};
 use videg_model::{Case, Limit, Membrane};
 
 use super::coupled::{Drive, circuit};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, VOLUME, Verdict, WINDOW, Workshop};
 use crate::report::{Column, Figure, Panel, Table};
 
 /// Cases of Table 3, and what the paper calls them.
 const CASES: [(&str, &str); 2] = [("table3-2hz", "2 Hz"), ("table3-5hz", "5 Hz")];
-/// Window of the averages, s: the paper's.
-const WINDOW: [f64; 2] = [50.0, 100.0];
 /// Largest error of C(t) within a communication step, relative to its value: a thousandfold finer one moves the net
 /// gains by 0.2 % at most.
 const TOLERANCE: f64 = 1e-2;
-/// Volume of the device, cm^3, and power density of the electromagnetic one, mW/cm^3 (Section 5.3).
-const VOLUME: f64 = 42.2;
+/// Power density of the electromagnetic harvester, mW/cm^3 (Section 5.3).
 const ELECTROMAGNETIC: f64 = 0.123;
 
 /// `U_in`, V, of all cases.

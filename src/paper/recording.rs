@@ -22,6 +22,8 @@ pub(super) const CYLINDER_VELOCITY: usize = 1;
 pub(super) const BALL: usize = 2;
 pub(super) const BALL_VELOCITY: usize = 3;
 pub(super) const DISPLACEMENT: usize = 4;
+/// Left and right.
+pub(super) const DEFLECTIONS: [usize; 2] = [5, 6];
 const GAIN: usize = 9;
 
 /// Outputs that look ahead, and the speed of the last impact.

@@ -3,10 +3,12 @@
 
 use videg_model::Case;
 
+use super::excitation::set;
 use super::fixed_step::{FixedStep, STEP};
 use super::motion;
 use super::motion_findings::Fact;
 use super::orbit::{Multipliers, Orbit, Phase};
+use super::statistics::slope;
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Workshop};
 use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
@@ -45,10 +47,7 @@ impl Track {
         let end = self.leaves().unwrap_or(UNTIL);
         let straight = self.points.iter().filter(|(time, distance)| *distance > 10.0 * first && *time < end);
         let logs: Vec<_> = straight.map(|(time, distance)| (*time, distance.ln())).collect();
-        let mean = |value: fn(&(f64, f64)) -> f64| logs.iter().map(value).sum::<f64>() / logs.len() as f64;
-        let (time, log) = (mean(|point| point.0), mean(|point| point.1));
-        let sum = |term: &dyn Fn(&(f64, f64)) -> f64| logs.iter().map(term).sum::<f64>();
-        sum(&|(t, l)| (t - time) * (l - log)) / sum(&|(t, _)| (t - time) * (t - time))
+        slope(&logs).0
     }
 }
 
@@ -253,7 +252,7 @@ fn track(
     nudge: f64,
     label: String,
 ) -> Result<Track, PaperError> {
-    let velocity = Setting { name: "initial.ballVelocity".to_owned(), value: format!("{:?}", nudge - orbit.speed()) };
+    let velocity = set("initial.ballVelocity", nudge - orbit.speed());
     let mut instance = workshop.start(&[settings, &orbit.at_impact(), &[velocity]].concat())?;
     let mut points = Vec::new();
     let mut now = 0.0;

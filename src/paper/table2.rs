@@ -5,11 +5,8 @@ use videg_model::Case;
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
 use super::fixed_step::{FixedStep, STEP};
 use super::table2_output::{picture, sheets, table, text};
-use super::{Artefact, Effort, Finding, PaperError, Run, Verdict, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Run, Verdict, WINDOW, Workshop};
 use crate::scenario::Setting;
-
-/// Averaging window of the paper, s.
-pub(super) const WINDOW: [f64; 2] = [50.0, 100.0];
 
 /// Largest nudge for the paper's method, m/s: what its time step makes of one impact, 2 A/M times 1e-5 s. Smaller ones
 /// change no step at which the ball hits a membrane for a long time, so that all starts would be the same.
