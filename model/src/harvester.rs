@@ -1,6 +1,7 @@
 //! The vibro-impact harvester: from event to event, exactly under the impulsive law.
 
 mod contact;
+mod copy;
 mod course;
 mod energy;
 mod events;
@@ -74,7 +75,7 @@ struct Noise {
 }
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Harvester {
     parameters: Parameters,
     membrane: Membrane,

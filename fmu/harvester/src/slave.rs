@@ -6,7 +6,7 @@ use fmi2_export::{
 };
 use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Occurrence, Parameters, Peak, PulseShape, Side};
 
-use crate::limits::Warned;
+use crate::limits;
 use crate::variables::VARIABLES;
 
 /// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
@@ -14,7 +14,6 @@ use crate::variables::VARIABLES;
 const MAX_PERIODS: f64 = 1e7;
 
 /// The harvester as a slave.
-#[derive(Clone)]
 pub struct Harvester {
     pub(crate) parameters: Parameters,
     pub(crate) external_force: f64,
@@ -24,9 +23,35 @@ pub struct Harvester {
     pub(crate) start_time: f64,
     /// The model runs under an integrator of the importer's: model exchange.
     pub(crate) placed: bool,
-    pub(crate) warned: Warned,
+    /// Voltages under which the limits were checked when both membranes were flat, V; NaN before.
+    pub(crate) checked: [f64; 2],
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, ModelError>,
+}
+
+impl Clone for Harvester {
+    fn clone(&self) -> Self {
+        Self { model: self.model.clone(), ..*self }
+    }
+
+    /// Takes no memory that is there already.
+    fn clone_from(&mut self, source: &Self) {
+        let Self {
+            parameters,
+            external_force,
+            external_force_rate,
+            voltages,
+            voltage_rates,
+            start_time,
+            placed,
+            checked,
+            ref model,
+        } = *source;
+        self.model.clone_from(model);
+        (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
+        (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
+        (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
+    }
 }
 
 impl Harvester {
@@ -42,6 +67,19 @@ impl Harvester {
 
     fn running(&mut self) -> Result<&mut Model, SlaveError> {
         self.model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+    }
+
+    /// Warns of limits exceeded at present. Nothing needs looking at while the voltages are those under which both membranes
+    /// were flat: a membrane is worst off when flat or at a peak, and peaks are checked as they come.
+    fn check_limits(&mut self, log: &Logger) {
+        let Ok(model) = &self.model else { return };
+        if self.voltages == self.checked {
+            return;
+        }
+        limits::check_present(model, self.voltages, log);
+        if [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0) {
+            self.checked = self.voltages;
+        }
     }
 
     /// The model at the start, as parameters and inputs have it.
@@ -80,7 +118,7 @@ impl Slave for Harvester {
             voltage_rates: [0.0; 2],
             start_time: 0.0,
             placed: false,
-            warned: Warned::default(),
+            checked: [f64::NAN; 2],
             model: Model::new(&parameters, 0.0),
         }
     }
@@ -117,7 +155,7 @@ impl Slave for Harvester {
         }
         let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
         let (voltages, voltage_rates) = (self.voltages, core::mem::take(&mut self.voltage_rates));
-        let warned = self.warned.clone();
+        self.check_limits(log);
         let model = self.running()?;
         let membrane = *model.membrane();
         let events = log.is_enabled(LogCategory::Events);
@@ -126,7 +164,6 @@ impl Slave for Harvester {
             .set_external_force(force, rate)
             .and_then(|()| model.set_voltages(voltages, voltage_rates))
             .and_then(|()| {
-                warned.check_present(model, voltages, log);
                 model.advance_with(t + h, |shown| match shown {
                     Occurrence::Impact(impact) => {
                         number += 1;
@@ -134,7 +171,7 @@ impl Slave for Harvester {
                             log.event(describe(number, impact));
                         }
                     }
-                    Occurrence::Peak(peak) => warned.check(&membrane, peak, log),
+                    Occurrence::Peak(peak) => limits::check(&membrane, peak, log),
                 })
             });
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
@@ -158,7 +195,7 @@ impl Slave for Harvester {
     }
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
-        let (warned, voltages) = (self.warned.clone(), self.voltages);
+        let voltages = self.voltages;
         let model = self.running()?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
@@ -168,15 +205,15 @@ impl Slave for Harvester {
             let speed = totals.last_speed;
             log.event(describe(totals.impacts, &Impact { time, side, speed, rests }));
             let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
-            warned.check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
+            limits::check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }
 
     /// Each step checks the point that it starts from; the last point starts none.
     fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
-        if let Some(model) = self.model().filter(|_| !self.placed) {
-            self.warned.check_present(model, self.voltages, log);
+        if !self.placed {
+            self.check_limits(log);
         }
         Ok(())
     }

@@ -58,7 +58,7 @@ impl Fmu {
 
 /// What a component points to: an instance and a lock. FMI 2.0 forbids concurrent calls, and calls from inside a
 /// logger callback; the lock makes them an error where they would be undefined behaviour.
-pub(crate) struct Handle<S> {
+pub(crate) struct Handle<S: Slave> {
     busy: AtomicBool,
     instance: UnsafeCell<Instance<S>>,
 }
@@ -70,9 +70,10 @@ impl<S: Slave> Handle<S> {
 
     /// Runs `body` on the instance unless it is busy.
     fn with(&self, body: impl FnOnce(&mut Instance<S>) -> fmi2Status) -> fmi2Status {
-        if self.busy.swap(true, Ordering::Acquire) {
+        if self.busy.load(Ordering::Acquire) {
             return fmi2Error;
         }
+        self.busy.store(true, Ordering::Relaxed);
         // SAFETY: `busy` was false and is now true, so this is the only reference.
         let status = body(unsafe { &mut *self.instance.get() });
         self.busy.store(false, Ordering::Release);

@@ -95,7 +95,7 @@ impl<S: Slave> Instance<S> {
         CallError::Slave(error)
     }
 
-    const fn finish_step(&mut self, status: fmi2Status, reached: f64, terminated: bool) {
+    fn finish_step(&mut self, status: fmi2Status, reached: f64, terminated: bool) {
         self.core.last_step = LastStep { status, successful_time: Some(reached), terminated };
     }
 

@@ -2,6 +2,7 @@
 //! call one function here; this module guards panics, keeps the call state and turns errors into statuses.
 
 mod co_simulation;
+mod cores;
 mod derivatives;
 mod fmu_state;
 mod lifecycle;
@@ -15,8 +16,8 @@ use crate::logger::Logger;
 use crate::slave::{Experiment, Slave};
 use co_simulation::LastStep;
 use core::any::Any;
+use cores::Cores;
 use fmi2_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
-use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -24,7 +25,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(crate) type Call<T = ()> = Result<T, CallError>;
 
 /// All that an FMU state holds: the model and what the exporter knows about it.
-#[derive(Clone)]
 pub(crate) struct Core<S> {
     model: S,
     state: CallState,
@@ -39,12 +39,10 @@ pub(crate) struct Core<S> {
 }
 
 /// An instance of a slave.
-pub(crate) struct Instance<S> {
-    core: Core<S>,
+pub(crate) struct Instance<S: Slave> {
+    core: Cores<S>,
     logger: Logger,
     guid: Guid,
-    /// FMU states that the importer holds, by the token that it holds them by.
-    fmu_states: BTreeMap<usize, Core<S>>,
     /// Results of the last `fmi2GetString`.
     strings: Vec<CString>,
 }
@@ -71,14 +69,14 @@ impl<S: Slave> Core<S> {
 impl<S: Slave> Instance<S> {
     /// A fresh instance.
     pub(crate) fn new(exchange: bool, logger: Logger, guid: Guid) -> Self {
-        Self { core: Core::new(exchange), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
+        Self { core: Cores::new(Core::new(exchange)), logger, guid, strings: Vec::new() }
     }
 
     /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would
     /// end the process.
     pub(crate) fn free(self) {
-        let Self { core, logger, fmu_states, .. } = self;
-        for core in core::iter::once(core).chain(fmu_states.into_values()) {
+        let Self { core, logger, .. } = self;
+        for core in core.into_all() {
             if let Err(payload) = catch_unwind(AssertUnwindSafe(|| drop(core))) {
                 let error = CallError::Panic(panic_message(payload));
                 logger.status(fmi2Error, format_args!("{}: {error}", Function::FreeInstance.name()));
@@ -140,7 +138,8 @@ impl<S: Slave> Instance<S> {
             self.core.model.update();
             self.core.dirty = false;
         } else if matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
-            self.core.model.place(self.core.time, None)?;
+            let time = self.core.time;
+            self.core.model.place(time, None)?;
             self.core.dirty = false;
         }
         Ok(())
