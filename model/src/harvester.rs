@@ -96,6 +96,8 @@ pub struct Harvester {
     tangent: Tangent,
     /// Its states are placed by an integrator.
     placed: bool,
+    /// Up to here, s, nothing happens and nothing more is to be foreseen: on the way only the time changes.
+    calm_until: f64,
     /// Second in which events are being counted, and their number: the budget.
     second: f64,
     second_events: u64,
@@ -167,6 +169,7 @@ impl Harvester {
             ledger: Ledger::default(),
             tangent: Tangent::of_force(start, p.cylinder_mass),
             placed: false,
+            calm_until: f64::NEG_INFINITY,
             second: 0.0,
             second_events: 0,
         })
@@ -183,6 +186,7 @@ impl Harvester {
     ///
     /// # Errors
     /// A time that is not finite or lies in the past; more events than can be resolved.
+    #[inline]
     pub fn advance(&mut self, time: f64) -> Result<(), ModelError> {
         self.advance_with(time, |_| {})
     }
@@ -191,7 +195,16 @@ impl Harvester {
     ///
     /// # Errors
     /// As [`Harvester::advance`].
-    pub fn advance_with(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
+    #[inline]
+    pub fn advance_with(&mut self, time: f64, show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
+        if self.time <= time && time < self.calm_until {
+            self.time = time;
+            return Ok(());
+        }
+        self.advance_through_events(time, show)
+    }
+
+    fn advance_through_events(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
         finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
@@ -235,6 +248,7 @@ impl Harvester {
     /// Makes the next impact known; what is found does not depend on the steps.
     fn look_ahead(&mut self) {
         self.next_event(self.time + self.horizon(), false);
+        self.calm_until = self.calm();
     }
 
     fn half_travel(&self) -> f64 {

@@ -200,6 +200,7 @@ impl Harvester {
         self.book_pass(time);
         self.touch = self.touch.as_ref().map(|touch| touch.continued(time));
         self.plan_touch();
+        self.look_ahead();
     }
 
     /// The contact goes on from `time`, s, under another force.

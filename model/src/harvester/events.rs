@@ -171,6 +171,27 @@ impl Harvester {
         self.search.found
     }
 
+    /// The time, s, up to which nothing happens and the search has nothing more to foresee. It follows from what has been
+    /// found, not from the present time, so that no step of a caller changes it.
+    pub(super) fn calm(&self) -> f64 {
+        if self.parameters.phase_noise > 0.0 {
+            return f64::NEG_INFINITY; // there is always a hold interval to enter
+        }
+        if let Some(touch) = &self.touch {
+            return touch.end();
+        }
+        let Search { flight, window, found, exhausted, .. } = &self.search;
+        match found {
+            Some(event) => event.time(),
+            None if *exhausted => f64::INFINITY,
+            None => {
+                let (searched, horizon) = (flight.start + *window as f64 * flight.window_length(), self.horizon());
+                // Less the rounding of this difference and of the sum that the search compares with.
+                searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
+            }
+        }
+    }
+
     /// Searches one window of the flight or of the rest.
     fn search_window(&mut self, limit: f64) {
         let Search { flight, window, .. } = self.search;

@@ -139,6 +139,7 @@ impl Harvester {
     fn forget_search(&mut self) {
         let (position, velocity) = (self.ball_position(), self.ball_velocity());
         let dz = self.cylinder.position(self.time) - position;
+        self.calm_until = f64::NEG_INFINITY;
         self.search = Search::none(Flight::new(&self.cylinder, self.time, dz, velocity, self.half_travel()));
     }
 }

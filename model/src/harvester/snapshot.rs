@@ -155,6 +155,7 @@ impl Harvester {
             ledger: Ledger { wall, electrical, loss, contact_time },
             tangent,
             placed: true,
+            calm_until: f64::NEG_INFINITY,
             second: snapshot.second,
             second_events: snapshot.second_events,
         })
