@@ -17,7 +17,7 @@ impl Clone for Harvester {
             };
         }
         take_over! {
-            parameters membrane shape time cylinder ball noise search voltages totals ledger tangent placed second
+            parameters membrane shape time cylinder ball noise search voltages totals ledger tangent placed calm_until second
             second_events;
             holds pulses touch
         }
