@@ -4,7 +4,9 @@ use fmi2_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Occurrence, Parameters, Peak, PulseShape, Side};
+use videg_model::{
+    ContactLaw, Harvester as Model, Impact, Membrane, ModelError, Occurrence, Parameters, Peak, PulseShape, Side,
+};
 
 use crate::limits;
 use crate::variables::VARIABLES;
@@ -65,17 +67,31 @@ impl Harvester {
         self.model.as_ref().ok()
     }
 
-    fn running(&mut self) -> Result<&mut Model, SlaveError> {
-        self.model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+    /// The inputs are where their rates have taken them in a step of `h`, s, and stay there.
+    fn follow_rates(&mut self, h: f64) {
+        self.external_force += core::mem::take(&mut self.external_force_rate) * h;
+        let rates = core::mem::take(&mut self.voltage_rates);
+        self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
+    }
+
+    #[cold]
+    fn too_long(&self, t: f64, h: f64) -> SlaveError {
+        let longest = MAX_PERIODS / self.parameters.frequency;
+        let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+        SlaveError::discard(t, message)
     }
 
     /// Warns of limits exceeded at present. Nothing needs looking at while the voltages are those under which both membranes
     /// were flat: a membrane is worst off when flat or at a peak, and peaks are checked as they come.
+    #[inline]
     fn check_limits(&mut self, log: &Logger) {
-        let Ok(model) = &self.model else { return };
-        if self.voltages == self.checked {
-            return;
+        if self.voltages != self.checked {
+            self.check_limits_closely(log);
         }
+    }
+
+    fn check_limits_closely(&mut self, log: &Logger) {
+        let Ok(model) = &self.model else { return };
         limits::check_present(model, self.voltages, log);
         if [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0) {
             self.checked = self.voltages;
@@ -142,48 +158,42 @@ impl Slave for Harvester {
                 PulseShape::MIN_RESTITUTION
             ));
         }
-        self.running().map(|_| ())
+        running(&mut self.model).map(|_| ())
     }
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        let longest = MAX_PERIODS / self.parameters.frequency;
-        if h > longest {
-            let message =
-                format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
-            return Err(SlaveError::discard(t, message));
+        if h * self.parameters.frequency > MAX_PERIODS {
+            return Err(self.too_long(t, h));
         }
-        let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
-        let (voltages, voltage_rates) = (self.voltages, core::mem::take(&mut self.voltage_rates));
         self.check_limits(log);
-        let model = self.running()?;
-        let membrane = *model.membrane();
-        let events = log.is_enabled(LogCategory::Events);
+        let Self { parameters, model, .. } = self;
+        let model = running(model)?;
         let mut number = model.totals().impacts;
+        let show = |shown: &Occurrence| match shown {
+            Occurrence::Impact(impact) => {
+                number += 1;
+                if log.is_enabled(LogCategory::Events) {
+                    log.event(describe(number, impact));
+                }
+            }
+            Occurrence::Peak(peak) => limits::check(&Membrane::new(parameters), peak, log),
+        };
         let advanced = model
-            .set_external_force(force, rate)
-            .and_then(|()| model.set_voltages(voltages, voltage_rates))
-            .and_then(|()| {
-                model.advance_with(t + h, |shown| match shown {
-                    Occurrence::Impact(impact) => {
-                        number += 1;
-                        if events {
-                            log.event(describe(number, impact));
-                        }
-                    }
-                    Occurrence::Peak(peak) => limits::check(&membrane, peak, log),
-                })
-            });
+            .set_external_force(self.external_force, self.external_force_rate)
+            .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
+            .and_then(|()| model.advance_with(t + h, show));
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        self.external_force = force + rate * h;
-        self.voltages = [0, 1].map(|k| voltages[k] + voltage_rates[k] * h);
+        if self.external_force_rate != 0.0 || self.voltage_rates != [0.0; 2] {
+            self.follow_rates(h);
+        }
         Ok(())
     }
 
     fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
         let force = self.external_force;
         self.placed = true;
-        let model = self.running()?;
+        let model = running(&mut self.model)?;
         let present = model.states();
         let states = states.map_or(Ok(present), <[f64; 4]>::try_from);
         let states = states.map_err(|error| SlaveError::error(error.to_string()))?;
@@ -196,7 +206,7 @@ impl Slave for Harvester {
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
         let voltages = self.voltages;
-        let model = self.running()?;
+        let model = running(&mut self.model)?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if model.totals().impacts > impacts {
@@ -229,6 +239,11 @@ impl Slave for Harvester {
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         Self::read_from(from)
     }
+}
+
+/// The model, or why there is none.
+fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveError> {
+    model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
 }
 
 /// An impact as the log shows it.

@@ -11,6 +11,7 @@ mod values;
 
 use crate::call_state::{CallState, Function, Interface, Legality};
 use crate::error::CallError;
+use crate::ffi::guard;
 use crate::guid::Guid;
 use crate::logger::Logger;
 use crate::slave::{Experiment, Slave};
@@ -84,20 +85,27 @@ impl<S: Slave> Instance<S> {
         }
     }
 
-    /// Runs one C function: state check, the call itself behind a panic guard, then status, log and new state.
+    /// Runs one C function: state check and the call itself behind a panic guard, then status, log and new state.
+    #[inline]
     pub(crate) fn run(&mut self, function: Function, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
-        let result = self.check_state(function).and_then(|()| {
-            // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
-            // values are for debugging only and from which restoring a state or a reset replaces it.
-            catch_unwind(AssertUnwindSafe(|| {
+        // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
+        // values are for debugging only and from which restoring a state or a reset replaces it.
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            let result = self.check_state(function).and_then(|()| {
                 self.core.model.on_call(function);
                 call(self)
-            }))
-            .unwrap_or_else(|payload| Err(CallError::Panic(panic_message(payload))))
-        });
-        self.conclude(function, result)
+            });
+            result.map_err(Box::new) // so that there is little to hand on
+        }));
+        match result {
+            Ok(Ok(())) if self.logger.take_warned() => fmi2Warning,
+            Ok(Ok(())) => fmi2OK,
+            Ok(Err(error)) => self.fail(function, &error),
+            Err(payload) => self.fail(function, &CallError::Panic(panic_message(payload))),
+        }
     }
 
+    #[inline]
     fn check_state(&self, function: Function) -> Call {
         let state = self.core.state;
         let interface = if self.core.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
@@ -113,19 +121,19 @@ impl<S: Slave> Instance<S> {
     }
 
     /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued".
-    fn conclude(&mut self, function: Function, result: Call) -> fmi2Status {
-        let warned = self.logger.take_warned();
-        let Err(error) = result else {
-            return if warned { fmi2Warning } else { fmi2OK };
-        };
+    #[cold]
+    fn fail(&mut self, function: Function, error: &CallError) -> fmi2Status {
         let status = error.status();
-        match status {
-            fmi2Error => self.core.state = CallState::Error,
-            fmi2Fatal => self.core.state = CallState::Fatal,
-            _ => {}
-        }
-        self.logger.status(status, format_args!("{}: {error}", function.name()));
-        status
+        self.logger.take_warned();
+        guard(status, || {
+            self.logger.status(status, format_args!("{}: {error}", function.name()));
+            match status {
+                fmi2Error => self.core.state = CallState::Error,
+                fmi2Fatal => self.core.state = CallState::Fatal,
+                _ => {}
+            }
+            status
+        })
     }
 
     /// Brings calculated values up to date, if something was set and initialisation is still ahead. In model exchange,
