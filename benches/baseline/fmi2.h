@@ -1,4 +1,4 @@
-/* What the benchmark of calls needs of FMI 2.0, section 2.1 and 4.2: types, statuses and signatures. */
+/* What the benchmark of calls needs of FMI 2.0, sections 2.1 and 4.2: types, statuses and signatures. */
 #ifndef VIDEG_BENCH_FMI2_H
 #define VIDEG_BENCH_FMI2_H
 
@@ -32,6 +32,8 @@ typedef fmi2Status fmi2EnterInitializationModeTYPE(fmi2Component component);
 typedef fmi2Status fmi2ExitInitializationModeTYPE(fmi2Component component);
 typedef fmi2Status fmi2GetRealTYPE(fmi2Component component, const fmi2ValueReference references[], size_t count,
                                    fmi2Real values[]);
+typedef fmi2Status fmi2SetRealTYPE(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                                   const fmi2Real values[]);
 typedef fmi2Status fmi2DoStepTYPE(fmi2Component component, fmi2Real time, fmi2Real size, fmi2Boolean no_set_state);
 typedef fmi2Status fmi2GetFMUstateTYPE(fmi2Component component, fmi2FMUstate *state);
 typedef fmi2Status fmi2SetFMUstateTYPE(fmi2Component component, fmi2FMUstate state);

@@ -1,7 +1,7 @@
 /* Times calls of an FMU for co-simulation from C: the same loop for every FMU.
  *
  * Each function but the first returns a negative number when a call of the FMU does not succeed. */
-#define _POSIX_C_SOURCE 199309L
+#define _POSIX_C_SOURCE 200809L
 
 #include <dlfcn.h>
 #include <stdint.h>
@@ -21,8 +21,8 @@ typedef struct {
     fmi2GetFMUstateTYPE *get_state;
     fmi2SetFMUstateTYPE *set_state;
     fmi2FreeFMUstateTYPE *free_state;
-    uint64_t steps;    /* done so far */
-    fmi2FMUstate mark; /* where timed steps start, */
+    uint64_t steps;      /* done so far */
+    fmi2FMUstate mark;   /* where timed steps start, */
     uint64_t mark_steps; /* after so many */
 } Fmu;
 
@@ -46,9 +46,17 @@ static int64_t nanoseconds(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-static int initialize(Fmu *fmu, fmi2String guid)
+/* Real values to be set before initialization. */
+typedef struct {
+    size_t count;
+    const fmi2ValueReference *references;
+    const fmi2Real *values;
+} Settings;
+
+static int initialize(Fmu *fmu, fmi2String guid, const Settings *settings)
 {
     fmi2InstantiateTYPE *instantiate = (fmi2InstantiateTYPE *)dlsym(fmu->library, "fmi2Instantiate");
+    fmi2SetRealTYPE *set_real = (fmi2SetRealTYPE *)dlsym(fmu->library, "fmi2SetReal");
     fmi2SetupExperimentTYPE *setup = (fmi2SetupExperimentTYPE *)dlsym(fmu->library, "fmi2SetupExperiment");
     fmi2EnterInitializationModeTYPE *enter =
         (fmi2EnterInitializationModeTYPE *)dlsym(fmu->library, "fmi2EnterInitializationMode");
@@ -64,19 +72,25 @@ static int initialize(Fmu *fmu, fmi2String guid)
         !fmu->get_state || !fmu->set_state || !fmu->free_state)
         return -1;
     fmu->component = instantiate("timed", fmi2CoSimulation, guid, NULL, &CALLBACKS, 0, 0);
-    if (!fmu->component || failed(setup(fmu->component, 0, 0.0, 0.0, 0, 0.0)) || failed(enter(fmu->component)))
+    if (!fmu->component)
         return -1;
-    return failed(leave(fmu->component)) ? -1 : 0;
+    if (settings->count > 0 &&
+        (!set_real || failed(set_real(fmu->component, settings->references, settings->count, settings->values))))
+        return -1;
+    if (failed(setup(fmu->component, 0, 0.0, 0.0, 0, 0.0)) || failed(enter(fmu->component)) ||
+        failed(leave(fmu->component)))
+        return -1;
+    return 0;
 }
 
 /* An initialised instance of the FMU in `library`; NULL if there is none. */
-Fmu *open_fmu(const char *library, const char *guid)
+Fmu *open_fmu(const char *library, const char *guid, const Settings *settings)
 {
     Fmu *fmu = calloc(1, sizeof *fmu);
     if (!fmu)
         return NULL;
     fmu->library = dlopen(library, RTLD_NOW | RTLD_LOCAL);
-    if (fmu->library && initialize(fmu, guid) == 0)
+    if (fmu->library && initialize(fmu, guid, settings) == 0)
         return fmu;
     free(fmu);
     return NULL;
@@ -94,7 +108,7 @@ int get_real(Fmu *fmu, fmi2ValueReference reference, fmi2Real *value)
     return failed(fmu->get_real(fmu->component, &reference, 1, value)) ? -1 : 0;
 }
 
-int advance(Fmu *fmu, uint64_t steps)
+int do_steps(Fmu *fmu, uint64_t steps)
 {
     uint64_t end = fmu->steps + steps;
     for (; fmu->steps < end; fmu->steps++)
@@ -119,7 +133,7 @@ int64_t time_steps(Fmu *fmu, uint64_t repetitions, uint64_t steps)
             return -1;
         fmu->steps = fmu->mark_steps;
         int64_t begin = nanoseconds();
-        if (advance(fmu, steps) < 0)
+        if (do_steps(fmu, steps) < 0)
             return -1;
         spent += nanoseconds() - begin;
     }
