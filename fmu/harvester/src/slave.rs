@@ -25,7 +25,7 @@ pub struct Harvester {
     pub(crate) start_time: f64,
     /// The model runs under an integrator of the importer's: model exchange.
     pub(crate) placed: bool,
-    /// Voltages under which the limits were checked when both membranes were flat, V; NaN before.
+    /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
     pub(crate) checked: [f64; 2],
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, ModelError>,
@@ -81,7 +81,7 @@ impl Harvester {
         SlaveError::discard(t, message)
     }
 
-    /// Warns of limits exceeded at present. Nothing needs looking at while the voltages are those under which both membranes
+    /// Warns of limits exceeded at present. Nothing needs looking at while the voltages have not changed since both membranes
     /// were flat: a membrane is worst off when flat or at a peak, and peaks are checked as they come.
     #[inline]
     fn check_limits(&mut self, log: &Logger) {
@@ -93,9 +93,8 @@ impl Harvester {
     fn check_limits_closely(&mut self, log: &Logger) {
         let Ok(model) = &self.model else { return };
         limits::check_present(model, self.voltages, log);
-        if [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0) {
-            self.checked = self.voltages;
-        }
+        let flat = [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0);
+        self.checked = if flat { self.voltages } else { [f64::NAN; 2] };
     }
 
     /// The model at the start, as parameters and inputs have it.
