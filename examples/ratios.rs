@@ -86,15 +86,15 @@ const ROWS: &[Row] = &[
     },
 ];
 
-/// Mean time of one iteration, s.
+/// Median time of one iteration, s.
 fn seconds((bench, group, name): Measured) -> anyhow::Result<f64> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let path = target.join("criterion").join(group).join(name).join("new/estimates.json");
     let text = std::fs::read_to_string(&path)
         .with_context(|| format!("no {}; run cargo bench --bench {bench}", path.display()))?;
     let estimates: Value = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
-    let mean = estimates["mean"]["point_estimate"].as_f64();
-    Ok(1e-9 * mean.with_context(|| format!("{} has no mean", path.display()))?)
+    let median = estimates["median"]["point_estimate"].as_f64();
+    Ok(1e-9 * median.with_context(|| format!("{} has no median", path.display()))?)
 }
 
 fn show(seconds: f64) -> String {
