@@ -151,7 +151,8 @@ impl Harvester {
             OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
         };
         let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
-        let flight = Flight::new(&cylinder, start, p.cylinder_position - position, p.ball_velocity, half);
+        let dz = p.cylinder_position - position;
+        let flight = Flight::new(&cylinder, &cylinder.at(start), dz, p.ball_velocity, half);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),

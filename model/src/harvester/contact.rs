@@ -222,7 +222,7 @@ impl Harvester {
         self.book_pass(time);
         self.cylinder = cylinder;
         let dz = sign * (self.half_travel() + next.start.x);
-        self.search.flight = Flight::new(&self.cylinder, time, dz, velocity, self.half_travel());
+        self.search.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), dz, velocity, self.half_travel());
         self.ball = Ball { since: time, position: self.cylinder.position - dz, velocity, resting: None };
         self.touch = Some(next);
         self.plan_touch();

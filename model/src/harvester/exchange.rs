@@ -139,8 +139,9 @@ impl Harvester {
     /// The future is the integrator's: no impact is foreseen.
     fn forget_search(&mut self) {
         let (position, velocity) = (self.ball_position(), self.ball_velocity());
-        let dz = self.cylinder.position(self.time) - position;
+        let here = self.cylinder.at(self.time);
         self.calm_until = f64::NEG_INFINITY;
-        self.search = Search::none(Flight::new(&self.cylinder, self.time, dz, velocity, self.half_travel()));
+        let flight = Flight::new(&self.cylinder, &here, here.position - position, velocity, self.half_travel());
+        self.search = Search::none(flight);
     }
 }

@@ -8,7 +8,7 @@
 
 use super::energy::LedgerChange;
 use super::{Energies, Harvester, Side};
-use crate::cylinder::DriveChange;
+use crate::cylinder::{CylinderState, DriveChange};
 use crate::membrane::MembraneChange;
 use crate::parameters::Parameters;
 use crate::pulse::{PulseChange, Pulses, ShapeChange};
@@ -86,13 +86,12 @@ pub(super) struct Tangent {
 
 /// An impact and its surroundings.
 pub(super) struct Hit {
-    pub(super) time: f64,
     pub(super) side: Side,
     pub(super) speed: f64,
     pub(super) peak: f64,
-    /// `z_M'`, m/s, and `z_M''`, m/s^2.
-    pub(super) wall: f64,
-    pub(super) acceleration: f64,
+    /// Derivative of `C_3` / `C_2` - 1 with the deflection, 1/m.
+    pub(super) excess_slope: f64,
+    pub(super) wall: CylinderState,
 }
 
 /// How an impact changes.
@@ -258,29 +257,36 @@ impl Harvester {
     /// Time by which an impact at `time` on `side` at relative `speed` comes later.
     pub(super) fn delay(&self, time: f64, side: Side, speed: f64) -> f64 {
         let approach = self.cylinder_change(time)[0] - self.ball_change(time)[0];
+        self.delay_by(approach, side, speed)
+    }
+
+    /// The same when `z_M` - `z_m` at the time of the impact changes by `approach`, m.
+    fn delay_by(&self, approach: f64, side: Side, speed: f64) -> f64 {
         bounded((self.tangent.half_travel() - side.sign() * approach) / speed)
     }
 
     /// How an impact changes; the ball has not rebounded yet.
     pub(super) fn change_of(&self, hit: &Hit) -> HitChange {
-        let Hit { time, side, speed, peak, wall, acceleration } = *hit;
+        let Hit { side, speed, peak, excess_slope, .. } = *hit;
+        let CylinderState { time, velocity: wall, acceleration, .. } = hit.wall;
         let ball = self.ball_change(time);
         let [position, velocity] = self.cylinder_change(time);
         if grazes(side, speed, acceleration) {
             return HitChange { ball, wall: velocity, ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
-        let delay = self.delay(time, side, speed);
+        let delay = self.delay_by(position - ball[0], side, speed);
         let wall_change = velocity + acceleration * delay;
         let speed_change = sign * (wall_change - ball[1]);
         let rebound_change = self.rebound_change(speed, speed_change);
-        let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, self.tangent.membrane()));
+        let membrane = self.tangent.membrane();
+        let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
         let rebounded = wall + sign * restitution * speed;
         HitChange {
             pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
             wall: bounded(wall_change),
             ledger: self.ledger_change(hit, bounded(speed_change), bounded(wall_change)),
-            excess: self.membrane.excess_change(peak, peak_change, self.tangent.membrane()),
+            excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
             ball: [
                 position + (wall - rebounded) * delay - sign * self.tangent.half_travel(),
                 wall_change + sign * rebound_change,
