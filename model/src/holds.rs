@@ -2,33 +2,115 @@
 //!
 //! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by
 //! (A / M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force
-//! by constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out for a
-//! block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector instructions.
+//! by constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out and
+//! summed for a block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector
+//! instructions: the state at the begin of any interval of the block is then a closed form in the state at that of another.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_2_PI, PI};
 
 use crate::cylinder::{cycle_fraction, product_error};
 use crate::elementary::sin_cos;
-use crate::noise;
+use crate::noise::{self, Aligned, COLUMNS, ROWS};
 use crate::parameters::Parameters;
 
 /// Hold intervals in a block.
 pub const BLOCK: usize = noise::GROUP;
 
-/// The hold intervals of one block.
+/// What the harmonic force does up to the begin of each hold interval of one block, if the cylinder is at rest at the begin
+/// of the block.
 #[derive(Clone)]
 pub struct Block {
+    /// Samples of the noise at the places of the intervals.
+    samples: Aligned<[f64; BLOCK]>,
+    /// `z_M'`, m/s, at the places of the intervals, if the cylinder is at rest at the begin of each column.
+    velocity: Aligned<[f64; BLOCK]>,
+    /// `z_M`, m, likewise, if it is at 0 there.
+    position: Aligned<[f64; BLOCK]>,
+    /// Velocity and position at the begin of each column and at the end of the block.
+    columns: [[f64; 2]; COLUMNS + 1],
+    /// No |`z_M`| is larger at the begin or end of an interval, to rounding, m.
+    pub reach: f64,
     number: u64,
-    /// Changes of `z_M'`, m/s.
-    pub velocity: [f64; BLOCK],
-    /// Changes of `z_M` besides `z_M'` h, m.
-    pub position: [f64; BLOCK],
 }
 
 impl Block {
-    const EMPTY: Self = Self { number: u64::MAX, velocity: [0.0; BLOCK], position: [0.0; BLOCK] };
+    const EMPTY: Self = Self {
+        samples: Aligned([0.0; BLOCK]),
+        velocity: Aligned([0.0; BLOCK]),
+        position: Aligned([0.0; BLOCK]),
+        columns: [[0.0; 2]; COLUMNS + 1],
+        reach: 0.0,
+        number: u64::MAX,
+    };
+
+    /// Sample of the noise in interval `k` of the block.
+    pub fn sample(&self, k: usize) -> f64 {
+        self.samples.0[noise::place(k)]
+    }
+
+    /// Velocity, m/s, and position, m, at the begin of interval `k` of the block, or at its end ([`BLOCK`]); the intervals are
+    /// `hold`, s, long.
+    #[inline]
+    pub fn at(&self, k: usize, hold: f64) -> [f64; 2] {
+        let [velocity, position] = self.columns[k / ROWS];
+        if k >= BLOCK {
+            return [velocity, position];
+        }
+        let (place, time) = (noise::place(k), (k % ROWS) as f64 * hold);
+        [velocity + self.velocity.0[place], position + (time * velocity + self.position.0[place])]
+    }
+
+    /// Sums what each interval of length `hold`, s, does, which stands at its place: down the columns, all at once, then from
+    /// column to column. Velocities come first: together, compilers would pack velocity and position of a column into one
+    /// vector.
+    #[inline(always)]
+    fn sum(&mut self, hold: f64) {
+        let (velocities, _) = self.velocity.0.as_chunks_mut::<COLUMNS>();
+        let (mut velocity, mut position, mut reach) = ([0.0; COLUMNS], [0.0; COLUMNS], [0.0_f64; COLUMNS]);
+        for row in velocities.iter_mut() {
+            let before = velocity;
+            for (sum, change) in velocity.iter_mut().zip(&*row) {
+                *sum += change;
+            }
+            *row = before;
+        }
+        for (row, velocities) in self.position.0.as_chunks_mut::<COLUMNS>().0.iter_mut().zip(velocities) {
+            let before = position;
+            for k in 0..COLUMNS {
+                position[k] += hold * velocities[k] + row[k];
+                reach[k] = if position[k].abs() > reach[k] { position[k].abs() } else { reach[k] };
+            }
+            *row = before;
+        }
+        self.sum_columns(hold, velocity, position, reach);
+    }
+
+    /// The same for what each column does, and how far each reaches.
+    #[inline(always)]
+    fn sum_columns(&mut self, hold: f64, velocity: [f64; COLUMNS], position: [f64; COLUMNS], reach: [f64; COLUMNS]) {
+        let length = ROWS as f64 * hold;
+        let ([mut v, mut z], mut farthest) = ([0.0_f64; 2], 0.0_f64);
+        for k in 0..COLUMNS {
+            self.columns[k] = [v, z];
+            farthest = farthest.max(z.abs() + length * v.abs() + reach[k]);
+            z += length * v + position[k];
+            v += velocity[k];
+        }
+        self.columns[COLUMNS] = [v, z];
+        self.reach = farthest;
+    }
 }
+
+/// Number, in its block, of the hold interval at each place.
+static NUMBERS: Aligned<[f64; BLOCK]> = {
+    let (mut numbers, mut k) = ([0.0; BLOCK], 0);
+    while k < BLOCK {
+        numbers[noise::place(k)] = k as f64;
+        k += 1;
+    }
+    Aligned(numbers)
+};
 
 /// The harmonic force with held phase noise.
 #[derive(Clone, Copy)]
@@ -38,8 +120,8 @@ struct Force {
     phase: f64,
     frequency: f64,
     hold: f64,
-    /// Turns of the force in one hold interval, without whole ones.
-    turn: f64,
+    /// Quarter turns of the force in one hold interval, without whole turns.
+    quarters: f64,
     /// Change of velocity, m/s, at cos a = 1.
     push: f64,
     /// Changes of position, m, at cos a = 1 and at sin a = 1.
@@ -56,17 +138,17 @@ impl Force {
             phase: p.phase,
             frequency: p.frequency,
             hold,
-            turn: cycle_fraction(p.frequency, hold),
+            quarters: 4.0 * cycle_fraction(p.frequency, hold),
             push: push * x.sin() / x,
             shift: [0.5 * push * hold * x.sin() / x, push * hold * lag(x)],
         }
     }
 
-    /// Angle in the middle of hold interval `sample`, in turns, without phase and noise.
+    /// Angle in the middle of hold interval `sample`, in quarter turns, without phase and noise.
     fn carrier(&self, sample: u64) -> f64 {
         let middle = sample as f64 + 0.5;
         let time = middle * self.hold;
-        cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time)
+        4.0 * (cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time))
     }
 
     /// Works out block `number`, with the widest vectors that this machine has.
@@ -102,13 +184,14 @@ impl Force {
     fn fill_plainly(&self, block: &mut Block, number: u64) {
         block.number = number;
         let carrier = self.carrier(number * BLOCK as u64);
-        let samples = noise::normals(self.seed, number);
-        for (k, xi) in samples.iter().enumerate() {
-            let phase = self.phase + self.intensity * xi;
-            let [sin, cos] = sin_cos(carrier + (k as f64 * self.turn + phase * (1.0 / TAU)));
-            block.velocity[k] = self.push * cos;
-            block.position[k] = self.shift[0] * cos + self.shift[1] * sin;
+        noise::normals(self.seed, number, &mut block.samples.0);
+        for k in 0..BLOCK {
+            let phase = self.phase + self.intensity * block.samples.0[k];
+            let [sin, cos] = sin_cos(carrier + (NUMBERS.0[k] * self.quarters + phase * FRAC_2_PI));
+            block.velocity.0[k] = self.push * cos;
+            block.position.0[k] = self.shift[0] * cos + self.shift[1] * sin;
         }
+        block.sum(self.hold);
     }
 }
 
@@ -136,16 +219,15 @@ impl Holds {
         Self { force: Force::new(parameters), blocks: None }
     }
 
-    /// The block with hold interval number `sample`, and the place of that in it.
-    pub fn block(&mut self, sample: u64) -> (&Block, usize) {
+    /// The block with hold interval number `sample`.
+    pub fn block(&mut self, sample: u64) -> &Block {
         let number = sample / BLOCK as u64;
         let blocks = self.blocks.get_or_insert_with(|| Box::new([Block::EMPTY; 2]));
         let block = &mut blocks[usize::from(number % 2 == 1)];
         if block.number != number {
             self.force.fill(block, number);
         }
-        #[allow(clippy::cast_possible_truncation)] // less than BLOCK
-        (block, (sample % BLOCK as u64) as usize)
+        block
     }
 }
 
@@ -171,11 +253,12 @@ impl core::fmt::Debug for Holds {
 mod tests {
     use super::*;
     use crate::cylinder::{CylinderMotion, Drive};
+    use core::f64::consts::TAU;
     use proptest::prelude::*;
 
     proptest! {
         #[test]
-        fn a_block_has_the_closed_form_of_each_hold_interval(
+        fn a_block_adds_up_the_closed_forms_of_its_hold_intervals(
             intensity in 0.0_f64..20.0, frequency in 0.5_f64..50.0, hold in prop_oneof![1e-6_f64..1e-4, 1e-3..2e-2],
             number in prop_oneof![0..4_u64, 1_000_000..1_000_010_u64], seed in any::<i32>(), phase in -7.0_f64..7.0,
         ) {
@@ -195,9 +278,18 @@ mod tests {
                 let (time, swing) = (4.0 * f64::EPSILON * end, amplitude / (TAU * frequency).powi(2));
                 let velocity = amplitude * (time + angle / (TAU * frequency));
                 let position = amplitude * hold * time + swing * (1.0 + TAU * frequency * hold) * angle;
-                prop_assert!((block.velocity[k] - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
-                prop_assert!((block.position[k] - motion.position(end)).abs() <= position, "position, {k}");
+                // Rounding of the sums.
+                let length = BLOCK as f64 * hold;
+                let [velocity, position] =
+                    [velocity + 2e-15 * amplitude * length, position + 2e-15 * amplitude * length * length];
+                let ([v, z], [next_v, next_z]) = (block.at(k, hold), block.at(k + 1, hold));
+                prop_assert!((next_v - v - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
+                prop_assert!((next_z - z - hold * v - motion.position(end)).abs() <= position, "position, {k}");
+                prop_assert!(z.abs().max(next_z.abs()) <= block.reach * (1.0 + 1e-14), "reach, {k}");
             }
+            prop_assert_eq!(block.at(0, hold), [0.0, 0.0]);
+            prop_assert!((0..BLOCK).all(|k| block.sample(k) == noise::normal(seed, number * BLOCK as u64 + k as u64)));
+            prop_assert!(block.reach < 2.0 * amplitude * (BLOCK as f64 * hold).powi(2));
         }
 
         #[test]
@@ -205,13 +297,13 @@ mod tests {
             seed in any::<i32>(), number in 0..1_000_000_u64, intensity in 0.0..10.0,
         ) {
             let force = Force::new(&Parameters { phase_noise: intensity, seed, ..Parameters::default() });
-            let mut blocks = [Block::EMPTY, Block::EMPTY, Block::EMPTY];
+            let mut blocks = [(); 3].map(|()| Box::new(Block::EMPTY));
             force.fill_plainly(&mut blocks[0], number);
             force.fill(&mut blocks[1], number);
             fill_by_four_if_possible(&force, &mut blocks[2], number);
-            let bits = blocks.map(|block| [block.velocity, block.position].map(|list| list.map(f64::to_bits)));
-            prop_assert_eq!(bits[0], bits[1]);
-            prop_assert_eq!(bits[0], bits[2]);
+            let bits = blocks.map(|block| (0..=BLOCK).map(|k| block.at(k, force.hold).map(f64::to_bits)).collect::<Vec<_>>());
+            prop_assert_eq!(&bits[0], &bits[1]);
+            prop_assert_eq!(&bits[0], &bits[2]);
         }
     }
 
