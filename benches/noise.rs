@@ -1,5 +1,5 @@
-//! Phase noise as in Fig. 17, 1e7 hold intervals in 100 s, against a plain program in C, and an ensemble on one thread and on
-//! two, in one run: `cargo bench --bench noise`. The throughput counts hold intervals.
+//! Phase noise as in Fig. 17, 1e7 hold intervals in 100 s, against a plain program in C, and an ensemble on one thread
+//! and on two, in one run: `cargo bench --bench noise`. The throughput counts hold intervals.
 
 #[path = "baseline/noise.rs"]
 mod baseline;

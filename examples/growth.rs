@@ -74,8 +74,8 @@ fn over_simulated_time() -> impl Iterator<Item = Result<Row, ModelError>> {
         .map(|until| row_of_events("simulated time, Fig. 14", format!("{until:e} s"), &case("fig14"), until))
 }
 
-/// Fig. 14, faster and faster with the same normalised amplitude, so that the ball meets the membranes in the same rhythm; and
-/// a ball that chatters and rests, whose bounces become ever more frequent.
+/// Fig. 14, faster and faster with the same normalised amplitude, so that the ball meets the membranes in the same
+/// rhythm; and a ball that chatters and rests, whose bounces become ever more frequent.
 fn over_impact_rate() -> impl Iterator<Item = Result<Row, ModelError>> {
     const UNTIL: f64 = 100.0;
     let base = case("fig14");

@@ -1,4 +1,5 @@
-//! C sources of the baselines, compiled when a benchmark starts, as users would: `cc -O3` for the machine's plain target.
+//! C sources of the baselines, compiled when a benchmark starts, as users would: `cc -O3` for the machine's plain
+//! target.
 
 use std::path::Path;
 use std::process::Command;

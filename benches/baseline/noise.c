@@ -1,6 +1,6 @@
 /* Phase noise as a plain program would have it: one hold interval after the other, ziggurat samples, the mathematical
-   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. Written with care for speed: what is
-   constant stands outside of the loop, which holds nothing but the state. */
+   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. Written with care for speed: what
+   is constant stands outside of the loop, which holds nothing but the state. */
 
 #include <math.h>
 #include <stdint.h>
@@ -41,8 +41,8 @@ static void seed(uint64_t x) {
 
 static inline double uniform(void) { return ((double)(next() >> 11) + 0.5) * 0x1p-53; }
 
-/* Ziggurat of Marsaglia and Tsang with 256 layers of equal area under exp(-x^2 / 2); x[i] and y[i] are the corners of the
-   layers, from the tail inwards. */
+/* Ziggurat of Marsaglia and Tsang with 256 layers of equal area under exp(-x^2 / 2); x[i] and y[i] are the corners of
+   the layers, from the tail inwards. */
 enum { LAYERS = 256 };
 static const double TAIL = 3.6541528853610088, AREA = 0.00492867323399;
 static double x[LAYERS + 1], y[LAYERS + 1];

@@ -47,8 +47,8 @@ impl Powers {
     }
 }
 
-/// Polynomial of the first `terms`, up to 9, of the `coefficients`, constant first, by Estrin's scheme: it waits less for its own results than
-/// Horner's.
+/// Polynomial of the first `terms`, up to 9, of the `coefficients`, constant first, by Estrin's scheme: it waits less
+/// for its own results than Horner's.
 #[inline(always)]
 fn sum<const N: usize>(coefficients: &[f64; N], terms: usize, Powers([x, x2, x4]): Powers) -> f64 {
     let two = |k: usize| match terms - k {
@@ -73,9 +73,9 @@ pub fn sin_cos(quarters: f64) -> [f64; 2] {
     turned::<8>(quarters - (rounded - ROUNDER), rounded.to_bits())
 }
 
-/// Sine and cosine of the angle `x`, from -1/2 to 1/2 of a quarter turn, and as many whole quarters as the two low bits of
-/// `quarter` say, by `TERMS` terms of the sine's series and one more of the cosine's: 8 make them right to rounding, 6 leave an
-/// error below 1e-11.
+/// Sine and cosine of the angle `x`, from -1/2 to 1/2 of a quarter turn, and as many whole quarters as the two low bits
+/// of `quarter` say, by `TERMS` terms of the sine's series and one more of the cosine's: 8 make them right to rounding,
+/// 6 leave an error below 1e-11.
 #[inline(always)]
 pub fn turned<const TERMS: usize>(x: f64, quarter: u64) -> [f64; 2] {
     /// Coefficients of the Taylor series from (pi / 2)^`first` / `first`! on.

@@ -1,106 +1,23 @@
 //! What the harmonic force does in the hold intervals of the phase noise, many of them at once.
 //!
-//! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by
-//! (A / M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force
-//! by constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out and
+//! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by (A /
+//! M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force by
+//! constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out and
 //! summed for a block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector
-//! instructions: the state at the begin of any interval of the block is then a closed form in the state at that of another.
+//! instructions: the state at the begin of any interval of the block is then a closed form in the state at that of
+//! another.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
+
+mod block;
+
+pub use self::block::{BLOCK, Block};
 
 use core::f64::consts::{FRAC_2_PI, PI};
 
 use crate::cylinder::{cycle_fraction, product_error};
 use crate::elementary::sin_cos;
-use crate::noise::{self, Aligned, COLUMNS, ROWS};
+use crate::noise::{self, Aligned};
 use crate::parameters::Parameters;
-
-/// Hold intervals in a block.
-pub const BLOCK: usize = noise::GROUP;
-
-/// What the harmonic force does up to the begin of each hold interval of one block, if the cylinder is at rest at the begin
-/// of the block.
-#[derive(Clone)]
-pub struct Block {
-    /// Samples of the noise at the places of the intervals.
-    samples: Aligned<[f64; BLOCK]>,
-    /// `z_M'`, m/s, at the places of the intervals, if the cylinder is at rest at the begin of each column.
-    velocity: Aligned<[f64; BLOCK]>,
-    /// `z_M`, m, likewise, if it is at 0 there.
-    position: Aligned<[f64; BLOCK]>,
-    /// Velocity and position at the begin of each column and at the end of the block.
-    columns: [[f64; 2]; COLUMNS + 1],
-    /// No |`z_M`| is larger at the begin or end of an interval, to rounding, m.
-    pub reach: f64,
-    number: u64,
-}
-
-impl Block {
-    const EMPTY: Self = Self {
-        samples: Aligned([0.0; BLOCK]),
-        velocity: Aligned([0.0; BLOCK]),
-        position: Aligned([0.0; BLOCK]),
-        columns: [[0.0; 2]; COLUMNS + 1],
-        reach: 0.0,
-        number: u64::MAX,
-    };
-
-    /// Sample of the noise in interval `k` of the block.
-    pub fn sample(&self, k: usize) -> f64 {
-        self.samples.0[noise::place(k)]
-    }
-
-    /// Velocity, m/s, and position, m, at the begin of interval `k` of the block, or at its end ([`BLOCK`]); the intervals are
-    /// `hold`, s, long.
-    #[inline]
-    pub fn at(&self, k: usize, hold: f64) -> [f64; 2] {
-        let [velocity, position] = self.columns[k / ROWS];
-        if k >= BLOCK {
-            return [velocity, position];
-        }
-        let (place, time) = (noise::place(k), (k % ROWS) as f64 * hold);
-        [velocity + self.velocity.0[place], position + (time * velocity + self.position.0[place])]
-    }
-
-    /// Sums what each interval of length `hold`, s, does, which stands at its place: down the columns, all at once, then from
-    /// column to column. Velocities come first: together, compilers would pack velocity and position of a column into one
-    /// vector.
-    #[inline(always)]
-    fn sum(&mut self, hold: f64) {
-        let (velocities, _) = self.velocity.0.as_chunks_mut::<COLUMNS>();
-        let (mut velocity, mut position, mut reach) = ([0.0; COLUMNS], [0.0; COLUMNS], [0.0_f64; COLUMNS]);
-        for row in velocities.iter_mut() {
-            let before = velocity;
-            for (sum, change) in velocity.iter_mut().zip(&*row) {
-                *sum += change;
-            }
-            *row = before;
-        }
-        for (row, velocities) in self.position.0.as_chunks_mut::<COLUMNS>().0.iter_mut().zip(velocities) {
-            let before = position;
-            for k in 0..COLUMNS {
-                position[k] += hold * velocities[k] + row[k];
-                reach[k] = if position[k].abs() > reach[k] { position[k].abs() } else { reach[k] };
-            }
-            *row = before;
-        }
-        self.sum_columns(hold, velocity, position, reach);
-    }
-
-    /// The same for what each column does, and how far each reaches.
-    #[inline(always)]
-    fn sum_columns(&mut self, hold: f64, velocity: [f64; COLUMNS], position: [f64; COLUMNS], reach: [f64; COLUMNS]) {
-        let length = ROWS as f64 * hold;
-        let ([mut v, mut z], mut farthest) = ([0.0_f64; 2], 0.0_f64);
-        for k in 0..COLUMNS {
-            self.columns[k] = [v, z];
-            farthest = farthest.max(z.abs() + length * v.abs() + reach[k]);
-            z += length * v + position[k];
-            v += velocity[k];
-        }
-        self.columns[COLUMNS] = [v, z];
-        self.reach = farthest;
-    }
-}
 
 /// Number, in its block, of the hold interval at each place.
 static NUMBERS: Aligned<[f64; BLOCK]> = {
@@ -301,7 +218,8 @@ mod tests {
             force.fill_plainly(&mut blocks[0], number);
             force.fill(&mut blocks[1], number);
             fill_by_four_if_possible(&force, &mut blocks[2], number);
-            let bits = blocks.map(|block| (0..=BLOCK).map(|k| block.at(k, force.hold).map(f64::to_bits)).collect::<Vec<_>>());
+            let all = |block: &Block| (0..=BLOCK).map(|k| block.at(k, force.hold).map(f64::to_bits)).collect::<Vec<_>>();
+            let bits = blocks.map(|block| all(&block));
             prop_assert_eq!(&bits[0], &bits[1]);
             prop_assert_eq!(&bits[0], &bits[2]);
         }

@@ -31,8 +31,8 @@ pub const GROUP: usize = 256;
 
 const QUARTER: usize = GROUP / 4;
 
-/// A group stands in rows as wide as the widest vectors, and goes on down each column: sums over neighbours are then sums of
-/// rows.
+/// A group stands in rows as wide as the widest vectors, and goes on down each column: sums over neighbours are then
+/// sums of rows.
 pub const COLUMNS: usize = 8;
 
 /// Samples in a column.
@@ -67,8 +67,8 @@ fn pair(bits: u64) -> [f64; 2] {
 #[repr(align(64))]
 pub struct Aligned<T>(pub T);
 
-/// Makes `samples` those from number [`GROUP`] `group` on of the standard normal sequence that belongs to `seed`, each at its
-/// [`place`].
+/// Makes `samples` those from number [`GROUP`] `group` on of the standard normal sequence that belongs to `seed`, each
+/// at its [`place`].
 #[inline(always)]
 pub fn normals(seed: i32, group: u64, samples: &mut [f64; GROUP]) {
     let mut words = Aligned([0; 2 * QUARTER]);

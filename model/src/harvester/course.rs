@@ -1,153 +1,25 @@
 //! The way through the hold intervals of the phase noise, many in one go.
 //!
-//! The impulsive law lets the cylinder go its own way, so that in a block of hold intervals the states follow from that at
-//! the begin of one of them, the anchor, in closed form with the sums that [`Holds`](crate::holds::Holds) have. Anchors are
-//! the begin of each block and of the interval after an event, whoever asks and whenever, so that no step of a caller
-//! changes a bit. Inside an interval dz stays within a bound, given by the largest acceleration, of its chord; only where
-//! that may touch a membrane the interval is searched in closed form. The ends of the intervals lie at multiples of the hold
-//! time; only events are rounded to what a double can tell as a time.
+//! The impulsive law lets the cylinder go its own way, so that in a block of hold intervals the states follow from that
+//! at the begin of one of them, the anchor, in closed form with the sums that [`Holds`](crate::holds::Holds) have.
+//! Anchors are the begin of each block and of the interval after an event, whoever asks and whenever, so that no step
+//! of a caller changes a bit. Inside an interval dz stays within a bound, given by the largest acceleration, of its
+//! chord; only where that may touch a membrane the interval is searched in closed form. The ends of the intervals lie
+//! at multiples of the hold time; only events are rounded to what a double can tell as a time.
+
+mod pace;
+
+pub(super) use self::pace::{Boundary, Place};
 
 use core::f64::consts::TAU;
 
+use self::pace::Pace;
 use super::events::Event;
 use super::{Harvester, Noise, Search, phase};
 use crate::cylinder::{CylinderMotion, Drive};
-use crate::flight::{Flight, Side};
-use crate::holds::{BLOCK, Block};
+use crate::flight::Flight;
+use crate::holds::BLOCK;
 use crate::parameters::{ContactLaw, NoiseModel};
-
-/// State at the begin of a hold interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Boundary {
-    /// Number of the interval.
-    pub(super) sample: u64,
-    /// `z_M`, m.
-    pub(super) position: f64,
-    /// `z_M` - `z_m`, m.
-    pub(super) dz: f64,
-    /// `z_M'`, m/s.
-    pub(super) velocity: f64,
-    /// External force over M, m/s^2.
-    pub(super) external: f64,
-}
-
-impl Boundary {
-    /// Number of the interval in its block.
-    fn place(&self) -> usize {
-        #[allow(clippy::cast_possible_truncation)] // less than BLOCK
-        let place = (self.sample % BLOCK as u64) as usize;
-        place
-    }
-}
-
-/// The begin of a hold interval, and the anchor that it follows from, in the same block.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    anchor: Boundary,
-    pub(super) here: Boundary,
-}
-
-impl Place {
-    fn of_anchor(anchor: Boundary) -> Self {
-        Self { anchor, here: anchor }
-    }
-}
-
-/// What is the same in all hold intervals up to the next event.
-#[derive(Clone, Copy)]
-struct Pace {
-    hold: f64,
-    /// `z_m'` of a free ball, m/s.
-    ball: f64,
-    resting: Option<Side>,
-    /// Rate of the external force over M, m/s^3.
-    rate: f64,
-    /// A / M, m/s^2.
-    amplitude: f64,
-    omega: f64,
-    half_travel: f64,
-}
-
-impl Pace {
-    /// What an external force over M, m/s^2, adds within `time`, s, to velocity, m/s, and position, m.
-    #[inline]
-    fn by(&self, external: f64, time: f64) -> [f64; 2] {
-        let change = self.rate * time;
-        [time * (external + change / 2.0), time * time * (external / 2.0 + change / 6.0)]
-    }
-
-    /// The begin of interval `place` of `block`, or its end, if the state at that of another is `anchor`.
-    #[inline]
-    fn at(&self, anchor: &Boundary, block: &Block, place: usize) -> Boundary {
-        let from = anchor.place();
-        if place == from {
-            return *anchor;
-        }
-        let ([v0, z0], [v, z]) = (block.at(from, self.hold), block.at(place, self.hold));
-        let time = self.hold * (place as f64 - from as f64);
-        let external = self.by(anchor.external, time);
-        let (velocity, position) = (anchor.velocity - v0, (z - z0) + external[1]);
-        Boundary {
-            sample: anchor.sample + (place - from) as u64,
-            position: anchor.position + (time * velocity + position),
-            velocity: velocity + (v + external[0]),
-            dz: if self.resting.is_some() { anchor.dz } else { anchor.dz + (time * (velocity - self.ball) + position) },
-            external: anchor.external + self.rate * time,
-        }
-    }
-
-    /// The first interval of `block`, from number `first` on, in which something might happen.
-    fn doubtful(&self, anchor: &Boundary, block: &Block, first: usize) -> Option<usize> {
-        let Some(side) = self.resting else { return self.doubtful_flight(anchor, block, first) };
-        let doubt = self.doubt(anchor);
-        let mut from = self.at(anchor, block, first);
-        (first..BLOCK).find(|place| {
-            let to = self.at(anchor, block, place + 1);
-            let change = to.velocity - from.velocity;
-            from = to;
-            side.sign() * change <= doubt
-        })
-    }
-
-    fn doubtful_flight(&self, anchor: &Boundary, block: &Block, first: usize) -> Option<usize> {
-        let near = self.near(anchor);
-        if self.farthest(anchor, block) < near {
-            return None;
-        }
-        let mut is_near = self.at(anchor, block, first).dz.abs() >= near;
-        (first..BLOCK).find(|place| {
-            let was_near = is_near;
-            is_near = self.at(anchor, block, place + 1).dz.abs() >= near;
-            was_near || is_near
-        })
-    }
-
-    /// A bound of |dz|, m, at the begins and ends of all intervals of the block from the anchor on.
-    fn farthest(&self, anchor: &Boundary, block: &Block) -> f64 {
-        let from = anchor.place();
-        let [velocity, position] = block.at(from, self.hold);
-        let time = self.hold * (BLOCK - from) as f64;
-        let straight = anchor.dz + time * (anchor.velocity - velocity - self.ball);
-        let external = time * time * (anchor.external.abs() / 2.0 + self.rate.abs() * time / 6.0);
-        1.000_001 * (anchor.dz.abs().max(straight.abs()) + block.reach + position.abs() + external)
-    }
-
-    /// |dz|, m, at both ends of an interval up to which the ball meets no membrane in between; for one block.
-    fn near(&self, from: &Boundary) -> f64 {
-        let [begin, end] = [0.0, BLOCK as f64].map(|n| (from.external + n * self.hold * self.rate).abs());
-        let bulge = 0.125 * self.hold * self.hold * (self.amplitude + begin.max(end));
-        let swing = self.amplitude / (self.omega * self.omega);
-        self.half_travel * (1.0 - 1e-12) - 1.001 * bulge - 64.0 * f64::EPSILON * swing
-    }
-
-    /// Change of velocity in an interval, m/s, above which the acceleration has its sign all the time, whatever rounding
-    /// does to a difference of velocities that are this large.
-    fn doubt(&self, anchor: &Boundary) -> f64 {
-        let push = self.hold * (self.amplitude + anchor.external.abs() + BLOCK as f64 * self.hold * self.rate.abs());
-        let rounding = 8.0 * f64::EPSILON * (anchor.velocity.abs() + 2.0 * BLOCK as f64 * push);
-        1.001 * self.hold * self.hold * (self.amplitude * self.omega + self.rate.abs()) + rounding
-    }
-}
 
 /// Number of the hold interval of length `hold`, s, that `time`, s, is in; 0 before t = 0.
 pub(super) fn hold_at(hold: f64, time: f64) -> u64 {
@@ -164,8 +36,8 @@ pub(super) fn hold_at(hold: f64, time: f64) -> u64 {
 }
 
 impl Harvester {
-    /// Whether hold intervals are passed in one go. A contact that lasts, a Wiener process and the states of an integrator
-    /// take them one by one; and so do intervals longer than a window of the search, which cost nothing.
+    /// Whether hold intervals are passed in one go. A contact that lasts, a Wiener process and the states of an
+    /// integrator take them one by one; and so do intervals longer than a window of the search, which cost nothing.
     pub(super) fn in_blocks(&self) -> bool {
         let p = &self.parameters;
         p.phase_noise > 0.0
@@ -292,8 +164,8 @@ impl Harvester {
         self.enter(place);
     }
 
-    /// Searches the hold intervals ahead for an event, block by block, until one begins after `until`, s. If the caller is
-    /// to get there, `follow` spares it the way.
+    /// Searches the hold intervals ahead for an event, block by block, until one begins after `until`, s. If the caller
+    /// is to get there, `follow` spares it the way.
     pub(super) fn search_ahead(&mut self, mut place: Place, until: f64, follow: bool) {
         let (pace, mut reached) = (self.pace(), None);
         while self.search.found.is_none() && self.hold_start(place.here.sample) <= until {

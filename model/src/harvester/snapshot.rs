@@ -34,8 +34,8 @@ pub struct Snapshot {
     pub resting: Option<Side>,
     /// Start of the present search for events, s, and `z_M` - `z_m`, m, there.
     pub flight: [f64; 2],
-    /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may lie
-    /// hold intervals back: the begin of a block of 256, or of the interval after an event.
+    /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
+    /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
     pub noise_sample: u64,
     /// The Wiener process of the phase noise, sqrt(s).
     pub noise_walk: f64,
