@@ -218,8 +218,8 @@ mod tests {
             force.fill_plainly(&mut blocks[0], number);
             force.fill(&mut blocks[1], number);
             fill_by_four_if_possible(&force, &mut blocks[2], number);
-            let all = |block: &Block| (0..=BLOCK).map(|k| block.at(k, force.hold).map(f64::to_bits)).collect::<Vec<_>>();
-            let bits = blocks.map(|block| all(&block));
+            let bits_at = |block: &Block, k| block.at(k, force.hold).map(f64::to_bits);
+            let bits = blocks.map(|block| (0..=BLOCK).map(|k| bits_at(&block, k)).collect::<Vec<_>>());
             prop_assert_eq!(&bits[0], &bits[1]);
             prop_assert_eq!(&bits[0], &bits[2]);
         }
