@@ -102,7 +102,7 @@ pub struct CylinderState {
 impl CylinderMotion {
     /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
     pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
-        let [sin_start, cos_start] = sin_cos(drive.turns(start));
+        let [sin_start, cos_start] = sin_cos(4.0 * drive.turns(start));
         let speed = drive.amplitude / drive.omega();
         let swing = speed / drive.omega();
         Self { start, position, velocity, drive, sin_start, cos_start, speed, swing }
@@ -118,7 +118,7 @@ impl CylinderMotion {
     pub(crate) fn at(&self, time: f64) -> CylinderState {
         let Drive { amplitude, external, external_rate, .. } = self.drive;
         let turns = self.drive.turns(time);
-        let sine = sin_cos(turns);
+        let sine = sin_cos(4.0 * turns);
         let ([sin, cos], elapsed) = (sine, time - self.start);
         let drift = self.velocity - self.speed * self.sin_start;
         let displacement = 0.5 * external + elapsed * external_rate * (1.0 / 6.0);
@@ -163,7 +163,7 @@ impl CylinderMotion {
         let speed = self.drive.amplitude / omega;
         let speed_change = drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
-        let [sin, cos] = sin_cos(self.drive.turns(time));
+        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
         let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
         let drift = speed_change * self.sin_start + speed * self.cos_start * from;
@@ -173,7 +173,7 @@ impl CylinderMotion {
 
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
-        let [sin, cos] = sin_cos(self.drive.turns(time));
+        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
         drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
     }
 

@@ -113,7 +113,7 @@ impl Flight {
 
     /// Sine and cosine of the angle at `tau`, s.
     fn sine_at(&self, tau: f64) -> [f64; 2] {
-        sin_cos(self.turns_at(tau))
+        sin_cos(4.0 * self.turns_at(tau))
     }
 
     /// dz, m, and its first seven derivatives at `tau`, s, where the angle has this sine and cosine.

@@ -1,6 +1,6 @@
 //! The events of the motion: what comes next, and what it does.
 
-use super::course::Boundary;
+use super::course::{Boundary, Place};
 use super::tangent::Hit;
 use super::{Ball, Harvester, phase};
 use crate::cylinder::{CylinderState, Drive};
@@ -72,14 +72,16 @@ pub(super) struct Search {
     pub(super) found: Option<Event>,
     /// With phase noise: the begin of the first hold interval that has not been searched, or of that in which the event is
     /// that has been found, unless it is the present one.
-    pub(super) ahead: Option<Boundary>,
+    pub(super) ahead: Option<Place>,
+    /// With phase noise: the begin of an earlier hold interval of the block, which the present one follows from.
+    pub(super) anchor: Option<Boundary>,
     /// No event will ever come.
     exhausted: bool,
 }
 
 impl Search {
     pub(super) fn new(flight: Flight) -> Self {
-        Self { flight, window: 0, found: None, ahead: None, exhausted: false }
+        Self { flight, window: 0, found: None, ahead: None, anchor: None, exhausted: false }
     }
 
     /// No search at all: no event is foreseen.
@@ -152,14 +154,14 @@ impl Harvester {
             None => f64::INFINITY,
         };
         while self.search.found.is_none() && !self.search.exhausted {
-            if let Some(boundary) = self.search.ahead {
-                self.search_ahead(boundary, until, follow);
+            if let Some(place) = self.search.ahead {
+                self.search_ahead(place, until, follow);
                 break;
             }
             let begin = self.search.window as f64 * self.search.flight.window_length();
             if begin >= limit_elapsed && in_blocks {
                 self.search.window = 0;
-                self.search.ahead = Some(self.next_boundary());
+                self.search.ahead = Some(self.next_place());
                 continue;
             }
             if begin >= limit_elapsed {
@@ -226,8 +228,8 @@ impl Harvester {
 
     pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
         self.tangent.fresh = false;
-        if let Some(boundary) = self.search.ahead {
-            self.enter(boundary);
+        if let Some(place) = self.search.ahead {
+            self.enter(place);
         }
         match event {
             Event::Impact { time, side } => {

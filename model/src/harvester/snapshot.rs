@@ -8,7 +8,7 @@ use crate::compliant::{ContactSnapshot, Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
-use crate::holds::Holds;
+use crate::holds::{BLOCK, Holds};
 use crate::membrane::Membrane;
 use crate::parameters::{ContactLaw, Parameters};
 use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
@@ -34,7 +34,8 @@ pub struct Snapshot {
     pub resting: Option<Side>,
     /// Start of the present search for events, s, and `z_M` - `z_m`, m, there.
     pub flight: [f64; 2],
-    /// Number of the phase-noise sample in force.
+    /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
+    /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
     pub noise_sample: u64,
     /// The Wiener process of the phase noise, sqrt(s).
     pub noise_walk: f64,
@@ -65,14 +66,19 @@ impl Harvester {
         let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
         let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
         let LedgerChange { wall, loss } = tangent.ledger;
+        // What follows from an anchor does so again, to the last bit, from nothing else.
+        let anchor = self.search.anchor.unwrap_or_else(|| self.present_boundary());
+        let is_behind = self.search.anchor.is_some();
+        let start = if is_behind { self.hold_start(anchor.sample) } else { cylinder.start };
+        let flight_start = if is_behind { start } else { self.search.flight.start };
         Snapshot {
             time: self.time,
-            cylinder: [cylinder.start, cylinder.position, cylinder.velocity],
-            external: [cylinder.drive.external, cylinder.drive.external_rate],
+            cylinder: [start, anchor.position, anchor.velocity],
+            external: [anchor.external, cylinder.drive.external_rate],
             ball: [ball.since, ball.position, ball.velocity],
             resting: ball.resting,
-            flight: [self.search.flight.start, self.search.flight.dz],
-            noise_sample: noise.sample,
+            flight: [flight_start, anchor.dz],
+            noise_sample: anchor.sample,
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
             contact: self.touch.as_ref().map(Touch::snapshot),
@@ -91,7 +97,7 @@ impl Harvester {
     /// # Errors
     /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        let mut harvester = Self::rebuild(parameters, snapshot, 0.0)?;
+        let mut harvester = Self::rebuild(parameters, snapshot, BLOCK as f64)?;
         harvester.placed = false;
         harvester.search = if harvester.touch.is_some() {
             Search::new(harvester.search.flight)
