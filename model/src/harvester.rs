@@ -1,6 +1,7 @@
 //! The vibro-impact harvester: from event to event, exactly under the impulsive law.
 
 mod contact;
+mod copy;
 mod course;
 mod energy;
 mod events;
@@ -74,7 +75,7 @@ struct Noise {
 }
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Harvester {
     parameters: Parameters,
     membrane: Membrane,
@@ -227,6 +228,7 @@ impl Harvester {
     ///
     /// # Errors
     /// A force or rate that is not finite.
+    #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         finite("externalForce", force)?;
         finite("derivative of externalForce", rate)?;
@@ -235,12 +237,13 @@ impl Harvester {
         Ok(())
     }
 
+    #[inline]
     fn push(&mut self, force: f64, rate: f64) {
-        let mass = self.parameters.cylinder_mass;
-        let drive = self.cylinder.drive;
+        let (mass, drive) = (self.parameters.cylinder_mass, &self.cylinder.drive);
+        let (external, external_rate) = (force / mass, rate / mass);
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
-        if force / mass != present || rate / mass != drive.external_rate {
-            self.restart(self.time, Drive { external: force / mass, external_rate: rate / mass, ..drive });
+        if external != present || external_rate != drive.external_rate {
+            self.restart(self.time, Drive { external, external_rate, ..*drive });
             self.look_ahead();
         }
     }

@@ -19,7 +19,16 @@ impl Harvester {
     ///
     /// # Errors
     /// A voltage or rate that is not finite.
+    #[inline]
     pub fn set_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
+        let [left, right] = &self.voltages;
+        if rates == [0.0; 2] && left.stays_at(voltages[0]) && right.stays_at(voltages[1]) {
+            return Ok(());
+        }
+        self.change_voltages(voltages, rates)
+    }
+
+    fn change_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
         for side in [Side::Left, Side::Right] {
             let (value, rate) = (voltages[side.index()], rates[side.index()]);
             finite("voltage of a membrane", value)?;

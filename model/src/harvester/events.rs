@@ -225,6 +225,7 @@ impl Harvester {
     }
 
     pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
+        self.tangent.fresh = false;
         if let Some(boundary) = self.search.ahead {
             self.enter(boundary);
         }

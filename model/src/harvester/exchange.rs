@@ -75,6 +75,7 @@ impl Harvester {
     /// # Errors
     /// More events than can be resolved.
     pub fn handle_events(&mut self) -> Result<bool, ModelError> {
+        self.tangent.fresh = false;
         while let Some(due) = self.noise_limit().filter(|due| *due <= self.time * (1.0 + f64::EPSILON)) {
             self.next_noise_sample(due.min(self.time));
         }

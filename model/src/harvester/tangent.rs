@@ -71,6 +71,8 @@ pub(super) struct ParameterChange {
 pub(super) struct Tangent {
     /// Time from which on the force is changed, s.
     pub(super) since: f64,
+    /// Nothing but the time has come into them since they were forgotten.
+    pub(super) fresh: bool,
     /// Change of the external force over M, m/s^2.
     push: f64,
     /// Of `z_m`, m, and `z_m'`, m/s, at the last event of a free ball.
@@ -152,7 +154,7 @@ impl Tangent {
     /// One more newton from `since`, s, on.
     pub(super) fn of_force(since: f64, cylinder_mass: f64) -> Self {
         let (ball, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
-        Self { since, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
+        Self { since, fresh: false, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
     }
 
     /// The start of `harvester` under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of
@@ -184,6 +186,7 @@ impl Tangent {
             shape: harvester.shape.change(d.stiffness_exponent, d.restitution),
         };
         Self {
+            fresh: false,
             since: harvester.time,
             push: (direction.force - force * heavier) / p.cylinder_mass,
             ball: [ball_position, d.ball_velocity],
@@ -221,9 +224,13 @@ impl Tangent {
 
 impl Harvester {
     /// Changes are those with the external force from now on.
+    #[inline]
     pub(super) fn forget_changes(&mut self) {
-        self.tangent = Tangent::of_force(self.time, self.parameters.cylinder_mass);
-        self.pulses.iter_mut().for_each(Pulses::forget_changes);
+        if !self.tangent.fresh {
+            self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, self.parameters.cylinder_mass) };
+            self.pulses.iter_mut().for_each(Pulses::forget_changes);
+        }
+        self.tangent.since = self.time;
     }
 
     /// Of `z_M` and `z_M'` at `time`, s.
