@@ -14,7 +14,7 @@ const MAX_SERIES: u32 = 200;
 /// Halley's method triples the digits. Once a change is as small as this relative to the step, the next one is small beside
 /// what the first series leaves out, or beside the last correction.
 const ROUGH: f64 = 0.3;
-const FINE: f64 = 1e-3;
+const FINE: f64 = 1e-5;
 
 /// The gap about a place: coefficients of the powers of the time since then, s.
 struct Series([f64; 8]);

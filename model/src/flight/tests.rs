@@ -36,8 +36,9 @@ proptest! {
         let (begin, end) = flight.window_bounds(window, f64::INFINITY);
         let contact = flight.contact_in_window(window, f64::INFINITY);
         let beyond = |tau: f64| flight.derivative(0, tau).abs() - HALF_TRAVEL;
-        // What begins outside of the gap is no contact.
-        prop_assume!(beyond(begin) <= flight.rounding(begin));
+        if beyond(begin) > flight.rounding(begin) {
+            return Ok(()); // what begins outside of the gap is no contact
+        }
         let rounding = 4.0 * flight.rounding(end);
         let first = contact.map_or(end, |contact| contact.elapsed);
         for k in 1..PLACES {
