@@ -39,7 +39,6 @@ pub use vary::{Range, Scale, Spread, Vary};
 use std::path::Path;
 
 use serde_json::{Map, Value};
-use sha2::{Digest as _, Sha256};
 
 use crate::fmi::{FmiError, ModelDescription};
 
@@ -58,7 +57,7 @@ pub fn harvester_description() -> Result<ModelDescription, FmiError> {
 /// If it cannot be read.
 pub fn fingerprint(path: &Path) -> Result<String, SweepError> {
     let content = std::fs::read(path).map_err(SweepError::file("read", path))?;
-    Ok(plan::hex(&Sha256::digest(content)))
+    Ok(plan::sha256(content))
 }
 
 /// In what two documents differ, for an error message.

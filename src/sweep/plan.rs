@@ -168,7 +168,7 @@ impl Sweep {
             columns: &columns,
             sha256: None,
         };
-        document.sha256 = Some(hex(&Sha256::digest(json(&document))));
+        document.sha256 = Some(sha256(json(&document)));
         let document = json(&document) + "\n";
         let (name, times) = (request.name, request.times);
         Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
@@ -265,7 +265,7 @@ fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, S
     let most = if seeds.is_some_and(|seeds| !seeds.common) { seeds::MOST } else { MAX_RUNS };
     let runs = points.checked_mul(samples).filter(|runs| (1..=most).contains(runs));
     let bound = || format!("with {points} points it must lie from 1 to {}", most / points);
-    runs.ok_or_else(|| SweepError::option("samples", samples, bound()))
+    runs.ok_or_else(|| SweepError::option("samples", samples.to_string(), bound()))
 }
 
 fn has_gains(description: &ModelDescription) -> bool {
@@ -301,7 +301,11 @@ fn json(document: &Document<'_>) -> String {
     serde_json::to_string_pretty(document).unwrap_or_default()
 }
 
-/// Bytes as hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// SHA-256 of `content`, in hexadecimal digits.
+pub(super) fn sha256(content: impl AsRef<[u8]>) -> String {
+    Sha256::digest(content).iter().fold(String::new(), |mut digits, byte| {
+        let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
+        digits.extend([digit(byte >> 4), digit(byte & 15)]);
+        digits
+    })
 }

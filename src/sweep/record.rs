@@ -68,6 +68,7 @@ impl Record {
         let heading = column::line(sweep.columns().iter().map(|column| column.name.as_str()));
         if fresh {
             remove(&path)?;
+            remove(&path.with_extension("parquet"))?;
             file.set_len(0).map_err(SweepError::file("empty", &part))?;
         } else if let Some(extent) = complete(&path, &heading, &range)? {
             remove(&part)?;
