@@ -206,7 +206,7 @@ fn results_cut_or_spoilt_anywhere_are_completed_to_the_same_bytes() {
         }
         fs::write(cut.join("sweep.csv.part"), part).unwrap();
         let said = json(&mut sweep(&cut, &what));
-        let lines = bytes[..length].iter().filter(|byte| **byte == b'\n').count();
+        let lines = bytes[..length].split(|byte| *byte == b'\n').count() - 1;
         assert_eq!(said["resumed_from"], lines.saturating_sub(1), "cut at {length}");
         assert_same_results(&whole, &cut);
     }
@@ -326,7 +326,7 @@ fn results_of_another_build_are_not_gone_on_with() {
     done(&mut sweep(&folder, &what));
     let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let mut lines: Vec<_> = text.lines().take(3).map(str::to_owned).collect();
-    lines[2] = lines[2].replace("e-5", "e-6");
+    lines[2] = lines[2].replace(",0.000", ",0.001");
     assert_ne!(lines[2], text.lines().nth(2).unwrap());
     fs::remove_file(folder.join("sweep.csv")).unwrap();
     fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
@@ -453,7 +453,7 @@ fn bad_input_is_one_line_with_the_thing_the_value_and_the_bound_before_anything_
         (&["--set", "membrane.restitution=7"], "membrane.restitution = 7 is out of range: allowed is 0 .. 1"),
         (&["--set", "excitation.seed=7", "--samples", "2"], "--set excitation.seed"),
         (&["--design", "lhs", "--vary", "membrane.restitution=0:1"], "needs the number of points"),
-        (&["--samples", "0"], "--samples 0: with 1 points it must lie from 1 to 4294967296"),
+        (&["--samples", "0"], "--samples 0: with 1 points it must lie from 1 to 1000000000000"),
         (&["--samples", "4294967297"], "--samples 4294967297: with 1 points it must lie from 1 to 4294967296"),
         (&["--record", "nope"], "nope"),
         (

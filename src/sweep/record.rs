@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::document::differences;
 use super::lines::{self, Extent};
 use super::{Shard, Sweep, SweepError, column};
 
@@ -213,7 +214,7 @@ fn check_document(folder: &Path, sweep: &Sweep, path: &Path, fresh: bool) -> Res
         return Ok(());
     }
     if !fresh {
-        let differences = super::differences(&there, sweep.document());
+        let differences = differences(&there, sweep.document());
         let reason =
             format!("it belongs to another sweep ({differences}); choose another --output, or --fresh to begin anew");
         return Err(SweepError::content(&document, reason));
