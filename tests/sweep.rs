@@ -140,6 +140,34 @@ fn the_model_itself_and_its_fmu_give_the_same_bytes() {
     assert!(column(&recorded, "contact.resting").iter().all(|resting| resting == "false"));
 }
 
+#[test]
+fn any_fmu_is_swept_once_it_is_said_what_to_record() {
+    done(&mut videg(&["fmu", "build"]));
+    let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/fmu/HarvestingCircuit.fmu");
+    let archive = archive.to_str().unwrap();
+    let (_guard, folder) = folder();
+    let what = ["--fmu", archive, "--vary", "load.resistance=log:1e8:1e10:3"];
+    let recorded = [&what[..], &["--record", "load.voltage", "--record", "supply.energy", "--step", "0.1"]].concat();
+    assert_eq!(json(&mut sweep(&folder, &recorded))["case"], "HarvestingCircuit");
+    let heading = ["run", "point", "sample", "load.resistance", "load.voltage", "supply.energy", "error"];
+    assert_eq!(rows(&folder)[0], heading);
+    assert_eq!(column(&folder, "load.resistance"), ["100000000.0", "1000000000.0", "10000000000.0"]);
+    assert!(column(&folder, "load.voltage").iter().all(|voltage| voltage.parse::<f64>().unwrap().is_finite()));
+    assert_eq!(column(&folder, "error"), [""; 3]);
+    for (more, named) in [
+        (&[][..], "HarvestingCircuit has no gain.voltage, so say what to record"),
+        (
+            &["--samples", "2"],
+            "--samples 2: HarvestingCircuit has no excitation.seed; name its seed by --seed-variable",
+        ),
+        (&["--case", "fig14"], "--case: HarvestingCircuit is not the harvester, of which the cases are"),
+        (&["--set", "ball.mass=1"], "ball.mass"),
+    ] {
+        let (code, message) = refused(&mut sweep(&folder, &[&what[..], more].concat()));
+        assert!(code == Some(2) && message.contains(named), "{message}");
+    }
+}
+
 /// A sweep that takes a second or more, and whose runs differ in length.
 const LONG: [&str; 8] =
     ["--design", "lhs", "--points", "400", "--samples", "3", "--vary", "membrane.restitution=0.2:0.9"];
