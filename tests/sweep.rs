@@ -1,5 +1,5 @@
-//! `videg sweep` through the binary: the same bytes however a sweep is interrupted, divided or computed, and what it says
-//! to bad input.
+//! `videg sweep` through the binary: the same bytes however a sweep is interrupted, divided or computed, and what it
+//! says to bad input.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::fs;

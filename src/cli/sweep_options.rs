@@ -22,8 +22,8 @@ pub struct What {
     /// Set a parameter or input in all runs; may be repeated
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
-    /// Vary a parameter or input: name=from:to:count for a grid, name=from:to for the other designs, with log: before from
-    /// for equal ratios; name=a,b,c for any type; may be repeated
+    /// Vary a parameter or input: name=from:to:count for a grid, name=from:to for the other designs, with log: before
+    /// from for equal ratios; name=a,b,c for any type; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     vary: Vec<String>,
     /// How points are chosen [default: grid]
@@ -59,8 +59,8 @@ pub struct What {
 }
 
 impl What {
-    /// The sweep of the model that `description` is of, with what `file` says and the `fingerprint` of an FMU that is not our
-    /// own.
+    /// The sweep of the model that `description` is of, with what `file` says and the `fingerprint` of an FMU that is
+    /// not our own.
     pub fn request<'a>(
         &self,
         file: SweepFile,

@@ -23,8 +23,8 @@ impl Axis {
     /// What `vary` says of a variable of `description`, for a `design` with this `seed`.
     ///
     /// # Errors
-    /// No such variable, or none that can be set; values of another type; a range without a count in a grid, or with one
-    /// elsewhere; a variable no value of which lies in its bounds.
+    /// No such variable, or none that can be set; values of another type; a range without a count in a grid, or with
+    /// one elsewhere; a variable no value of which lies in its bounds.
     pub fn new(description: &ModelDescription, vary: &Vary, design: Design, seed: u64) -> Result<Self, SweepError> {
         let name = &vary.name;
         let variable = description.variable(name)?.clone();
@@ -94,7 +94,7 @@ impl Axis {
         if design == Design::Lhs { (self.stream.permuted(point, points) as f64 + unit) / points as f64 } else { unit }
     }
 
-    /// That a value lies in the bounds of the variable. Those of a range do if an end does, or if the bounds lie between.
+    /// That a value lies in the bounds of the variable. One of a range does if an end does, or if a bound lies between.
     fn check_any(&self) -> Result<(), String> {
         let (values, spans_bounds) = match &self.values {
             Values::List(values) => (values.clone(), false),

@@ -59,7 +59,7 @@ pub enum SweepError {
         reason: String,
     },
     /// Another process writes the same file.
-    #[error("{} is being written by another process: wait for it, or choose another --output or --shard", path.display())]
+    #[error("{} is being written by another process: wait for it, or choose another --output", path.display())]
     Locked {
         /// The file.
         path: PathBuf,

@@ -53,8 +53,8 @@ fn is_run(line: &[u8], number: u64) -> bool {
     line.strip_prefix(number.to_string().as_bytes()).is_some_and(|rest| rest.first() == Some(&b','))
 }
 
-/// Whether the line is that of a run that failed: its last cell, the error, is not empty. A text that ends in a comma would
-/// stand in quotes.
+/// Whether the line is that of a run that failed: its last cell, the error, is not empty. A text that ends in a comma
+/// would stand in quotes.
 pub(super) fn has_failed(line: &[u8]) -> bool {
     !line.ends_with(b",\n")
 }

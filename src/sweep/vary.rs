@@ -61,8 +61,8 @@ impl Vary {
     /// # Errors
     /// If it is of none of these forms.
     pub fn parse(text: &str) -> Result<Self, SweepError> {
-        const FORMS: &str = "allowed is name=from:to:count, name=from:to or name=a,b,c, with log: before from for equal \
-                             ratios";
+        const FORMS: &str = "allowed is name=from:to:count, name=from:to or name=a,b,c, with log: before from for \
+                             equal ratios";
         let bad = || SweepError::option("vary", text, FORMS);
         let (name, values) = text.split_once('=').map(|(name, values)| (name.trim(), values.trim())).ok_or_else(bad)?;
         if name.is_empty() || values.is_empty() {
@@ -156,7 +156,8 @@ mod tests {
     #[test]
     fn a_table_says_the_same_as_options() {
         let table: Table = toml::from_str(
-            "z.b = { from = 0.1, to = 0.9, count = 9 }\n'a.c' = ['x', true, 2]\nd = { from = 1, to = 2, scale = 'log' }",
+            "z.b = { from = 0.1, to = 0.9, count = 9 }\n'a.c' = ['x', true, 2]\n\
+             d = { from = 1, to = 2, scale = 'log' }",
         )
         .unwrap();
         let options = ["z.b=0.1:0.9:9", "a.c=x,true,2", "d=log:1:2"].map(|text| Vary::parse(text).unwrap());
