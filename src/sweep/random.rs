@@ -20,8 +20,8 @@ impl Stream {
         Self { prefix }
     }
 
-    /// Word number `counter` of kind `kind`: the first eight bytes of SHA-256 of seed, length of the purpose, purpose, kind
-    /// and counter, numbers being 64-bit little-endian.
+    /// Word number `counter` of kind `kind`: the first eight bytes of SHA-256 of seed, length of the purpose, purpose,
+    /// kind and counter, numbers being 64-bit little-endian.
     pub fn word(&self, kind: u64, counter: u64) -> u64 {
         let mut hash = self.prefix.clone();
         hash.update(kind.to_le_bytes());
