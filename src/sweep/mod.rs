@@ -3,7 +3,8 @@
 //! A [`Sweep`] is everything that decides the results, resolved from a [`Request`]: points of a [`Design`] over what is
 //! varied, each with a number of samples. A run follows from its number alone, whoever computes it, so that a sweep can
 //! be interrupted and resumed ([`run()`]), divided ([`Shard`]) and put together again ([`merge()`]) with the same
-//! bytes. Results go to a CSV file as they come, in order; memory does not grow with them. docs/sweep.md describes the files.
+//! bytes. Results go to a CSV file as they come, in order; memory does not grow with them. docs/sweep.md describes the
+//! files.
 
 mod axis;
 mod column;
