@@ -11,6 +11,19 @@ const MANTISSA: u64 = (1 << 52) - 1;
 const ONE: u64 = 1.0_f64.to_bits();
 const SIGN: u64 = 1 << 63;
 
+/// An integer that is nearest to `x`. From 2^51 on it may be another one, by which the two differ.
+#[inline(always)]
+pub fn round(x: f64) -> f64 {
+    (x + ROUNDER) - ROUNDER
+}
+
+/// `x`, below 2^51, less a whole number; from 0 to 1.
+#[inline(always)]
+pub fn fraction(x: f64) -> f64 {
+    let rest = x - round(x);
+    if rest < 0.0 { rest + 1.0 } else { rest }
+}
+
 /// Number in [0, 1) with the 52 leading bits of `bits`.
 #[inline(always)]
 pub fn unit(bits: u64) -> f64 {

@@ -31,7 +31,7 @@ impl Block {
 }
 
 /// The harmonic force with held phase noise.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Force {
     seed: i32,
     intensity: f64,
@@ -152,6 +152,14 @@ impl Holds {
 impl Clone for Holds {
     fn clone(&self) -> Self {
         Self { force: self.force, blocks: None }
+    }
+
+    /// Keeps its own blocks if they are those of the same force.
+    fn clone_from(&mut self, source: &Self) {
+        if self.blocks.is_some() && self.force != source.force {
+            self.blocks = None;
+        }
+        self.force = source.force;
     }
 }
 

@@ -92,12 +92,9 @@ impl Membrane {
         let root = (r2 * r2 + deflection * (deflection - 2.0 * rb)).sqrt();
         let half = deflection / (r2 + root);
         let square = half * half;
-        let half_slope = (1.0 - square) / (2.0 * root);
-        Tangent {
-            cos: (1.0 - square) / (1.0 + square),
-            versine: 2.0 * square / (1.0 + square),
-            cos_slope: -4.0 * half / ((1.0 + square) * (1.0 + square)) * half_slope,
-        }
+        let cos = (1.0 - square) / (1.0 + square);
+        let sin = 2.0 * half / (1.0 + square);
+        Tangent { cos, versine: half * sin, cos_slope: -sin * cos / root }
     }
 
     /// cos(alpha) at `deflection`, m: Eq. (6).
@@ -107,7 +104,10 @@ impl Membrane {
 
     /// `A_3` / `A_2` - 1 at `deflection`, m: Eqs. (3) and (4), written without cancellation.
     pub fn area_excess(&self, deflection: f64) -> f64 {
-        let Tangent { cos, versine, .. } = self.tangent(deflection);
+        self.area_excess_by(&self.tangent(deflection))
+    }
+
+    fn area_excess_by(&self, &Tangent { cos, versine, .. }: &Tangent) -> f64 {
         let (r2, rb) = (self.radius * self.radius, self.ball_radius * self.ball_radius);
         versine * (rb + (r2 - rb) / cos) / r2
     }
@@ -141,6 +141,14 @@ impl Membrane {
     pub fn capacitance_excess(&self, deflection: f64) -> f64 {
         let excess = self.area_excess(deflection);
         excess * (2.0 + excess)
+    }
+
+    /// The same and its derivative, 1/m.
+    pub(crate) fn capacitance_excess_and_slope(&self, deflection: f64) -> [f64; 2] {
+        let tangent = self.tangent(deflection);
+        let excess = self.area_excess_by(&tangent);
+        let slope = self.area_slope_by_cos(tangent.cos) * tangent.cos_slope;
+        [excess * (2.0 + excess), 2.0 * (1.0 + excess) * slope]
     }
 
     /// dC/dx, F/m, at `deflection` x, m: the derivative of [`Membrane::capacitance`].

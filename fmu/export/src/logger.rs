@@ -74,6 +74,8 @@ pub struct Logger {
     instance_name: CString,
     enabled: u8,
     warned: Cell<bool>,
+    /// Numbers of the warnings that have been given once, as bits.
+    given: Cell<u64>,
 }
 
 const ALL_BITS: u8 = 0b1_1111;
@@ -93,6 +95,7 @@ impl Logger {
             instance_name: c_string(instance_name),
             enabled: if logging_on { ALL_BITS } else { 0 },
             warned: Cell::new(false),
+            given: Cell::new(0),
         }
     }
 
@@ -106,6 +109,21 @@ impl Logger {
     pub fn warning(&self, message: impl Display) {
         self.warned.set(true);
         self.send(fmi2Warning, LogCategory::Warning, &message);
+    }
+
+    /// Gives a [`warning`](Self::warning), unless one of the same `number`, 0 to 63, was given since the instance was made
+    /// or reset. No FMU state holds which were: a step that is taken back and tried again does not warn twice.
+    pub fn warning_once(&self, number: u32, message: impl Display) {
+        let bit = 1 << (number % u64::BITS);
+        if self.given.get() & bit == 0 {
+            self.given.set(self.given.get() | bit);
+            self.warning(message);
+        }
+    }
+
+    /// Warnings that were given once may be given again.
+    pub(crate) fn forget_given(&self) {
+        self.given.set(0);
     }
 
     /// Whether messages of this category reach anyone, for models that must work to make them. Errors always do: what

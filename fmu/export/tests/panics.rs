@@ -120,19 +120,25 @@ fn a_panic_in_serialisation_is_an_error() {
     assert_survives(&host, status, "fmi2DeSerializeFMUstate", "read");
 }
 
+/// The state that was saved last is copied when the present one is about to change.
 #[test]
 fn a_panic_in_clone_is_an_error() {
     let host = Host::initialized();
     let (saved, mut state) = (host.save(), null_mut());
     PANIC_IN_CLONE.set(true);
+    let status = host.step(0.0, 1.0);
+    PANIC_IN_CLONE.set(false);
+    assert_survives(&host, status, "fmi2DoStep", "clone");
+    assert_eq!(host.restore(saved), fmi2Error, "there is no copy");
+    assert!(host.error().contains("is no FMU state of this instance"));
+
+    let host = Host::initialized();
+    host.save();
+    PANIC_IN_CLONE.set(true);
     let status = unsafe { fmi2GetFMUstate(host.component, &raw mut state) };
     PANIC_IN_CLONE.set(false);
     assert!(state.is_null());
     assert_survives(&host, status, "fmi2GetFMUstate", "clone");
-    PANIC_IN_CLONE.set(true);
-    let status = host.restore(saved);
-    PANIC_IN_CLONE.set(false);
-    assert_survives(&host, status, "fmi2SetFMUstate", "clone");
 }
 
 #[test]

@@ -6,7 +6,6 @@ use videg_model::{
     Side, Snapshot, Totals,
 };
 
-use crate::limits::Warned;
 use crate::slave::Harvester;
 
 impl Harvester {
@@ -41,7 +40,7 @@ impl Harvester {
             voltage_rates,
             start_time,
             placed,
-            warned: Warned::default(),
+            checked: [f64::NAN; 2],
             model: Model::new(&Parameters::default(), 0.0),
         };
         slave.model = if from.bool()? {

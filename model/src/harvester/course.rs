@@ -219,7 +219,7 @@ impl Harvester {
 
     fn flight_from(&self, boundary: &Boundary, cylinder: &CylinderMotion) -> Flight {
         let velocity = if self.ball.resting.is_some() { boundary.velocity } else { self.ball.velocity };
-        Flight::new(cylinder, cylinder.start, boundary.dz, velocity, self.half_travel())
+        Flight::new(cylinder, &cylinder.at(cylinder.start), boundary.dz, velocity, self.half_travel())
     }
 
     /// The cylinder's motion when the event comes that is foreseen.

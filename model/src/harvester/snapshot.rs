@@ -136,8 +136,9 @@ impl Harvester {
         tangent.ledger = LedgerChange { wall, loss };
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
         let [start, dz] = snapshot.flight;
-        let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
-        let flight = Flight::new(&cylinder, start, dz, ball_velocity, p.travel() / 2.0);
+        let here = cylinder.at(start);
+        let ball_velocity = if ball.resting.is_some() { here.velocity } else { velocity };
+        let flight = Flight::new(&cylinder, &here, dz, ball_velocity, p.travel() / 2.0);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
@@ -155,6 +156,7 @@ impl Harvester {
             ledger: Ledger { wall, electrical, loss, contact_time },
             tangent,
             placed: true,
+            calm_until: f64::NEG_INFINITY,
             second: snapshot.second,
             second_events: snapshot.second_events,
         })
