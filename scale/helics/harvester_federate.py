@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""The FMU VibroImpactHarvester as a HELICS federate: publishes capacitances, subscribes to voltages.
+
+It sets the pace: it lands on impacts and on the knots of C(t), and publishes where, because HELICS counts nanoseconds.
+"""
+
+import csv
+import math
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+
+import tool  # noqa: E402
+from federation import Federate, arguments  # noqa: E402
+from schedule import Schedule  # noqa: E402
+from slave import read_parameters  # noqa: E402
+from subsystems import CAPACITANCES, VOLTAGES, Harvester  # noqa: E402
+
+
+def run() -> int:
+    options = arguments(__doc__.splitlines()[0]).parse_args()
+    plain = options.master == "plain"
+    schedule = Schedule(options.step, options.until)
+    parameters = read_parameters(options.parameters) if options.parameters else {}
+    harvester = Harvester(options.fmu, parameters, options.until, extrapolate=not plain)
+    with Federate("harvester", options, waits=False) as federate, open(options.output, "w", newline="") as file:
+        series = csv.writer(file, lineterminator="\n")
+        series.writerow(["time", *Harvester.RECORDED])
+        federate.publications(CAPACITANCES, "F")
+        federate.publications(["time"], "s")
+        federate.subscriptions([f"circuit/{name}" for name in VOLTAGES], "V")
+        federate.enter([*harvester.capacitance, 0.0])
+        now = 0.0
+        series.writerow([now, *harvester.row])
+        while now < options.until:
+            then = schedule.next(now, math.inf if plain else harvester.knot)
+            federate.request(then)
+            harvester.step(now, then, federate.values())
+            federate.publish([*harvester.capacitance, then])
+            series.writerow([then, *harvester.row])
+            now = then
+    harvester.slave.close()
+    return 0
+
+
+if __name__ == "__main__":
+    tool.main(run)
