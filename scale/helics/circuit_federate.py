@@ -12,7 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import tool  # noqa: E402
-from federation import NEVER, Federate, arguments  # noqa: E402
+from federation import NEVER, Federate, arguments, in_step  # noqa: E402
 from schedule import Schedule  # noqa: E402
 from slave import read_parameters  # noqa: E402
 from subsystems import CAPACITANCES, VOLTAGES, Circuit  # noqa: E402
@@ -27,21 +27,24 @@ def run() -> int:
         series = csv.writer(file, lineterminator="\n")
         series.writerow(["time", *Circuit.RECORDED])
         federate.publications(VOLTAGES, "V")
+        federate.publications(["time"], "s")
         federate.subscriptions([f"harvester/{name}" for name in CAPACITANCES], "F")
         federate.subscriptions(["harvester/time"], "s")
         federate.enter()
         *capacitance, now = federate.values()
         circuit = Circuit(options.fmu, parameters, options.until, capacitance)
-        federate.publish(circuit.voltage)
+        federate.publish([*circuit.voltage, now])
         series.writerow([now, *circuit.row])
         while now < options.until:
             granted = federate.request(schedule.next(now) if plain else NEVER)
             if granted >= NEVER:
                 raise tool.Problem(f"the harvester ended at {now} s, before --until {options.until} s")
             *capacitance, then = federate.values()
-            then = schedule.next(now) if plain else then
+            if plain:
+                in_step("harvester", then, now)
+                then = schedule.next(now)
             circuit.step(now, then, capacitance)
-            federate.publish(circuit.voltage)
+            federate.publish([*circuit.voltage, then])
             series.writerow([then, *circuit.row])
             now = then
     circuit.slave.close()

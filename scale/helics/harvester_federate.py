@@ -12,7 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import tool  # noqa: E402
-from federation import Federate, arguments  # noqa: E402
+from federation import Federate, arguments, in_step  # noqa: E402
 from schedule import Schedule  # noqa: E402
 from slave import read_parameters  # noqa: E402
 from subsystems import CAPACITANCES, VOLTAGES, Harvester  # noqa: E402
@@ -30,13 +30,16 @@ def run() -> int:
         federate.publications(CAPACITANCES, "F")
         federate.publications(["time"], "s")
         federate.subscriptions([f"circuit/{name}" for name in VOLTAGES], "V")
+        federate.subscriptions(["circuit/time"], "s")
         federate.enter([*harvester.capacitance, 0.0])
         now = 0.0
         series.writerow([now, *harvester.row])
         while now < options.until:
             then = schedule.next(now, math.inf if plain else harvester.knot)
             federate.request(then)
-            harvester.step(now, then, federate.values())
+            *voltage, of_circuit = federate.values()
+            in_step("circuit", of_circuit, now)
+            harvester.step(now, then, voltage)
             federate.publish([*harvester.capacitance, then])
             series.writerow([then, *harvester.row])
             now = then
