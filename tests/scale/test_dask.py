@@ -7,7 +7,7 @@ import sys
 import psutil
 import pytest
 
-from conftest import SWEEP, end, same_bytes, wait_for
+from conftest import SWEEP, VIDEG, end, same_bytes, wait_for
 
 SCRIPT = "dask/sweep.py"
 
@@ -105,11 +105,9 @@ def test_what_cannot_run_is_an_error_with_exit_code_2(run, tmp_path, arguments, 
 
 def test_a_task_that_always_fails_ends_the_sweep_with_its_reason(run, tmp_path):
     fake = tmp_path / "videg"
-    fake.write_text('#!/bin/sh\ncase "$*" in *shards*) echo "videg: no space left" >&2; exit 2;; esac\nexec "$REAL" "$@"\n')
+    fake.write_text('#!/bin/sh\ncase "$*" in *shards*) echo "videg: no space left" >&2; exit 2;; esac\n' f'exec "{VIDEG}" "$@"\n')
     fake.chmod(0o755)
-    from conftest import VIDEG
-
     arguments = ["--workers", 1, "--shards", 2, "--retries", 1, "--videg", fake, "--", *SWEEP]
-    ended = run(SCRIPT, "--output", tmp_path / "out", *arguments, REAL=str(VIDEG))
+    ended = run(SCRIPT, "--output", tmp_path / "out", *arguments)
     assert ended.returncode == 2
     assert "failed 2 times" in ended.stderr and "videg: no space left" in ended.stderr
