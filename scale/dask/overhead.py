@@ -33,7 +33,7 @@ def run() -> int:
     options = parser.parse_args()
     if options.tasks < 1:
         raise tool.Problem(f"--tasks {options.tasks}: must be at least 1")
-    distributed = tool.need("distributed", "scale/requirements.txt")
+    distributed = tool.need("distributed")
     videg = tool.find_videg(options.videg)
 
     def start_videg(_: int) -> int:
@@ -42,10 +42,11 @@ def run() -> int:
     numbers = range(options.tasks)
     with distributed.Client(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as client:
         client.submit(nothing, 0, pure=False).result()  # The first one waits for the worker.
-        on_dask = lambda task: client.gather(client.map(task, numbers, pure=False))  # noqa: E731
         found = {
-            "empty_task": milliseconds(lambda: on_dask(nothing), options.tasks),
-            "task_that_starts_videg": milliseconds(lambda: on_dask(start_videg), options.tasks),
+            "empty_task": milliseconds(lambda: client.gather(client.map(nothing, numbers, pure=False)), options.tasks),
+            "task_that_starts_videg": milliseconds(
+                lambda: client.gather(client.map(start_videg, numbers, pure=False)), options.tasks
+            ),
             "videg_without_dask": milliseconds(lambda: [start_videg(number) for number in numbers], options.tasks),
         }
     print(json.dumps(found, indent=2))

@@ -43,15 +43,23 @@ def parse() -> argparse.Namespace:
     )
     parser.add_argument("sweep", nargs="*", metavar="SWEEP", help="what to sweep: file and options of videg sweep")
     parser.add_argument("--output", type=Path, required=True, metavar="DIR", help="folder; its shards go to DIR/shards")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="a running scheduler, e.g. tcp://head:8786 [this machine]")
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="a running scheduler, e.g. tcp://head:8786 [this machine]"
+    )
     parser.add_argument("--workers", type=int, metavar="N", help="workers on this machine [its cores over --jobs]")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="cores of a task [%(default)s]")
     parser.add_argument("--shards", type=int, metavar="N", help="number of shards [from a measured rate]")
     parser.add_argument(
-        "--task-seconds", type=float, default=30.0, metavar="S", help="how long a task should take at most, s [%(default)s]"
+        "--task-seconds",
+        type=float,
+        default=30.0,
+        metavar="S",
+        help="how long a task should take at most, s [%(default)s]",
     )
     parser.add_argument("--retries", type=int, default=3, metavar="N", help="further tries of a task [%(default)s]")
-    parser.add_argument("--timeout", type=float, default=30.0, metavar="S", help="for scheduler and workers, s [%(default)s]")
+    parser.add_argument(
+        "--timeout", type=float, default=30.0, metavar="S", help="for scheduler and workers, s [%(default)s]"
+    )
     parser.add_argument("--videg", metavar="FILE", help="the command-line tool [PATH, or target/release]")
     options = parser.parse_args()
     bounds = {"workers": 1, "jobs": 1, "shards": 1, "retries": 0, "task_seconds": SHORTEST, "timeout": 1}
@@ -87,8 +95,8 @@ def run_shard(command: list[str], folder: str, number: int, of: int) -> dict:
 
 def connect(options: argparse.Namespace):
     """A client of the scheduler, or of workers on this machine."""
-    distributed = tool.need("distributed", "scale/requirements.txt")
-    dask = tool.need("dask", "scale/requirements.txt")
+    distributed = tool.need("distributed")
+    dask = tool.need("dask")
     # What goes wrong is told once, by this script.
     dask.config.set({"distributed.scheduler.allowed-failures": options.retries, "logging.distributed": "critical"})
     try:
@@ -117,7 +125,9 @@ def started_with(folder: Path) -> int | None:
     """Into how many shards the sweep in `folder` was divided before, if it was."""
     found = {int(match[1]) for file in folder.glob("sweep.*") if (match := re.search(r"-of-(\d+)\.csv", file.name))}
     if len(found) > 1:
-        raise tool.Problem(f"{folder} holds shards of several divisions: {sorted(found)}; remove those that are not wanted")
+        raise tool.Problem(
+            f"{folder} holds shards of several divisions: {sorted(found)}; remove those that are not wanted"
+        )
     return found.pop() if found else None
 
 
@@ -159,9 +169,11 @@ def run_all(options: argparse.Namespace, client, command: list[str], shards: int
     from distributed import as_completed
 
     folder = str(options.output / "shards")
-    submit = lambda number: client.submit(  # noqa: E731
-        run_shard, command, folder, number, shards, pure=False, retries=options.retries, key=f"shard-{number}-of-{shards}"
-    )
+
+    def submit(number: int):
+        key = f"shard-{number}-of-{shards}"
+        return client.submit(run_shard, command, folder, number, shards, pure=False, retries=options.retries, key=key)
+
     futures = [submit(number) for number in range(1, shards + 1)]
     results = []
     for future in as_completed(futures):
@@ -184,10 +196,10 @@ def run() -> int:
         started = time.monotonic()
         results = run_all(options, client, command, shards)
         seconds = time.monotonic() - started
-    merged = json.loads(tool.videg(videg, "sweep", "merge", str(options.output / "shards"), "--output", str(options.output), "--json"))
+    merge = ["merge", str(options.output / "shards"), "--output", str(options.output), "--json"]
+    merged = json.loads(tool.videg(videg, "sweep", *merge))
     busy = sum(result["elapsed_s"] for result in results)
     merged |= {"shards": shards, "workers": threads, "seconds": seconds, "busy_s": busy}
-    merged["overhead_per_task_s"] = (seconds * min(threads, shards) - busy) / shards
     merged["resumed"] = sum(result["resumed_from"] > 0 for result in results)
     print(json.dumps(merged, indent=2))
     return 0 if merged["failed"] < merged["runs"] or runs == 0 else 1

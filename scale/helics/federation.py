@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tool import Problem, need
 
-need("helics", "scale/requirements.txt")
+need("helics")
 
 import helics  # noqa: E402
 
@@ -25,8 +25,12 @@ def arguments(description: str) -> argparse.ArgumentParser:
     """Options that both federates have."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--fmu", type=Path, required=True, metavar="FILE", help="the FMU")
-    parser.add_argument("--parameters", type=Path, metavar="FILE.ssv", help="its parameter set (SSP 1.0), as in Harvester.ssp")
-    parser.add_argument("--output", type=Path, required=True, metavar="FILE.csv", help="time series, a row a communication point")
+    parser.add_argument(
+        "--parameters", type=Path, metavar="FILE.ssv", help="its parameter set (SSP 1.0), as in Harvester.ssp"
+    )
+    parser.add_argument(
+        "--output", type=Path, required=True, metavar="FILE.csv", help="time series, a row a communication point"
+    )
     parser.add_argument("--broker", default=BROKER, metavar="HOST:PORT", help="where the broker listens [%(default)s]")
     add_run_options(parser)
     return parser
@@ -37,9 +41,15 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--until", type=float, default=100.0, metavar="S", help="end of the run, s [%(default)s]")
     parser.add_argument("--step", type=float, default=1e-3, metavar="S", help="communication step, s [%(default)s]")
     parser.add_argument("--master", choices=MASTERS, default=MASTERS[0], help="as of videg cosim [%(default)s]")
-    parser.add_argument("--core", choices=CORES, default=CORES[0], help="core of HELICS, as of the broker [%(default)s]")
     parser.add_argument(
-        "--timeout", type=float, default=TIMEOUT, metavar="S", help="a partner silent for so long is lost, s [%(default)s]"
+        "--core", choices=CORES, default=CORES[0], help="core of HELICS, as of the broker [%(default)s]"
+    )
+    parser.add_argument(
+        "--timeout",
+        type=float,
+        default=TIMEOUT,
+        metavar="S",
+        help="a partner silent for so long is lost, s [%(default)s]",
     )
 
 
@@ -55,7 +65,9 @@ def in_step(partner: str, reached: float, now: float) -> None:
     """Checks that the partner has come to `now`, s, and no further: two that were started differently would go on with old
     values."""
     if reached != now:
-        raise Problem(f"the {partner} is at {reached} s in place of {now} s: --until, --step and --master must be the same")
+        raise Problem(
+            f"the {partner} is at {reached} s in place of {now} s: --until, --step and --master must be the same"
+        )
 
 
 def reach(host: str, port: int, timeout: float) -> None:

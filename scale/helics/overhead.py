@@ -55,7 +55,16 @@ def one_process(fmus: Path, options: argparse.Namespace, until: float) -> tuple[
 def federated(options: argparse.Namespace, videg: str, core: str, until: float) -> tuple[int, float]:
     """Two federates; returns steps and seconds, start-up included."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, Path(__file__).with_name("run.py"), "--output", folder, "--videg", videg, "--core", core]
+        command = [
+            sys.executable,
+            Path(__file__).with_name("run.py"),
+            "--output",
+            folder,
+            "--videg",
+            videg,
+            "--core",
+            core,
+        ]
         command += ["--until", repr(until), "--step", repr(options.step), "--timeout", repr(options.timeout)]
         run = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if run.returncode != 0:

@@ -28,10 +28,14 @@ FEDERATES = {"harvester": "VibroImpactHarvester", "circuit": "HarvestingCircuit"
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--case", default="fig14", help="case of the paper, as of videg cosim [%(default)s]")
-    parser.add_argument("--set", action="append", default=[], metavar="VARIABLE=VALUE", help="set a parameter; may be repeated")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="VARIABLE=VALUE", help="set a parameter; may be repeated"
+    )
     parser.add_argument("--output", type=Path, default=Path("out/helics"), metavar="DIR", help="folder [%(default)s]")
     parser.add_argument("--videg", metavar="FILE", help="the command-line tool [PATH, or target/release]")
-    parser.add_argument("--check", action="store_true", help="compare with videg cosim --circuit fmu; exit code 1 if it differs")
+    parser.add_argument(
+        "--check", action="store_true", help="compare with videg cosim --circuit fmu; exit code 1 if it differs"
+    )
     add_run_options(parser)
     return parser.parse_args()
 
@@ -118,7 +122,17 @@ def summary(options: argparse.Namespace, seconds: float) -> dict:
 def differences(options: argparse.Namespace, videg: str) -> list[str]:
     """Columns that are not those of one process, bit by bit."""
     with tempfile.TemporaryDirectory() as folder:
-        run = ["--step", repr(options.step), "--master", options.master, "--circuit", "fmu", "--output", folder, "--json"]
+        run = [
+            "--step",
+            repr(options.step),
+            "--master",
+            options.master,
+            "--circuit",
+            "fmu",
+            "--output",
+            folder,
+            "--json",
+        ]
         tool.videg(videg, "cosim", *case(options), *run)
         expected = rows(Path(folder) / "timeseries.csv")
     harvester, circuit = (rows(options.output / f"{name}.csv") for name in FEDERATES)

@@ -19,7 +19,9 @@ class Schedule:
         if not (math.isfinite(until) and until > 0.0):
             raise Problem(f"--until {until} s: must be positive")
         if not SHORTEST <= step <= until:
-            raise Problem(f"--step {step} s: must lie from {SHORTEST} s (HELICS counts nanoseconds) to --until = {until} s")
+            raise Problem(
+                f"--step {step} s: must lie from {SHORTEST} s (HELICS counts nanoseconds) to --until = {until} s"
+            )
         self.step, self.until = step, until
         self.window = (50.0, 100.0) if until >= 100.0 else (until / 2.0, until)
         self.closest = CLOSEST * step

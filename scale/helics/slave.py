@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tool import Problem, need
 
-need("fmpy", "scale/requirements.txt")
+need("fmpy")
 
 import fmpy  # noqa: E402
 from fmpy.fmi2 import FMU2Slave  # noqa: E402

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import NoReturn
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,21 +22,25 @@ def main(run: Callable[[], int]) -> None:
     try:
         code = run()
     except Problem as problem:
-        print(f"{Path(sys.argv[0]).name}: {problem}", file=sys.stderr)
-        code = 2
+        give_up(problem)
     sys.exit(code)
 
 
-def need(module: str, requirements: str) -> ModuleType:
-    """The Python module, or how to get it."""
+def give_up(reason: object) -> NoReturn:
+    print(f"{Path(sys.argv[0]).name}: {reason}", file=sys.stderr)
+    sys.exit(2)
+
+
+def need(module: str) -> ModuleType:
+    """The Python module; without it the script ends, and says how to get it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise Problem(f"{module}: {error}; pip install -r {requirements}") from error
+        give_up(f"{module}: {error}; pip install -r scale/requirements.txt")
 
 
 def find_videg(given: str | None) -> str:
-    """The command-line tool: as given, or the environment's VIDEG, or the one of the PATH, or that of the source tree."""
+    """The command-line tool: as given, or the environment's VIDEG, or that of the PATH, or that of the source tree."""
     wanted = given or os.environ.get("VIDEG")
     if wanted:
         found = shutil.which(wanted)

@@ -90,7 +90,10 @@ def test_a_scheduler_elsewhere_runs_the_tasks(run, undivided, tmp_path):
 @pytest.mark.parametrize(
     "arguments, complaint",
     [
-        (["--scheduler", "tcp://127.0.0.1:9", "--timeout", "1", "--", *SWEEP], "scheduler tcp://127.0.0.1:9: not reachable"),
+        (
+            ["--scheduler", "tcp://127.0.0.1:9", "--timeout", "1", "--", *SWEEP],
+            "scheduler tcp://127.0.0.1:9: not reachable",
+        ),
         (["--scheduler", "nonsense://x", "--timeout", "1", "--", *SWEEP], "scheduler nonsense://x"),
         (["--shards", "0", "--", *SWEEP], "--shards 0: must lie from 1 to 1000000"),
         (["--videg", "/nowhere/videg", "--", *SWEEP], "/nowhere/videg is not there"),
@@ -105,7 +108,9 @@ def test_what_cannot_run_is_an_error_with_exit_code_2(run, tmp_path, arguments, 
 
 def test_a_task_that_always_fails_ends_the_sweep_with_its_reason(run, tmp_path):
     fake = tmp_path / "videg"
-    fake.write_text('#!/bin/sh\ncase "$*" in *shards*) echo "videg: no space left" >&2; exit 2;; esac\n' f'exec "{VIDEG}" "$@"\n')
+    fake.write_text(
+        f'#!/bin/sh\ncase "$*" in *shards*) echo "videg: no space left" >&2; exit 2;; esac\nexec "{VIDEG}" "$@"\n'
+    )
     fake.chmod(0o755)
     arguments = ["--workers", 1, "--shards", 2, "--retries", 1, "--videg", fake, "--", *SWEEP]
     ended = run(SCRIPT, "--output", tmp_path / "out", *arguments)

@@ -44,11 +44,12 @@ def test_an_array_is_the_undivided_sweep(run, cluster, undivided, tmp_path):
 def test_a_task_that_failed_goes_on_when_it_is_submitted_again(run, cluster, undivided, tmp_path):
     """The second task is killed once it has written something, and nothing is merged before it is done."""
     killer = tmp_path / "videg"
+    part = tmp_path / "out" / "shards" / "sweep.2-of-3.csv.part"
     killer.write_text(
         '#!/bin/bash\ncase "$*" in\n'
         f'*" 2/3 "*) "{VIDEG}" "$@" & child=$!\n'
-        f'   until [ "$(cat {tmp_path}/out/shards/sweep.2-of-3.csv.part 2>/dev/null | wc -c)" -gt 3000 ]; do sleep 0.01; done\n'
-        '   kill -KILL $child; exit 137 ;;\n'
+        f'   until [ "$(cat "{part}" 2>/dev/null | wc -c)" -gt 3000 ]; do sleep 0.01; done\n'
+        "   kill -KILL $child; exit 137 ;;\n"
         f'*) exec "{VIDEG}" "$@" ;;\nesac\n'
     )
     killer.chmod(0o755)
@@ -56,8 +57,7 @@ def test_a_task_that_failed_goes_on_when_it_is_submitted_again(run, cluster, und
     first = run(SUBMIT, *arguments, "--videg", killer, "--", *SWEEP, SLURM_CONF=cluster)
     assert first.returncode == 0, first.stderr
     wait_for(lambda: finished(cluster, tmp_path))
-    shards = tmp_path / "out" / "shards"
-    assert (shards / "sweep.2-of-3.csv.part").exists() and not (tmp_path / "out" / "sweep.csv").exists()
+    assert part.exists() and not (tmp_path / "out" / "sweep.csv").exists()
     again = run(SUBMIT, *arguments, "--only", "2", "--videg", VIDEG, "--", *SWEEP, SLURM_CONF=cluster)
     assert again.returncode == 0, again.stderr
     wait_for(lambda: finished(cluster, tmp_path))
