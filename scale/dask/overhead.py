@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Measures what a task on Dask costs, with one worker on this machine: N tasks that do nothing, N that start videg, and videg
-started N times without Dask. Prints one JSON object; milliseconds a task."""
+"""Measures what a task on Dask costs, with one worker on this machine: N tasks that do nothing, N that start videg, and
+videgs started without Dask. Prints one JSON object: milliseconds a task."""
 
 import argparse
 import json

@@ -3,9 +3,9 @@
 
     scale/dask/sweep.py --output out/sweep -- --vary membrane.restitution=0.2:0.9:1000 --samples 20
 
-What stands behind -- goes to videg sweep as it is. Workers need videg, and the folder of the output, at the same paths as this
-machine. A task that fails, or whose worker dies, is tried again and goes on where its shard ended; so does the same command. The
-result is that of one undivided sweep, byte for byte.
+What stands behind -- goes to videg sweep as it is. Workers need videg, and the folder of the output, at the same paths
+as this machine. A task that fails, or whose worker dies, is tried again and goes on where its shard ended; so does the
+same command. The result is that of one undivided sweep, byte for byte.
 """
 
 import argparse
@@ -72,8 +72,8 @@ def parse() -> argparse.Namespace:
 
 
 def run_shard(command: list[str], folder: str, number: int, of: int) -> dict:
-    """The task: runs shard `number` of `of` of a sweep into `folder`. A worker gets this function without this file, so it
-    stands alone. Returns what videg says."""
+    """The task: runs shard `number` of `of` of a sweep into `folder`; returns what videg says. A worker gets this
+    function without this file, so it stands alone."""
     import fcntl
     import json
     import os

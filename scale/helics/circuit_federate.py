@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The FMU HarvestingCircuit as a HELICS federate: publishes voltages, subscribes to capacitances.
 
-With --master gauss-seidel it steps whenever the harvester has stepped, with C(t) linear between both ends of the step; with
---master plain it steps on the regular grid at the same time as the harvester, and C(t) runs behind by a step.
+With --master gauss-seidel it steps whenever the harvester has stepped, with C(t) linear between both ends of the step;
+with --master plain it steps on the regular grid at the same time as the harvester, and C(t) runs behind by a step.
 """
 
 import csv

@@ -54,16 +54,16 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 
 def core_options(timeout: float) -> str:
-    """Options of a core or broker: how long to wait for partners, and how often to ask whether they live. One that does not
-    answer twice is lost."""
+    """Options of a core or broker: how long to wait for partners, and how often to ask whether they live. One that does
+    not answer twice is lost."""
     if not 1.0 <= timeout <= 1e6:
         raise Problem(f"--timeout {timeout} s: must lie from 1 to 1e6 s")
     return f"--timeout={timeout}s --tick={timeout / 3.0}s --loglevel=no_print"
 
 
 def in_step(partner: str, reached: float, now: float) -> None:
-    """Checks that the partner has come to `now`, s, and no further: two that were started differently would go on with old
-    values."""
+    """Checks that the partner has come to `now`, s, and no further: two that were started differently would go on with
+    old values."""
     if reached != now:
         raise Problem(
             f"the {partner} is at {reached} s in place of {now} s: --until, --step and --master must be the same"
@@ -84,12 +84,12 @@ def reach(host: str, port: int, timeout: float) -> None:
 
 
 class Federate:
-    """A value federate that publishes and subscribes to doubles. Use it in a `with` statement: what goes wrong within ends
-    the whole federation."""
+    """A value federate that publishes and subscribes to doubles. Use it in a `with` statement: what goes wrong within
+    ends the whole federation."""
 
     def __init__(self, name: str, options: argparse.Namespace, *, waits: bool):
-        """With `waits`, the federate runs last of those granted one time, and sees what they published at it; else it sees
-        what they published before."""
+        """With `waits`, the federate runs last of those granted one time, and sees what they published at it; else it
+        sees what they published before."""
         host, _, port = options.broker.rpartition(":")
         if not host or not port.isdigit():
             raise Problem(f"--broker {options.broker}: must be HOST:PORT")

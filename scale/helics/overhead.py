@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Measures what the federation costs per step: the same FMUs, steps and Python code in one process and as two federates.
+"""Measures what a step of the federation costs: the same FMUs, steps and Python code in one process and as federates.
 
-Prints one JSON object; times in microseconds a communication step, the median over --repeat runs. Start-up is not counted: it
-falls out of the difference between a run of --until and one of half that length.
+Prints one JSON object: microseconds a communication step, the median over --repeat runs, start-up left out.
 """
 
 import argparse
@@ -12,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -34,8 +35,9 @@ def parse() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def one_process(fmus: Path, options: argparse.Namespace, until: float) -> tuple[int, float]:
-    """Both FMUs in this process, coupled in the order of Gauss-Seidel; returns steps and seconds."""
+def one_process(fmus: Path, options: argparse.Namespace) -> float:
+    """Both FMUs in this process, coupled in the order of Gauss-Seidel; microseconds a step."""
+    until = options.until
     schedule = Schedule(options.step, until)
     harvester = Harvester(fmus / f"{FMUS['harvester']}.fmu", {}, until, extrapolate=True)
     circuit = Circuit(fmus / f"{FMUS['circuit']}.fmu", {}, until, harvester.capacitance)
@@ -49,11 +51,11 @@ def one_process(fmus: Path, options: argparse.Namespace, until: float) -> tuple[
     seconds = time.monotonic() - started
     harvester.slave.close()
     circuit.slave.close()
-    return steps, seconds
+    return 1e6 * seconds / steps
 
 
-def federated(options: argparse.Namespace, videg: str, core: str, until: float) -> tuple[int, float]:
-    """Two federates; returns steps and seconds, start-up included."""
+def federated(options: argparse.Namespace, videg: str, core: str) -> float:
+    """Two federates; microseconds a step."""
     with tempfile.TemporaryDirectory() as folder:
         command = [
             sys.executable,
@@ -65,22 +67,16 @@ def federated(options: argparse.Namespace, videg: str, core: str, until: float) 
             "--core",
             core,
         ]
-        command += ["--until", repr(until), "--step", repr(options.step), "--timeout", repr(options.timeout)]
+        command += ["--until", repr(options.until), "--step", repr(options.step), "--timeout", repr(options.timeout)]
         run = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if run.returncode != 0:
         raise tool.Problem(f"run.py ended with exit code {run.returncode}")
     result = json.loads(run.stdout)
-    return result["steps"], result["seconds"]
+    return 1e6 * result["seconds"] / result["steps"]
 
 
-def per_step(run, options: argparse.Namespace) -> float:
-    """Microseconds a step in the second half of a run."""
-
-    def once() -> float:
-        (half_steps, half), (steps, whole) = run(options.until / 2.0), run(options.until)
-        return 1e6 * (whole - half) / (steps - half_steps)
-
-    return round(statistics.median(once() for _ in range(options.repeat)), 1)
+def median(measure: Callable[[], float], options: argparse.Namespace) -> float:
+    return round(statistics.median(measure() for _ in range(options.repeat)), 1)
 
 
 def run() -> int:
@@ -91,9 +87,9 @@ def run() -> int:
         raise tool.Problem(f"--master {options.master}: only gauss-seidel is compared, where nothing runs at once")
     videg = tool.find_videg(options.videg)
     fmus = Path(json.loads(tool.videg(videg, "fmu", "build", "--json"))["fmus"][0]).parent
-    alone = per_step(lambda until: one_process(fmus, options, until), options)
+    alone = median(lambda: one_process(fmus, options), options)
     found = {
-        core: per_step(lambda until: federated(options, videg, core, until), options)
+        core: median(partial(federated, options, videg, core), options)
         for core in (CORES if options.every_core else [options.core])
     }
     overhead = {core: round(value - alone, 1) for core, value in found.items()}

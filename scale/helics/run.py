@@ -68,25 +68,24 @@ def start(options: argparse.Namespace, federate: str, port: int) -> subprocess.P
     command += ["--output", options.output / f"{federate}.csv", "--broker", f"127.0.0.1:{port}"]
     for name in ("until", "step", "master", "core", "timeout"):
         command += [f"--{name}", str(getattr(options, name))]
-    return subprocess.Popen(command)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
 
 
-def federate(options: argparse.Namespace) -> float:
-    """Runs broker and federates to the end; returns the seconds that they took."""
+def federate(options: argparse.Namespace) -> dict:
+    """Runs broker and federates to the end; returns the number of steps and the seconds that they took."""
     port = free_port()
     settings = f"--federates={len(FEDERATES)} --port={port} {core_options(options.timeout)}"
     broker = helics.helicsCreateBroker(options.core, "", settings)
-    started = time.monotonic()
     processes = {name: start(options, name, port) for name in FEDERATES}
     try:
         watch(processes, 3.0 * options.timeout)
+        return json.loads(processes["harvester"].communicate()[0].splitlines()[-1])
     finally:
         for process in processes.values():
             process.kill()
             process.wait()
         helics.helicsBrokerDisconnect(broker)
         helics.helicsCloseLibrary()
-    return time.monotonic() - started
 
 
 def watch(processes: dict[str, subprocess.Popen], grace: float) -> None:
@@ -107,16 +106,15 @@ def rows(file: Path) -> list[dict[str, float]]:
         return [{name: float(text) for name, text in row.items()} for row in csv.DictReader(series)]
 
 
-def summary(options: argparse.Namespace, seconds: float) -> dict:
-    """What the run comes to, with the keys of videg cosim --json."""
-    series = rows(options.output / "circuit.csv")
-    last, harvester = series[-1], rows(options.output / "harvester.csv")[-1]
+def summary(options: argparse.Namespace, effort: dict) -> dict:
+    """What the run comes to, with the keys of videg cosim --json, and the effort that it took."""
+    last, harvester = rows(options.output / "circuit.csv")[-1], rows(options.output / "harvester.csv")[-1]
     energy = {name: last[f"{name}.energy"] for name in ("supply", "load", "zener", "diode", "stored")}
     energy["converted"] = energy["load"] + energy["zener"] + energy["diode"] + energy["stored"] - energy["supply"]
     energy |= {"surplus": energy["load"] - energy["supply"], "eq13": harvester["gain.energyEq13"]}
     charge = {name: last[f"{name}.charge"] for name in ("supply", "load")}
     run = {"case": options.case, "until": options.until, "step": options.step, "master": options.master}
-    return run | {"energy": energy, "charge": charge, "steps": len(series) - 1, "seconds": seconds}
+    return run | {"energy": energy, "charge": charge} | effort
 
 
 def differences(options: argparse.Namespace, videg: str) -> list[str]:

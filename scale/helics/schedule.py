@@ -5,15 +5,15 @@ import math
 from tool import Problem
 
 CLOSEST = 1e-3
-"""Shortest step, in units of the regular one: knots closer than this to another communication point are not landed on."""
+"""Shortest step, in units of the regular one: closer to a communication point no knot is landed on."""
 
 SHORTEST = 2e-6
 """HELICS counts nanoseconds, and two communication points may lie as close as a thousandth of a step, s."""
 
 
 class Schedule:
-    """A grid of `step`, s, up to `until`, s, with the edges of the window that `videg cosim` averages over by default, and
-    the knots of C(t)."""
+    """A grid of `step`, s, up to `until`, s, with the edges of the window that `videg cosim` averages over by default,
+    and the knots of C(t)."""
 
     def __init__(self, step: float, until: float):
         if not (math.isfinite(until) and until > 0.0):

@@ -98,7 +98,7 @@ class Circuit:
         self.voltage = self.row[:2]
 
     def step(self, now: float, then: float, capacitance: Pair) -> None:
-        """Steps from `now` to `then`, s, while the capacitances run linearly to these, F, from those of the step before."""
+        """Steps from `now` to `then`, s, while the capacitances run linearly to these, F, from those given before."""
         step = then - now
         self.slave.set(self._inputs, self._given)
         self.slave.set_rates(self._inputs, [(end - start) / step for start, end in zip(self._given, capacitance)])
