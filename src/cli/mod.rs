@@ -30,6 +30,7 @@ mod simulate_contacts;
 mod simulate_law;
 mod ssp;
 mod sweep;
+mod sweep_options;
 mod worker;
 
 use std::process::ExitCode;

@@ -10,13 +10,12 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::options::{Window, parse_window};
 use super::progress::RunBar;
 use super::simulate::file_list;
-use super::{Verdict, format, output, packaging, settings};
-use crate::fmi::{Fmu, ModelDescription};
-use crate::scenario::{self, Setting};
-use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Request, Shard, Sweep, SweepFile, Times, Vary};
+use super::sweep_options::What;
+use super::{Verdict, format, output, packaging};
+use crate::fmi::Fmu;
+use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -63,54 +62,6 @@ struct Merge {
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     json: bool,
-}
-
-/// What is swept. An option wins over the same key of the file.
-#[derive(Args)]
-struct What {
-    /// Sweep file (TOML): a case file that may also have design, points, samples, seed, record and a [vary] table
-    #[arg(value_name = "FILE.toml")]
-    file: Option<PathBuf>,
-    /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
-    #[arg(long, value_name = "NAME")]
-    case: Option<String>,
-    /// Set a parameter or input in all runs; may be repeated
-    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
-    settings: Vec<String>,
-    /// Vary a parameter or input: name=from:to:count for a grid, name=from:to for the other designs, with log: before from
-    /// for equal ratios; name=a,b,c for any type; may be repeated
-    #[arg(long, value_name = "VARIABLE=VALUES")]
-    vary: Vec<String>,
-    /// How points are chosen [default: grid]
-    #[arg(long, value_enum, value_name = "DESIGN")]
-    design: Option<Design>,
-    /// Number of points of lhs and random; a grid has as many as it has
-    #[arg(long, value_name = "N")]
-    points: Option<u64>,
-    /// Runs of each point, each with other noise [default: 1]
-    #[arg(long, value_name = "N")]
-    samples: Option<u64>,
-    /// Seed of the design, and of the noise of the first run; each further run has the next [default: 1]
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// Give sample i the same seed in all points (common random numbers)
-    #[arg(long)]
-    common_seeds: bool,
-    /// The variable that takes the seed [default: excitation.seed]
-    #[arg(long, value_name = "VARIABLE")]
-    seed_variable: Option<String>,
-    /// End of a run, s [default: 100]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    until: Option<f64>,
-    /// Communication step, s [default: from edge to edge of the window; of other FMUs their own, or 1/1000 of the run]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    step: Option<f64>,
-    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
-    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
-    window: Option<Window>,
-    /// Record a variable at the end of each run; may be repeated
-    #[arg(long, value_name = "VARIABLE")]
-    record: Vec<String>,
 }
 
 /// What `--json` says.
@@ -168,41 +119,42 @@ fn verdict(runs: u64, failed: u64) -> Verdict {
 fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
+    let design = arguments.what.design.or(file.design).unwrap_or_default();
     let fmu = arguments.fmu.as_deref().map(Fmu::open).transpose()?;
     let own = sweep::harvester_description()?;
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
-    let design = arguments.what.design.or(file.design).unwrap_or_default();
-    let sweep = Sweep::new(request(&arguments.what, file, description, fingerprint)?)?;
-    let engine = match fmu {
-        Some(fmu) => Engine::Fmu(fmu),
+    let sweep = Sweep::new(arguments.what.request(file, description, fingerprint)?)?;
+    let engine = match (fmu, BuiltIn::new(&sweep)) {
+        (Some(fmu), _) => Engine::Fmu(fmu),
+        (None, Some(built_in)) => Engine::BuiltIn(Box::new(built_in)),
         // What the model itself does not offer goes through its FMU, with the same numbers.
-        None => match BuiltIn::new(&sweep) {
-            Some(built_in) => Engine::BuiltIn(built_in),
-            None => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
-        },
+        (None, None) => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
     };
     let (stop, signal) = signals()?;
+    let report = follow(arguments, &sweep, &engine, &stop)?;
+    if report.is_complete() {
+        return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
+    }
+    let (done, runs) = (report.done, report.runs);
+    eprintln!("videg: interrupted after {done} of {runs} runs; the same command goes on from there");
+    Ok(Verdict::Stopped(u8::try_from(signal.load(Ordering::Relaxed))?))
+}
+
+/// Runs the sweep, with progress.
+fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBool) -> Result<Report, SweepError> {
     let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let job = Job {
         folder: &arguments.output,
         shard: arguments.shard,
         jobs: arguments.jobs.map_or_else(cores, usize::from),
         fresh: arguments.fresh,
-        stop: &stop,
+        stop,
     };
     let mut bar = RunBar::new(format!("sweep {}", sweep.name()));
-    let report = sweep::run(&sweep, &engine, &job, &mut bar);
+    let report = sweep::run(sweep, engine, &job, &mut bar);
     bar.finish();
-    let report = report?;
-    if !report.is_complete() {
-        let (done, runs) = (report.done, report.runs);
-        eprintln!("videg: interrupted after {done} of {runs} runs; the same command goes on from there");
-        let number = signal.load(Ordering::Relaxed);
-        return Ok(Verdict::Stopped(u8::try_from(number).unwrap_or(0)));
-    }
-    let elapsed = started.elapsed().as_secs_f64();
-    show(arguments, &sweep, design, &report, elapsed)
+    report
 }
 
 fn show(
@@ -234,7 +186,8 @@ fn show(
         let (failed, runs) = (report.failed, report.runs);
         eprintln!("videg: warning: {failed} of {runs} runs failed; the column error says why");
     }
-    Ok(verdict(report.runs, report.failed))
+    // Whether all runs of the sweep failed is seen when the shards are merged.
+    Ok(if arguments.shard.is_some() { Verdict::Passed } else { verdict(report.runs, report.failed) })
 }
 
 fn text(result: &Output<'_>) -> String {
@@ -252,63 +205,6 @@ fn text(result: &Output<'_>) -> String {
          {runs} runs, {failed} of them failed; {work}\n\n{}",
         file_list(result.files)
     )
-}
-
-fn request<'a>(
-    what: &What,
-    file: SweepFile,
-    description: &'a ModelDescription,
-    fingerprint: Option<String>,
-) -> anyhow::Result<Request<'a>> {
-    let parsed: Result<Vec<_>, _> = what.settings.iter().map(|text| Setting::parse(text)).collect();
-    let is_harvester = description.variable("gain.voltage").is_ok();
-    anyhow::ensure!(
-        is_harvester || (what.case.is_none() && file.case.case.is_none()),
-        "--case: {} is not the harvester, so no case of the paper is one of its own",
-        description.model_name
-    );
-    let step = what.step.or(file.case.step);
-    let until = what.until.or(file.case.until);
-    let until = if is_harvester { until } else { until.or(description.default_experiment.stop_time) };
-    let SweepFile { case, design, points, samples, seed, record, vary } = file;
-    let name = case.name.clone();
-    let scenario = scenario::Request {
-        case: what.case.clone(),
-        file: Some(case),
-        settings: parsed?,
-        until,
-        step,
-        window: what.window.map(|Window(window)| window),
-    }
-    .resolve()?;
-    let settings = if is_harvester {
-        let (mechanical, electrical) = settings::split(description, &scenario)?;
-        let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
-        if !circuit.is_empty() {
-            output::warn(&[format!("{} left out: sweep runs no circuit", circuit.join(", "))]);
-        }
-        mechanical
-    } else {
-        scenario.changes().to_vec()
-    };
-    let own_step = || description.default_experiment.step_size.unwrap_or(scenario.until / 1000.0);
-    let step = if is_harvester { step } else { Some(step.unwrap_or_else(own_step)) };
-    let asked: Result<Vec<_>, _> = what.vary.iter().map(|text| Vary::parse(text)).collect();
-    Ok(Request {
-        name: name.unwrap_or_else(|| if is_harvester { scenario.name } else { description.model_name.clone() }),
-        description,
-        fmu: fingerprint,
-        settings,
-        times: Times { until: scenario.until, step, window: scenario.window },
-        vary: [vary, asked?].concat(),
-        design: what.design.or(design).unwrap_or_default(),
-        points: what.points.or(points),
-        samples: what.samples.or(samples).unwrap_or(1),
-        seed: what.seed.or(seed).unwrap_or(1),
-        common_seeds: what.common_seeds,
-        seed_variable: what.seed_variable.clone(),
-        record: if what.record.is_empty() { record } else { what.record.clone() },
-    })
 }
 
 /// A flag that an interruption sets, and its number. The second one ends the process at once.

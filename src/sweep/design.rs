@@ -60,7 +60,7 @@ impl Points {
             (_, None) => return bad(String::new(), format!("the design {design} needs the number of points")),
             (_, Some(_)) if axes.is_empty() => {
                 let reason = format!("the design {design} needs a variable to spread, by --vary name=from:to");
-                return Err(SweepError::option("design", design, reason));
+                return Err(SweepError::option("design", design.to_string(), reason));
             }
             (_, Some(asked)) => asked,
         };

@@ -11,7 +11,7 @@ use crate::fmi::{FmiError, Fmu, Instance, Logging, Status, Value, Variable};
 /// What runs the runs.
 pub enum Engine {
     /// The model behind the harvester FMU, without the FMU: the same numbers to the last bit.
-    BuiltIn(BuiltIn),
+    BuiltIn(Box<BuiltIn>),
     /// An FMU; a run is an instance.
     Fmu(Fmu),
 }

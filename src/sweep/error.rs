@@ -82,8 +82,8 @@ pub enum SweepError {
 
 impl SweepError {
     /// An option whose value makes no sense.
-    pub(super) fn option(option: &'static str, value: impl ToString, reason: impl Into<String>) -> Self {
-        Self::Option { option, value: value.to_string(), reason: reason.into() }
+    pub(super) fn option(option: &'static str, value: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::Option { option, value: value.into(), reason: reason.into() }
     }
 
     /// For `map_err`: the file system refused to `action` on `path`.

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::plan::Kept;
+use super::document::{Kept, differences};
 use super::record::{self, DOCUMENT, RESULTS};
 use super::run::Report;
 use super::{Shard, SweepError, column, lines, table};
@@ -45,7 +45,7 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
                 let reason = format!(
                     "it belongs to another sweep than {} ({})",
                     folders[0].display(),
-                    super::differences(first, &text)
+                    differences(first, &text)
                 );
                 return Err(SweepError::content(&path, reason));
             }
@@ -96,7 +96,7 @@ fn claim(output: &Path, document: &str) -> Result<(), SweepError> {
     match std::fs::read_to_string(&path) {
         Ok(there) if there == document => Ok(()),
         Ok(there) => {
-            let differences = super::differences(&there, document);
+            let differences = differences(&there, document);
             Err(SweepError::content(
                 &path,
                 format!("it belongs to another sweep ({differences}); choose another --output"),

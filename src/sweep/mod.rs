@@ -8,6 +8,7 @@
 mod axis;
 mod column;
 mod design;
+mod document;
 mod engine;
 mod error;
 mod file;
@@ -38,9 +39,6 @@ pub use vary::{Range, Scale, Spread, Vary};
 
 use std::path::Path;
 
-use serde_json::{Map, Value};
-use sha2::{Digest as _, Sha256};
-
 use crate::fmi::{FmiError, ModelDescription};
 
 /// What the harvester FMU says of itself; the model behind it has the same parameters.
@@ -58,41 +56,5 @@ pub fn harvester_description() -> Result<ModelDescription, FmiError> {
 /// If it cannot be read.
 pub fn fingerprint(path: &Path) -> Result<String, SweepError> {
     let content = std::fs::read(path).map_err(SweepError::file("read", path))?;
-    Ok(plan::hex(&Sha256::digest(content)))
-}
-
-/// In what two documents differ, for an error message.
-fn differences(there: &str, here: &str) -> String {
-    /// They follow from the rest.
-    const DERIVED: [&str; 4] = ["columns", "points", "runs", "sha256"];
-    let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
-    let (Some(there), Some(here)) = (read(there), read(here)) else {
-        return "what is there is no document of a sweep".to_owned();
-    };
-    let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
-    let (derived, differ): (Vec<&String>, Vec<_>) =
-        keys.filter(|key| there.get(*key) != here.get(*key)).partition(|key| DERIVED.contains(&key.as_str()));
-    let shown = if differ.is_empty() { derived } else { differ };
-    let all: Vec<_> = shown
-        .iter()
-        .map(|key| {
-            let (there, here) = (there.get(*key), here.get(*key));
-            format!("{key} is {}, not {}", without(there, here), without(here, there))
-        })
-        .collect();
-    all.join("; ")
-}
-
-/// A value in few words; of a list, what the other has not.
-fn without(value: Option<&Value>, other: Option<&Value>) -> String {
-    const LONGEST: usize = 200;
-    let text = match (value, other) {
-        (None, _) => "nothing".to_owned(),
-        (Some(Value::Array(items)), Some(Value::Array(others))) => {
-            let own = items.iter().filter(|item| !others.contains(item)).map(Value::to_string);
-            format!("[{}]", own.collect::<Vec<_>>().join(", "))
-        }
-        (Some(value), _) => value.to_string(),
-    };
-    if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST).chain("...".chars()).collect() }
+    Ok(document::sha256(content))
 }

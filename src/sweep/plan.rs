@@ -2,12 +2,10 @@
 
 use std::collections::HashSet;
 
-use serde::{Deserialize, Serialize};
-use sha2::{Digest as _, Sha256};
-
 use super::axis::Axis;
 use super::column::{self, Column, Type};
 use super::design::{MAX_RUNS, Points};
+use super::document::Document;
 use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};
@@ -82,65 +80,19 @@ pub(super) struct Results {
     pub recorded: Vec<Value>,
 }
 
-/// The document `sweep.json`: the same bytes for the same sweep.
-#[derive(Serialize)]
-struct Document<'a> {
-    videg: &'static str,
-    case: &'a str,
-    model: &'a str,
-    guid: &'a str,
-    /// SHA-256 of the archive, if the model is not the harvester of this project.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fmu: Option<&'a str>,
-    settings: Vec<Setting>,
-    #[serde(flatten)]
-    times: Times,
-    design: Design,
-    vary: &'a [Vary],
-    points: u64,
-    samples: u64,
-    runs: u64,
-    seed: u64,
-    common_seeds: bool,
-    seed_variable: Option<&'a str>,
-    columns: &'a [Column],
-    /// SHA-256 of the above.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sha256: Option<String>,
-}
-
-/// What is needed of the document to put results together.
-#[derive(Debug, Deserialize)]
-pub(super) struct Kept {
-    pub runs: u64,
-    pub columns: Vec<Column>,
-}
-
 impl Sweep {
     /// Resolves a request.
     ///
     /// # Errors
     /// Whatever in it makes no sense for all of its runs.
     pub fn new(request: Request<'_>) -> Result<Self, SweepError> {
-        let Request { description, design, samples, seed, .. } = request;
-        let vary = last_of_each(request.vary, |vary| vary.name.clone());
-        let varied: HashSet<&str> = vary.iter().map(|vary| vary.name.as_str()).collect();
-        let settings = last_of_each(request.settings, |setting| setting.name.clone());
-        let settings = settings.iter().filter(|setting| !varied.contains(setting.name.as_str()));
-        let settings = settings.map(|setting| typed(description, setting)).collect::<Result<Vec<_>, _>>()?;
+        let Request { description, design, seed, .. } = request;
+        let vary = last_of_each(&request.vary, |vary| &vary.name);
+        let settings = settings(&request, &vary)?;
         let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
         let points = Points::new(design, axes, request.points)?;
-        let given: Vec<_> = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value))).collect();
-        let given = [given, varied.iter().map(|name| (*name, None)).collect()].concat();
-        let asked = Asked {
-            samples,
-            seed,
-            common: request.common_seeds,
-            variable: request.seed_variable.as_deref(),
-            given: &given,
-        };
-        let seeds = Seeds::new(description, &asked)?;
-        let runs = count_runs(points.count(), samples, seeds.as_ref())?;
+        let seeds = seeds(&request, &settings, &vary)?;
+        let runs = count_runs(points.count(), request.samples, seeds.as_ref())?;
         let record = request.record.iter().map(|name| description.variable(name).cloned());
         let record = record.collect::<Result<Vec<_>, _>>()?;
         let averages = has_gains(description);
@@ -149,18 +101,18 @@ impl Sweep {
             return Err(SweepError::option("record", "", reason));
         }
         let columns = columns(points.axes(), seeds.as_ref(), averages, &record)?;
-        let mut document = Document {
+        let document = Document {
             videg: env!("CARGO_PKG_VERSION"),
             case: &request.name,
             model: &description.model_name,
             guid: &description.guid,
             fmu: request.fmu.as_deref(),
-            settings: settings.iter().map(|(variable, value)| setting(variable, value)).collect(),
+            settings: settings.iter().map(as_setting).collect(),
             times: request.times,
             design,
             vary: &vary,
             points: points.count(),
-            samples,
+            samples: request.samples,
             runs,
             seed,
             common_seeds: request.common_seeds,
@@ -168,8 +120,7 @@ impl Sweep {
             columns: &columns,
             sha256: None,
         };
-        document.sha256 = Some(hex(&Sha256::digest(json(&document))));
-        let document = json(&document) + "\n";
+        let (document, samples) = (document.sealed(), request.samples);
         let (name, times) = (request.name, request.times);
         Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
     }
@@ -234,16 +185,37 @@ impl Sweep {
     }
 }
 
-/// Items without those whose key comes again: the last one stands, in the place of the first.
-fn last_of_each<T>(items: Vec<T>, key: impl Fn(&T) -> String) -> Vec<T> {
+/// Items without those whose name comes again: the last one stands, in the place of the first.
+fn last_of_each<T: Clone>(items: &[T], name: impl Fn(&T) -> &str) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for item in items {
-        match kept.iter_mut().find(|other| key(other) == key(&item)) {
-            Some(other) => *other = item,
-            None => kept.push(item),
+        match kept.iter_mut().find(|other| name(other) == name(item)) {
+            Some(other) => *other = item.clone(),
+            None => kept.push(item.clone()),
         }
     }
     kept
+}
+
+/// What is the same in all runs.
+fn settings(request: &Request<'_>, vary: &[Vary]) -> Result<Vec<(Variable, Value)>, SweepError> {
+    let settings = last_of_each(&request.settings, |setting| &setting.name);
+    let is_varied = |setting: &&Setting| vary.iter().any(|vary| vary.name == setting.name);
+    settings.iter().filter(|setting| !is_varied(setting)).map(|setting| typed(request.description, setting)).collect()
+}
+
+/// Who gives seeds: the samples, or the user.
+fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -> Result<Option<Seeds>, SweepError> {
+    let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
+    let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
+    let asked = Asked {
+        samples: request.samples,
+        seed: request.seed,
+        common: request.common_seeds,
+        variable: request.seed_variable.as_deref(),
+        given: &given,
+    };
+    Seeds::new(request.description, &asked)
 }
 
 fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {
@@ -257,7 +229,7 @@ fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable,
 }
 
 /// As it stands in the document: however it was written, the same value gives the same text.
-fn setting(variable: &Variable, value: &Value) -> Setting {
+fn as_setting((variable, value): &(Variable, Value)) -> Setting {
     Setting { name: variable.name.clone(), value: column::cell(value) }
 }
 
@@ -265,7 +237,7 @@ fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, S
     let most = if seeds.is_some_and(|seeds| !seeds.common) { seeds::MOST } else { MAX_RUNS };
     let runs = points.checked_mul(samples).filter(|runs| (1..=most).contains(runs));
     let bound = || format!("with {points} points it must lie from 1 to {}", most / points);
-    runs.ok_or_else(|| SweepError::option("samples", samples, bound()))
+    runs.ok_or_else(|| SweepError::option("samples", samples.to_string(), bound()))
 }
 
 fn has_gains(description: &ModelDescription) -> bool {
@@ -294,14 +266,4 @@ fn columns(
         Some(twice) => Err(SweepError::option("record", &twice.name, "the results have a column of that name already")),
         None => Ok(columns),
     }
-}
-
-fn json(document: &Document<'_>) -> String {
-    // Numbers, texts and lists of them: nothing that JSON cannot say.
-    serde_json::to_string_pretty(document).unwrap_or_default()
-}
-
-/// Bytes as hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::document::differences;
 use super::lines::{self, Extent};
 use super::{Shard, Sweep, SweepError, column};
 
@@ -68,6 +69,7 @@ impl Record {
         let heading = column::line(sweep.columns().iter().map(|column| column.name.as_str()));
         if fresh {
             remove(&path)?;
+            remove(&path.with_extension("parquet"))?;
             file.set_len(0).map_err(SweepError::file("empty", &part))?;
         } else if let Some(extent) = complete(&path, &heading, &range)? {
             remove(&part)?;
@@ -212,7 +214,7 @@ fn check_document(folder: &Path, sweep: &Sweep, path: &Path, fresh: bool) -> Res
         return Ok(());
     }
     if !fresh {
-        let differences = super::differences(&there, sweep.document());
+        let differences = differences(&there, sweep.document());
         let reason =
             format!("it belongs to another sweep ({differences}); choose another --output, or --fresh to begin anew");
         return Err(SweepError::content(&document, reason));

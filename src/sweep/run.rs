@@ -206,8 +206,8 @@ fn write(desk: &Desk, range: &Range<u64>, record: &mut Record, watch: &mut dyn W
     loop {
         watch.show(record.next - range.start, total);
         let mut state = desk.lock();
-        let is_full = |state: &State| state.done.len() as u64 >= AHEAD / 2;
-        if state.working > 0 && !is_full(&state) {
+        let is_pressing = state.done.len() as u64 >= AHEAD / 2 && state.done.contains_key(&state.due);
+        if state.working > 0 && !is_pressing {
             state = desk.changed.wait_timeout(state, BEAT).unwrap_or_else(PoisonError::into_inner).0;
         }
         let at_work = state.working > 0;

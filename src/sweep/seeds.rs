@@ -40,7 +40,7 @@ impl Seeds {
     pub fn new(description: &ModelDescription, asked: &Asked<'_>) -> Result<Option<Self>, SweepError> {
         let name = asked.variable.unwrap_or(SEED_VARIABLE);
         let is_given = asked.given.iter().any(|(given, _)| *given == name);
-        let noise = asked.given.iter().filter(|(given, _)| *given == NOISE).next_back();
+        let noise = asked.given.iter().rfind(|(given, _)| *given == NOISE);
         let is_noisy = noise.is_some_and(|(_, value)| *value != Some(&Value::Real(0.0)));
         let must = asked.samples > 1 || asked.variable.is_some();
         if !must && (is_given || !is_noisy) {
@@ -58,7 +58,7 @@ impl Seeds {
             }
             Err(_) if asked.variable.is_none() => {
                 let reason = format!("{} has no {name}; name its seed by --seed-variable", description.model_name);
-                return Err(SweepError::option("samples", asked.samples, reason));
+                return Err(SweepError::option("samples", asked.samples.to_string(), reason));
             }
             Err(error) => return Err(error.into()),
         };

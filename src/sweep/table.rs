@@ -18,7 +18,7 @@ use super::column::{Column, Type};
 use super::{SweepError, record};
 
 /// Rows of a group.
-const GROUP: usize = 16_384;
+const GROUP: usize = 8_192;
 /// Key of the document in the file.
 const KEY: &str = "videg.sweep";
 

@@ -103,14 +103,14 @@ fn flatten(prefix: &str, table: &Table, all: &mut Vec<Vary>) -> Result<(), Strin
     for (key, value) in table {
         let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
         let spread = match value {
-            // No variable is called by a number: a table with one is a range.
-            Value::Table(inner) if !inner.values().any(|value| value.is_integer() || value.is_float()) => {
-                flatten(&name, inner, all)?;
-                continue;
-            }
-            Value::Table(range) => {
+            // What is varied is a list or a table: where `from` is neither, it is that of a range.
+            Value::Table(range) if range.get("from").is_some_and(|from| !from.is_table() && !from.is_array()) => {
                 let read = Range::deserialize(range.clone()).map_err(|error| format!("vary.{name}: {error}"))?;
                 Spread::Range(read)
+            }
+            Value::Table(inner) => {
+                flatten(&name, inner, all)?;
+                continue;
             }
             Value::Array(values) => {
                 let values = values.iter().map(|value| crate::scenario::value_text(&name, value));
