@@ -87,8 +87,7 @@ def run_shard(command: list[str], folder: str, number: int, of: int) -> dict:
         pass  # Nothing is there, or the file system has no locks.
     share = ["--shard", f"{number}/{of}", "--output", folder, "--json"]
     run = subprocess.run([*command, *share], capture_output=True, text=True)
-    # Exit code 1: all runs of the shard failed; the merged results say why.
-    if run.returncode not in (0, 1):
+    if run.returncode != 0:
         raise RuntimeError(f"shard {number}/{of}: {run.stderr.strip() or f'exit code {run.returncode}'}")
     return json.loads(run.stdout)
 
