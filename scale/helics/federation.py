@@ -11,6 +11,7 @@ from tool import Problem, need
 need("helics")
 
 import helics  # noqa: E402
+from fmpy.fmi1 import FMICallException  # noqa: E402
 
 NEVER = helics.HELICS_TIME_MAXTIME
 """What a federate asks for that waits for values, s."""
@@ -133,6 +134,8 @@ class Federate:
         except helics.HelicsException:
             pass  # The federation is broken; the error that broke it is on its way up.
         helics.helicsCloseLibrary()
+        if isinstance(error, FMICallException):
+            raise Problem(f"after {self._time} s an FMU failed: {error}") from error
         if isinstance(error, helics.HelicsException):
             raise Problem(f"the federation broke after {self._time} s: {error}") from error
 

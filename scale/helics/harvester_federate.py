@@ -26,10 +26,10 @@ def run() -> int:
     plain = options.master == "plain"
     schedule = Schedule(options.step, options.until)
     parameters = read_parameters(options.parameters) if options.parameters else {}
-    harvester = Harvester(options.fmu, parameters, options.until, extrapolate=not plain)
     with Federate("harvester", options, waits=False) as federate, open(options.output, "w", newline="") as file:
         series = csv.writer(file, lineterminator="\n")
         series.writerow(["time", *Harvester.RECORDED])
+        harvester = Harvester(options.fmu, parameters, options.until, extrapolate=not plain)
         federate.publications(CAPACITANCES, "F")
         federate.publications(["time"], "s")
         federate.subscriptions([f"circuit/{name}" for name in VOLTAGES], "V")

@@ -1,6 +1,8 @@
 """An FMU for co-simulation whose variables go by their names, on FMPy."""
 
+import ctypes
 import shutil
+import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +12,8 @@ from tool import Problem, need
 need("fmpy")
 
 import fmpy  # noqa: E402
-from fmpy.fmi2 import FMU2Slave  # noqa: E402
+from fmpy import fmi2  # noqa: E402
+from fmpy.logging import addLoggerProxy  # noqa: E402
 
 VALUES = "{http://ssp-standard.org/SSP1/SystemStructureParameterValues}"
 
@@ -22,6 +25,20 @@ def read_parameters(file: Path) -> dict[str, str]:
     except (OSError, ElementTree.ParseError) as error:
         raise Problem(f"parameter set {file}: {error}") from error
     return {item.attrib["name"]: item[0].attrib["value"] for item in root.iter(f"{VALUES}Parameter")}
+
+
+def callbacks_to_stderr() -> fmi2.fmi2CallbackFunctions:
+    """What an FMU logs goes to stderr; FMPy would write it to stdout."""
+    callbacks = fmi2.fmi2CallbackFunctions()
+
+    def log(_environment: int, instance: bytes, _status: int, _category: bytes, message: bytes) -> None:
+        print(f"{instance.decode()}: {message.decode()}", file=sys.stderr)
+
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
 
 
 class Slave:
@@ -37,13 +54,14 @@ class Slave:
             raise Problem(f"FMU {file}: {error}") from error
         self._file = file
         self._variables = {variable.name: variable for variable in description.modelVariables}
-        self._fmu = FMU2Slave(
+        self._fmu = fmi2.FMU2Slave(
             guid=description.guid,
             modelIdentifier=description.coSimulation.modelIdentifier,
             unzipDirectory=self._folder,
             instanceName=name,
         )
-        self._fmu.instantiate()
+        self._callbacks = callbacks_to_stderr()  # Kept as long as the instance may log.
+        self._fmu.instantiate(callbacks=self._callbacks)
 
     def close(self) -> None:
         """Ends the instance and takes its files away."""

@@ -23,6 +23,8 @@ def main(run: Callable[[], int]) -> None:
         code = run()
     except Problem as problem:
         give_up(problem)
+    except OSError as error:
+        give_up(error)
     sys.exit(code)
 
 

@@ -120,6 +120,26 @@ def test_without_a_broker_a_federate_ends_with_an_error(run, fmus, tmp_path):
     assert f"circuit_federate.py: no HELICS broker at {address} within 2.0 s" in ended.stderr
 
 
+@pytest.mark.parametrize(
+    "victim, survivor, name, value",
+    [
+        ("harvester", "circuit", "membrane.restitution", "7"),
+        ("circuit", "harvester", "load.resistance", "-1"),
+    ],
+)
+def test_an_fmu_that_fails_ends_both(start, fmus, broker, tmp_path, victim, survivor, name, value):
+    parameters = tmp_path / "parameters.ssv"
+    parameters.write_text(
+        '<s:ParameterSet xmlns:s="http://ssp-standard.org/SSP1/SystemStructureParameterValues"><s:Parameters>'
+        f'<s:Parameter name="{name}"><s:Real value="{value}"/></s:Parameter></s:Parameters></s:ParameterSet>'
+    )
+    other = start(*federate(survivor, fmus, tmp_path, broker))
+    failed = end(start(*federate(victim, fmus, tmp_path, broker, "--parameters", parameters)))
+    assert failed.returncode == 2 and f"variable {name} = {value}: " in failed.stderr
+    assert f"{victim}_federate.py: after 0.0 s an FMU failed: fmi2SetReal" in failed.stderr
+    assert end(other).returncode == 2
+
+
 def test_federates_that_were_started_differently_end_with_an_error(start, fmus, broker, tmp_path):
     circuit = start(*federate("circuit", fmus, tmp_path, broker, "--until", "1"))
     harvester = start(*federate("harvester", fmus, tmp_path, broker, "--until", "2"))
@@ -145,8 +165,8 @@ def test_what_cannot_run_is_one_line_with_exit_code_2(run, tmp_path, arguments, 
     assert len(ended.stderr.splitlines()) == 1
 
 
-def test_an_fmu_that_is_not_there_is_named(run, tmp_path):
-    ended = run("helics/harvester_federate.py", "--fmu", "no.fmu", "--output", tmp_path / "x.csv")
+def test_an_fmu_that_is_not_there_is_named(run, broker, tmp_path):
+    ended = run("helics/harvester_federate.py", "--fmu", "no.fmu", "--output", tmp_path / "x.csv", "--broker", broker)
     assert ended.returncode == 2 and "harvester_federate.py: FMU no.fmu is not there" in ended.stderr
 
 
