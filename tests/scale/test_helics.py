@@ -12,7 +12,7 @@ import pytest
 import harness
 from conftest import VIDEG, end, wait_for
 
-QUICK = ("--timeout", "2")
+QUICK = ("--timeout", "4")
 """So that a lost partner is noticed soon."""
 
 
@@ -82,7 +82,7 @@ def broker():
     import helics
 
     port = free_port()
-    made = helics.helicsCreateBroker("tcp_ss", "", f"--federates=2 --port={port} --loglevel=no_print")
+    made = helics.helicsCreateBroker("zmq_ss", "", f"--federates=2 --port={port} --loglevel=no_print")
     yield f"127.0.0.1:{port}"
     helics.helicsBrokerDisconnect(made)
 
@@ -110,14 +110,14 @@ def federate(name: str, fmus: dict[str, str], folder: Path, broker: str, *argume
 def test_a_federate_that_stays_alone_ends_with_an_error(run, fmus, broker, tmp_path):
     ended = run(*federate("harvester", fmus, tmp_path, broker))
     assert ended.returncode == 2
-    assert ended.stderr.splitlines()[-1] == "harvester_federate.py: the other federates did not join within 2.0 s"
+    assert ended.stderr.splitlines()[-1] == "harvester_federate.py: the other federates did not join within 4.0 s"
 
 
 def test_without_a_broker_a_federate_ends_with_an_error(run, fmus, tmp_path):
     address = f"127.0.0.1:{free_port()}"
     ended = run(*federate("circuit", fmus, tmp_path, address))
     assert ended.returncode == 2
-    assert f"circuit_federate.py: no HELICS broker at {address} within 2.0 s" in ended.stderr
+    assert f"circuit_federate.py: no HELICS broker at {address} within 4.0 s" in ended.stderr
 
 
 @pytest.mark.parametrize(
