@@ -256,8 +256,9 @@ fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
         let written = lines_written(&folder) - 1;
         assert!((1..1200).contains(&written));
-        let expected =
-            format!("videg: interrupted after {written} of 1200 runs; the same command goes on from there\n");
+        let expected = format!(
+            "videg: interrupted after {written} of 1200 runs; the same command without --fresh goes on from there\n"
+        );
         assert_eq!(stderr(&output), expected);
     }
 }
@@ -319,7 +320,7 @@ fn shards_that_do_not_make_a_whole_are_refused() {
     let text = fs::read_to_string(two.join("sweep.2-of-3.csv")).unwrap();
     fs::write(two.join("sweep.2-of-3.csv"), text.replace("\n3,", "\n4,")).unwrap();
     let message = refused(&[&one, &two, &three]);
-    assert!(message.contains("sweep.2-of-3.csv: line 3 is not run 3 of runs 2 to 5"), "{message}");
+    assert!(message.contains("sweep.2-of-3.csv: line 3 is not run 3 of runs 2 to 4"), "{message}");
 }
 
 #[test]
@@ -372,7 +373,7 @@ fn a_complete_file_that_was_changed_is_not_taken_for_complete() {
     fs::write(folder.join("sweep.csv"), text.replace("\n2,2,", "\n9,2,")).unwrap();
     let (code, message) = refused(&mut sweep(&folder, &what));
     assert_eq!(code, Some(2));
-    assert!(message.contains("line 4 is not run 2; --fresh begins anew"), "{message}");
+    assert!(message.contains("line 4 is not run 2 of runs 0 to 3; --fresh begins anew"), "{message}");
 }
 
 #[test]
@@ -398,7 +399,10 @@ fn a_full_disk_is_named_and_what_was_written_is_gone_on_with() {
     limited.args(["-c", "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\""]).arg(env!("CARGO_BIN_EXE_videg"));
     let (code, message) = refused(limited.args(long(&full).get_args()));
     assert_eq!(code, Some(2));
-    assert!(message.contains("cannot write") && message.contains("the same command goes on from there"), "{message}");
+    assert!(
+        message.contains("cannot write") && message.contains("the same command without --fresh goes on from there"),
+        "{message}"
+    );
     let said = json(&mut long(&full));
     assert!(said["resumed_from"].as_u64().unwrap() > 20, "{said}");
     assert_same_results(&whole, &full);
@@ -502,4 +506,15 @@ fn bad_input_is_one_line_with_the_thing_the_value_and_the_bound_before_anything_
         assert!(message.starts_with("videg: ") && message.contains(named), "{arguments:?}: {message}");
         assert!(!folder.exists(), "{arguments:?}");
     }
+}
+
+#[test]
+fn a_check_counts_and_leaves_nothing_behind() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0:1:2000000", "--samples", "3", "--check"];
+    let said = json(&mut sweep(&folder, &what));
+    assert_eq!((&said["points"], &said["samples"], &said["runs"]), (&2_000_000.into(), &3.into(), &6_000_000.into()));
+    let (code, message) = refused(&mut sweep(&folder, &[&what[..], &["--record", "nope"]].concat()));
+    assert!(code == Some(2) && message.contains("nope"), "{message}");
+    assert!(!folder.exists());
 }
