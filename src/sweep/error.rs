@@ -39,8 +39,8 @@ pub enum SweepError {
     },
     /// Results could not be written; those before are kept.
     #[error(
-        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command without --fresh goes on from \
-         there",
+        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command without --fresh goes \
+         on from there",
         path.display()
     )]
     Full {

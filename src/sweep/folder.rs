@@ -95,7 +95,7 @@ fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     }
 }
 
-/// Files of results in the folder. An empty one that is to be written holds none: who locks it writes the document next.
+/// Files of results in the folder. An empty one that is being written holds none: its document comes first.
 fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
     let entries = std::fs::read_dir(folder).map_err(SweepError::file("read", folder))?;
     let is_result = |path: &PathBuf| {

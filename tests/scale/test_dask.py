@@ -96,6 +96,7 @@ def test_a_scheduler_elsewhere_runs_the_tasks(run, undivided, tmp_path):
         ),
         (["--scheduler", "nonsense://x", "--timeout", "1", "--", *SWEEP], "scheduler nonsense://x"),
         (["--shards", "0", "--", *SWEEP], "--shards 0: must lie from 1 to 1000000"),
+        (["--", *SWEEP, "--fresh"], "--fresh: a task that is tried again would begin anew"),
         (["--videg", "/nowhere/videg", "--", *SWEEP], "/nowhere/videg is not there"),
         (["--", "--vary", "membrane.restitutoin=0:1:2"], "membrane.restitutoin"),
     ],
