@@ -2,8 +2,8 @@
 //!
 //! One loop in C (`baseline/loop.c`) drives `VibroImpactHarvester` and, as a measure of what a call costs at least, a plain
 //! bouncing ball in C (`baseline/bouncing_ball.c`) in the same run, which does what `BouncingBall` of the Modelica
-//! Reference-FMUs does in a call. Where a state is saved, restored and freed with nothing in between, the harvester copies
-//! nothing, as nothing has changed; the ball copies twice. With a step in between, the harvester copies once.
+//! Reference-FMUs does in a call. Where a state is saved, restored and freed with nothing in between, the harvester
+//! copies nothing, as nothing has changed; the ball copies twice. With a step in between, the harvester copies once.
 //!
 //! Steps are timed over a stretch in which no impact comes, from the same saved state again and again; pulses of the impact
 //! before are under way. The 100 s of Fig. 14 have all their impacts.

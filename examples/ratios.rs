@@ -1,8 +1,8 @@
 //! Prints the table of the README's section on speed from what the benchmarks measured last:
 //! `cargo bench && cargo run --release --example ratios`.
 //!
-//! Exit code 1 if a row is missing: a benchmark has not run, or ran so long before or after its baseline that the machine
-//! may have been another.
+//! Exit code 1 if a row is missing: a benchmark has not run, or ran so long before or after its baseline that the
+//! machine may have been another.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -6,8 +6,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-/// Compiles `source` of `benches/baseline` to a shared library in `folder`, by the compiler that `CC` names, or `cc`, with
-/// these options besides. Returns its path.
+/// Compiles `source` of `benches/baseline` to a shared library in `folder`, by the compiler that `CC` names, or `cc`,
+/// with these options besides. Returns its path.
 pub fn compile(source: &str, folder: &Path, options: &[&str]) -> Result<PathBuf> {
     let library = folder.join(source).with_extension("library");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/baseline").join(source);

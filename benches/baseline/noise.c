@@ -1,7 +1,7 @@
 /* Phase noise as a plain program would have it: one hold interval after the other, ziggurat samples, the mathematical
-   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. What is constant stands outside of
-   the loop. One version takes Runge-Kutta steps with three cosines each, as the paper's program would; the other, which is
-   leaner, the closed form of each interval, with one sine and cosine. */
+   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. What is constant stands outside
+   of the loop. One version takes Runge-Kutta steps with three cosines each, as the paper's program would; the other,
+   which is leaner, the closed form of each interval, with one sine and cosine. */
 
 #include <math.h>
 #include <stdint.h>

@@ -168,7 +168,8 @@ fn a_panic_in_drop_ends_with_the_call() {
     assert!(!PANIC_IN_DROP.get());
 }
 
-/// A call that fails without touching the model leaves the error state behind, too, where the saved state is to be copied first.
+/// A call that fails without touching the model leaves the error state behind, too, where a saved state is to be copied
+/// first.
 #[test]
 fn a_panic_in_clone_while_a_call_fails_leaves_the_error_state() {
     let host = Host::initialized();

@@ -131,7 +131,7 @@ impl<S: Slave> Instance<S> {
             fmi2Fatal => CallState::Fatal,
             _ => return status,
         };
-        // Where the saved state that is the present one cannot be copied, it is lost, and nothing is to be copied any more.
+        // A saved state that is the present one and cannot be copied is lost; then nothing is to be copied any more.
         guard((), || self.core.settle());
         self.core.state = state;
         status
