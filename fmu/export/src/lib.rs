@@ -58,7 +58,8 @@
 //!   `fmi2Reset` leads back, as the standard has it.
 //! - FMU states are clones of the model, together with call state and time; the state saved or restored last is cloned
 //!   when the instance is about to change or another state is saved. The importer holds tokens, not pointers; a token
-//!   that is foreign, stale or freed twice is refused. A state belongs to the instance that gave it; serialise it to carry it to another.
+//!   that is foreign, stale or freed twice is refused. A state belongs to the instance that gave it; serialise it to
+//!   carry it to another.
 //! - Calls from inside a callback are refused. Calls from a second thread, which FMI 2.0 forbids, are usually refused;
 //!   nothing guarantees it, and two that begin together are undefined behaviour.
 //! - Panics become `fmi2Error` ([`ffi`] says what that means for stderr).

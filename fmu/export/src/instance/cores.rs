@@ -2,10 +2,10 @@
 //! token that was not given out, or was freed, or belongs to another instance is recognised, and no token is ever given out
 //! twice.
 //!
-//! Masters that try steps save, restore and free a state at each of them, so the state that was saved or restored last is
-//! the present one until that changes or another is saved. Only then is it given a copy, in memory that was freed before
-//! if there is some. Restoring and freeing copy nothing, nor does saving a state that has changed since the last one was
-//! saved or restored.
+//! Masters that try steps save, restore and free a state at each of them, so the state that was saved or restored last
+//! is the present one until that changes or another is saved. Only then is it given a copy, in memory that was freed
+//! before if there is some. Restoring and freeing copy nothing, nor does saving a state that has changed since the last
+//! one was saved or restored.
 
 use super::{Call, Core};
 use crate::error::CallError;
