@@ -9,13 +9,16 @@ same command. The result is that of one undivided sweep, byte for byte.
 """
 
 import argparse
+import fcntl
 import json
 import math
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
+import uuid
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -56,12 +59,20 @@ def parse() -> argparse.Namespace:
         metavar="S",
         help="how long a task should take at most, s [%(default)s]",
     )
-    parser.add_argument("--retries", type=int, default=3, metavar="N", help="further tries of a task [%(default)s]")
+    parser.add_argument(
+        "--retries",
+        type=int,
+        default=3,
+        metavar="N",
+        help="further tries of a task [%(default)s]; of one whose worker died, with --scheduler as many as that allows",
+    )
     parser.add_argument(
         "--timeout", type=float, default=30.0, metavar="S", help="for scheduler and workers, s [%(default)s]"
     )
     parser.add_argument("--videg", metavar="FILE", help="the command-line tool [PATH, or target/release]")
     options = parser.parse_args()
+    if "--fresh" in options.sweep:
+        raise tool.Problem("--fresh: a task that is tried again would begin anew; remove the folder, or choose another")
     bounds = {"workers": 1, "jobs": 1, "shards": 1, "retries": 0, "task_seconds": SHORTEST, "timeout": 1}
     for name, least in bounds.items():
         value = getattr(options, name)
@@ -71,14 +82,9 @@ def parse() -> argparse.Namespace:
     return options
 
 
-def run_shard(command: list[str], folder: str, number: int, of: int) -> dict:
-    """The task: runs shard `number` of `of` of a sweep into `folder`; returns what videg says. A worker gets this
-    function without this file, so it stands alone."""
-    import fcntl
-    import json
-    import os
-    import subprocess
-
+def run_shard(command: list[str], home: str, folder: str, number: int, of: int) -> dict:
+    """The task: runs shard `number` of `of` of a sweep into `folder`, from the folder `home`, where the names of files
+    start; returns what videg says. A worker gets this function without this file."""
     # A worker that was killed may have left videg behind, which still writes this shard and has it locked: let it.
     try:
         with open(os.path.join(folder, f"sweep.{number}-of-{of}.csv.part"), "r+") as part:
@@ -86,10 +92,16 @@ def run_shard(command: list[str], folder: str, number: int, of: int) -> dict:
     except OSError:
         pass  # Nothing is there, or the file system has no locks.
     share = ["--shard", f"{number}/{of}", "--output", folder, "--json"]
-    run = subprocess.run([*command, *share], capture_output=True, text=True)
+    run = subprocess.run([*command, *share], capture_output=True, text=True, cwd=home)
     if run.returncode != 0:
         raise RuntimeError(f"shard {number}/{of}: {run.stderr.strip() or f'exit code {run.returncode}'}")
     return json.loads(run.stdout)
+
+
+def run_pilot(command: list[str], home: str, folder: str, of: int) -> dict:
+    """The task that measures: the first of `of` shards. Each try has a folder of its own, or there would be nothing to
+    do."""
+    return run_shard(command, home, tempfile.mkdtemp(dir=folder), 1, of)
 
 
 def connect(options: argparse.Namespace):
@@ -114,10 +126,7 @@ def connect(options: argparse.Namespace):
 
 def count(command: list[str]) -> int:
     """Runs of the whole sweep. videg checks its arguments for this."""
-    with tempfile.TemporaryDirectory() as folder:
-        share = ["--shard", f"1/{MOST_SHARDS}", "--output", folder, "--json"]
-        sweep = json.loads(tool.videg(command[0], *command[1:], *share))
-    return sweep["points"] * sweep["samples"]
+    return json.loads(tool.videg(command[0], *command[1:], "--check", "--json"))["runs"]
 
 
 def started_with(folder: Path) -> int | None:
@@ -136,7 +145,9 @@ def rate(options: argparse.Namespace, client, command: list[str], runs: int) -> 
     while True:
         with tempfile.TemporaryDirectory(prefix="pilot-", dir=options.output) as folder:
             of = max(1, min(runs // pilot, MOST_SHARDS))
-            future = client.submit(run_shard, command, folder, 1, of, pure=False, retries=options.retries)
+            future = client.submit(
+                run_pilot, command, os.getcwd(), folder, of, pure=False, retries=options.retries
+            )
             done = outcome(options, future)
         if done["elapsed_s"] >= PILOT or of == 1:
             return done["rate_runs_per_s"]
@@ -167,11 +178,14 @@ def run_all(options: argparse.Namespace, client, command: list[str], shards: int
     """Runs all shards; shows how many are done if somebody watches."""
     from distributed import as_completed
 
-    folder = str(options.output / "shards")
+    folder, home = str(options.output / "shards"), os.getcwd()
+    # Two sweeps on one scheduler must not take each other's tasks for their own.
+    sweep = uuid.uuid4().hex
 
     def submit(number: int):
-        key = f"shard-{number}-of-{shards}"
-        return client.submit(run_shard, command, folder, number, shards, pure=False, retries=options.retries, key=key)
+        key = f"shard-{number}-of-{shards}-{sweep}"
+        task = (run_shard, command, home, folder, number, shards)
+        return client.submit(*task, pure=False, retries=options.retries, key=key)
 
     futures = [submit(number) for number in range(1, shards + 1)]
     results = []
@@ -201,7 +215,7 @@ def run() -> int:
     merged |= {"shards": shards, "workers": threads, "seconds": seconds, "busy_s": busy}
     merged["resumed"] = sum(result["resumed_from"] > 0 for result in results)
     print(json.dumps(merged, indent=2))
-    return 0 if merged["failed"] < merged["runs"] or runs == 0 else 1
+    return 0 if merged["failed"] < merged["runs"] else 1
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import tool  # noqa: E402
 from federation import NEVER, Federate, arguments, in_step  # noqa: E402
 from schedule import Schedule  # noqa: E402
-from slave import read_parameters  # noqa: E402
+from slave import Slave, read_parameters  # noqa: E402
 from subsystems import CAPACITANCES, VOLTAGES, Circuit  # noqa: E402
 
 
@@ -23,7 +23,11 @@ def run() -> int:
     plain = options.master == "plain"
     schedule = Schedule(options.step, options.until)
     parameters = read_parameters(options.parameters) if options.parameters else {}
-    with Federate("circuit", options, waits=not plain) as federate, open(options.output, "w", newline="") as file:
+    with (
+        Federate("circuit", options, waits=not plain) as federate,
+        Slave(options.fmu, "circuit") as slave,
+        open(options.output, "w", newline="") as file,
+    ):
         series = csv.writer(file, lineterminator="\n")
         series.writerow(["time", *Circuit.RECORDED])
         federate.publications(VOLTAGES, "V")
@@ -32,7 +36,7 @@ def run() -> int:
         federate.subscriptions(["harvester/time"], "s")
         federate.enter()
         *capacitance, now = federate.values()
-        circuit = Circuit(options.fmu, parameters, options.until, capacitance)
+        circuit = Circuit(slave, parameters, options.until, capacitance)
         federate.publish([*circuit.voltage, now])
         series.writerow([now, *circuit.row])
         while now < options.until:
@@ -47,7 +51,6 @@ def run() -> int:
             federate.publish([*circuit.voltage, then])
             series.writerow([then, *circuit.row])
             now = then
-    circuit.slave.close()
     return 0
 
 

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import tool  # noqa: E402
 from federation import Federate, arguments, in_step  # noqa: E402
 from schedule import Schedule  # noqa: E402
-from slave import read_parameters  # noqa: E402
+from slave import Slave, read_parameters  # noqa: E402
 from subsystems import CAPACITANCES, VOLTAGES, Harvester  # noqa: E402
 
 
@@ -26,10 +26,14 @@ def run() -> int:
     plain = options.master == "plain"
     schedule = Schedule(options.step, options.until)
     parameters = read_parameters(options.parameters) if options.parameters else {}
-    with Federate("harvester", options, waits=False) as federate, open(options.output, "w", newline="") as file:
+    with (
+        Federate("harvester", options, waits=False) as federate,
+        Slave(options.fmu, "harvester") as slave,
+        open(options.output, "w", newline="") as file,
+    ):
         series = csv.writer(file, lineterminator="\n")
         series.writerow(["time", *Harvester.RECORDED])
-        harvester = Harvester(options.fmu, parameters, options.until, extrapolate=not plain)
+        harvester = Harvester(slave, parameters, options.until, extrapolate=not plain)
         federate.publications(CAPACITANCES, "F")
         federate.publications(["time"], "s")
         federate.subscriptions([f"circuit/{name}" for name in VOLTAGES], "V")
@@ -47,7 +51,6 @@ def run() -> int:
             series.writerow([then, *harvester.row])
             now, steps = then, steps + 1
         seconds = time.monotonic() - started
-    harvester.slave.close()
     print(json.dumps({"steps": steps, "seconds": seconds}))
     return 0
 

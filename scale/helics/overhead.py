@@ -20,9 +20,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import tool  # noqa: E402
 from federation import CORES, add_run_options  # noqa: E402
 from schedule import Schedule  # noqa: E402
-from subsystems import Circuit, Harvester  # noqa: E402
-
-FMUS = {"harvester": "VibroImpactHarvester", "circuit": "HarvestingCircuit"}
+from slave import Slave  # noqa: E402
+from subsystems import FMUS, Circuit, Harvester  # noqa: E402
 
 
 def parse() -> argparse.Namespace:
@@ -39,18 +38,18 @@ def one_process(fmus: Path, options: argparse.Namespace) -> float:
     """Both FMUs in this process, coupled in the order of Gauss-Seidel; microseconds a step."""
     until = options.until
     schedule = Schedule(options.step, until)
-    harvester = Harvester(fmus / f"{FMUS['harvester']}.fmu", {}, until, extrapolate=True)
-    circuit = Circuit(fmus / f"{FMUS['circuit']}.fmu", {}, until, harvester.capacitance)
-    started = time.monotonic()
-    now, steps = 0.0, 0
-    while now < until:
-        then = schedule.next(now, harvester.knot)
-        harvester.step(now, then, circuit.voltage)
-        circuit.step(now, then, harvester.capacitance)
-        now, steps = then, steps + 1
-    seconds = time.monotonic() - started
-    harvester.slave.close()
-    circuit.slave.close()
+    files = [fmus / f"{FMUS[name]}.fmu" for name in ("harvester", "circuit")]
+    with Slave(files[0], "harvester") as mechanics, Slave(files[1], "circuit") as electrics:
+        harvester = Harvester(mechanics, {}, until, extrapolate=True)
+        circuit = Circuit(electrics, {}, until, harvester.capacitance)
+        started = time.monotonic()
+        now, steps = 0.0, 0
+        while now < until:
+            then = schedule.next(now, harvester.knot)
+            harvester.step(now, then, circuit.voltage)
+            circuit.step(now, then, harvester.capacitance)
+            now, steps = then, steps + 1
+        seconds = time.monotonic() - started
     return 1e6 * seconds / steps
 
 

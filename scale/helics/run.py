@@ -20,9 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import tool  # noqa: E402
 from federation import add_run_options, core_options, helics  # noqa: E402
 from schedule import Schedule  # noqa: E402
-
-FEDERATES = {"harvester": "VibroImpactHarvester", "circuit": "HarvestingCircuit"}
-"""Federates, and the FMUs that they run."""
+from subsystems import FMUS  # noqa: E402
 
 
 def parse() -> argparse.Namespace:
@@ -64,7 +62,7 @@ def start(options: argparse.Namespace, federate: str, port: int) -> subprocess.P
     """A federate in a process of its own."""
     resources = options.output / "resources"
     command = [sys.executable, Path(__file__).with_name(f"{federate}_federate.py")]
-    command += ["--fmu", resources / f"{FEDERATES[federate]}.fmu", "--parameters", resources / f"{federate}.ssv"]
+    command += ["--fmu", resources / f"{FMUS[federate]}.fmu", "--parameters", resources / f"{federate}.ssv"]
     command += ["--output", options.output / f"{federate}.csv", "--broker", f"127.0.0.1:{port}"]
     for name in ("until", "step", "master", "core", "timeout"):
         command += [f"--{name}", str(getattr(options, name))]
@@ -74,10 +72,16 @@ def start(options: argparse.Namespace, federate: str, port: int) -> subprocess.P
 def federate(options: argparse.Namespace) -> dict:
     """Runs broker and federates to the end; returns the number of steps and the seconds that they took."""
     port = free_port()
-    settings = f"--federates={len(FEDERATES)} --port={port} {core_options(options.timeout)}"
-    broker = helics.helicsCreateBroker(options.core, "", settings)
-    processes = {name: start(options, name, port) for name in FEDERATES}
+    settings = f"--federates={len(FMUS)} --port={port} {core_options(options.timeout)}"
     try:
+        broker = helics.helicsCreateBroker(options.core, "", settings)
+    except helics.HelicsException as error:
+        helics.helicsCloseLibrary()
+        raise tool.Problem(f"no HELICS broker on port {port}: {error}") from error
+    processes = {}
+    try:
+        for name in FMUS:
+            processes[name] = start(options, name, port)
         watch(processes, 3.0 * options.timeout)
         return json.loads(processes["harvester"].communicate()[0].splitlines()[-1])
     finally:
@@ -133,7 +137,7 @@ def differences(options: argparse.Namespace, videg: str) -> list[str]:
         ]
         tool.videg(videg, "cosim", *case(options), *run)
         expected = rows(Path(folder) / "timeseries.csv")
-    harvester, circuit = (rows(options.output / f"{name}.csv") for name in FEDERATES)
+    harvester, circuit = (rows(options.output / f"{name}.csv") for name in FMUS)
     found = [mechanics | electrics for mechanics, electrics in zip(harvester, circuit)]
     if len(harvester) != len(expected) or len(circuit) != len(expected):
         return [f"rows: {len(harvester)} and {len(circuit)} in place of {len(expected)}"]

@@ -1,5 +1,6 @@
 """An FMU for co-simulation whose variables go by their names, on FMPy."""
 
+import contextlib
 import ctypes
 import shutil
 import sys
@@ -24,7 +25,10 @@ def read_parameters(file: Path) -> dict[str, str]:
         root = ElementTree.parse(file).getroot()
     except (OSError, ElementTree.ParseError) as error:
         raise Problem(f"parameter set {file}: {error}") from error
-    return {item.attrib["name"]: item[0].attrib["value"] for item in root.iter(f"{VALUES}Parameter")}
+    try:
+        return {item.attrib["name"]: item[0].attrib["value"] for item in root.iter(f"{VALUES}Parameter")}
+    except (KeyError, IndexError) as error:
+        raise Problem(f"parameter set {file}: a parameter has no name or no value") from error
 
 
 def callbacks_to_stderr() -> fmi2.fmi2CallbackFunctions:
@@ -42,17 +46,24 @@ def callbacks_to_stderr() -> fmi2.fmi2CallbackFunctions:
 
 
 class Slave:
-    """An instance called `name` of the FMU in `file`. To be closed."""
+    """An instance called `name` of the FMU in `file`, for a `with` statement."""
 
     def __init__(self, file: Path, name: str):
         if not file.is_file():
             raise Problem(f"FMU {file} is not there; videg fmu build makes it")
-        try:
-            self._folder = fmpy.extract(str(file))
-            description = fmpy.read_model_description(self._folder)
-        except Exception as error:  # FMPy raises whatever its parsers do.
-            raise Problem(f"FMU {file}: {error}") from error
         self._file = file
+        with contextlib.ExitStack() as undo:
+            try:
+                self._folder = fmpy.extract(str(file))
+                undo.callback(shutil.rmtree, self._folder, ignore_errors=True)
+                description = fmpy.read_model_description(self._folder)
+            except Exception as error:  # FMPy raises whatever its parsers do.
+                raise Problem(f"FMU {file}: {error}") from error
+            self._instantiate(description, name)
+            undo.callback(self._fmu.freeInstance)
+            self._undo = undo.pop_all()
+
+    def _instantiate(self, description: fmpy.model_description.ModelDescription, name: str) -> None:
         self._variables = {variable.name: variable for variable in description.modelVariables}
         self._fmu = fmi2.FMU2Slave(
             guid=description.guid,
@@ -63,10 +74,12 @@ class Slave:
         self._callbacks = callbacks_to_stderr()  # Kept as long as the instance may log.
         self._fmu.instantiate(callbacks=self._callbacks)
 
-    def close(self) -> None:
+    def __enter__(self) -> "Slave":
+        return self
+
+    def __exit__(self, *_: object) -> None:
         """Ends the instance and takes its files away."""
-        self._fmu.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._undo.close()
 
     def variable(self, name: str) -> fmpy.model_description.ScalarVariable:
         if name not in self._variables:

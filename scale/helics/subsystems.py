@@ -1,7 +1,5 @@
 """Harvester and circuit as a master sees them, stepped to the last bit as `videg cosim` does (src/cosim/master.rs)."""
 
-from pathlib import Path
-
 from slave import Slave
 
 Pair = list[float]
@@ -12,6 +10,9 @@ VOLTAGES = ["left.voltage", "right.voltage"]
 
 REACH = 10.0
 """Most times that a step may be longer than the one before if voltages are extrapolated at what they did in that."""
+
+FMUS = {"harvester": "VibroImpactHarvester", "circuit": "HarvestingCircuit"}
+"""Federates, and the FMUs that they run."""
 
 
 class Harvester:
@@ -34,10 +35,10 @@ class Harvester:
     ]
     KNOTS = ["impact.nextTime", "pulse.nextKnot"]
 
-    def __init__(self, file: Path, parameters: dict[str, str], until: float, extrapolate: bool):
+    def __init__(self, slave: Slave, parameters: dict[str, str], until: float, extrapolate: bool):
         """For a run up to `until`, s. With `extrapolate`, voltages that act on the ball run on as they did in the step
         before; else they are held."""
-        self.slave = Slave(file, "harvester")
+        self.slave = slave
         self.slave.start(parameters, until)
         self._outputs = self.slave.references(self.RECORDED + self.KNOTS)
         self._inputs = self.slave.references(VOLTAGES)
@@ -84,9 +85,9 @@ class Circuit:
         "load.charge",
     ]
 
-    def __init__(self, file: Path, parameters: dict[str, str], until: float, capacitance: Pair):
+    def __init__(self, slave: Slave, parameters: dict[str, str], until: float, capacitance: Pair):
         """For a run up to `until`, s, that starts at `capacitance`, F."""
-        self.slave = Slave(file, "circuit")
+        self.slave = slave
         self.slave.start(parameters, until, dict(zip(CAPACITANCES, capacitance)))
         self._outputs = self.slave.references(self.RECORDED)
         self._inputs = self.slave.references(CAPACITANCES)

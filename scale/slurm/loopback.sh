@@ -50,6 +50,7 @@ EOF
 
 start() {
     local folder
+    [[ $(realpath --canonicalize-missing "$1") != *[[:space:]]* ]] || fail "$1: a path with spaces is none for slurm.conf"
     mkdir "$1" 2>/dev/null || fail "$1: is there already, or cannot be made"
     folder=$(realpath "$1")
     mkdir "$folder/state" "$folder/spool"
@@ -59,8 +60,10 @@ start() {
     # Munge wants to know that nobody else can write its folder; here it is the user's own.
     munged --force --key-file="$folder/munge.key" --socket="$folder/munge.socket" --pid-file="$folder/munged.pid" \
         --log-file="$folder/munged.log" --seed-file="$folder/munge.seed" 2>/dev/null
-    slurmctld
-    slurmd
+    { slurmctld && slurmd; } || {
+        stop "$folder"
+        fail "slurmctld or slurmd did not start; see $folder/*.log"
+    }
     for _ in $(seq 150); do
         [[ $(sinfo --noheader --format=%T 2>/dev/null) != idle ]] || return 0
         sleep 0.2

@@ -53,7 +53,7 @@ def find_videg(given: str | None) -> str:
     found = shutil.which("videg") or shutil.which(built)
     if found is None:
         raise Problem(f"videg is neither on the PATH nor at {built}; cargo build --release makes it")
-    return found
+    return str(Path(found).resolve())
 
 
 def videg(program: str, *arguments: str) -> str:

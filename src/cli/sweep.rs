@@ -40,6 +40,9 @@ pub struct Arguments {
     /// Begin anew, whatever is in the folder
     #[arg(long)]
     fresh: bool,
+    /// Check the sweep and print how many points and runs it has; run and write nothing
+    #[arg(long)]
+    check: bool,
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     json: bool,
@@ -80,6 +83,17 @@ struct Output<'a> {
     rate_runs_per_s: f64,
     shard: Option<String>,
     files: &'a [PathBuf],
+}
+
+/// What `--check --json` says.
+#[derive(Serialize)]
+struct Counts<'a> {
+    case: &'a str,
+    design: Design,
+    points: u64,
+    samples: u64,
+    /// Runs of the whole sweep.
+    runs: u64,
 }
 
 /// What `--json` says of a merge.
@@ -125,6 +139,9 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
     let sweep = Sweep::new(arguments.what.request(file, description, fingerprint)?)?;
+    if arguments.check {
+        return show_counts(arguments, &sweep, design);
+    }
     let engine = match (fmu, BuiltIn::new(&sweep)) {
         (Some(fmu), _) => Engine::Fmu(fmu),
         (None, Some(built_in)) => Engine::BuiltIn(Box::new(built_in)),
@@ -137,8 +154,18 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
         return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
     }
     let (done, runs) = (report.done, report.runs);
-    eprintln!("videg: interrupted after {done} of {runs} runs; the same command goes on from there");
+    eprintln!("videg: interrupted after {done} of {runs} runs; the same command without --fresh goes on from there");
     Ok(Verdict::Stopped(u8::try_from(signal.load(Ordering::Relaxed))?))
+}
+
+fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Verdict> {
+    let (points, samples, runs) = (sweep.points(), sweep.samples(), sweep.runs());
+    output::print(&if arguments.json {
+        serde_json::to_string_pretty(&Counts { case: sweep.name(), design, points, samples, runs })?
+    } else {
+        format!("sweep {}: {design} of {points} points, {samples} samples each: {runs} runs", sweep.name())
+    })?;
+    Ok(Verdict::Passed)
 }
 
 /// Runs the sweep, with progress.

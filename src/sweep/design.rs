@@ -65,6 +65,10 @@ impl Points {
             (_, Some(asked)) => asked,
         };
         if !(1..=MAX_RUNS).contains(&count) {
+            if design == Design::Grid {
+                let reason = format!("the grid has {count} points; it may have from 1 to {MAX_RUNS}");
+                return Err(SweepError::option("vary", "", reason));
+            }
             return bad(count.to_string(), format!("must lie from 1 to {MAX_RUNS}"));
         }
         Ok(Self { design, count, axes })
@@ -172,7 +176,12 @@ mod tests {
             (Design::Random, "membrane.restitution=0:1", Some(0), "--points 0: must lie from 1 to 1000000000000"),
             (Design::Random, "membrane.restitution=0:1", Some(u64::MAX), "must lie from 1 to 1000000000000"),
             (Design::Grid, "membrane.restitution=0:1:3", Some(4), "--points 4: the grid has 3"),
-            (Design::Grid, "membrane.restitution=0:1:99999999999999", None, "--points 99999999999999: must lie"),
+            (
+                Design::Grid,
+                "membrane.restitution=0:1:99999999999999",
+                None,
+                "--vary: the grid has 99999999999999 points; it may",
+            ),
         ] {
             let message = points(design, &[vary], count, 1).err().unwrap();
             assert!(message.contains(named), "{message}");

@@ -39,6 +39,7 @@ pub(super) struct Document<'a> {
 /// What is needed of the document to put results together.
 #[derive(Debug, Deserialize)]
 pub(super) struct Kept {
+    pub videg: String,
     pub runs: u64,
     pub columns: Vec<Column>,
 }
@@ -87,16 +88,37 @@ pub(super) fn differences(there: &str, here: &str) -> String {
     all.join("; ")
 }
 
-/// A value in few words; of a list, what the other has not.
+/// A value in few words; of a list, what the other has not, if that is all in which they differ.
 fn without(value: Option<&Value>, other: Option<&Value>) -> String {
     const LONGEST: usize = 200;
     let text = match (value, other) {
         (None, _) => "nothing".to_owned(),
         (Some(Value::Array(items)), Some(Value::Array(others))) => {
-            let own = items.iter().filter(|item| !others.contains(item)).map(Value::to_string);
+            // Lists that differ in order or repetition alone are shown whole.
+            let missing = |from: &[Value], item: &Value| !from.contains(item);
+            let alike =
+                !items.iter().any(|item| missing(others, item)) && !others.iter().any(|item| missing(items, item));
+            let own = items.iter().filter(|item| alike || missing(others, item)).map(Value::to_string);
             format!("[{}]", own.collect::<Vec<_>>().join(", "))
         }
         (Some(value), _) => value.to_string(),
     };
     if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST).chain("...".chars()).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_name_what_only_one_has_and_lists_in_another_order_as_a_whole() {
+        for (there, here, expected) in [
+            (r#"{"window": [1, 2]}"#, r#"{"window": [1, 3]}"#, "window is [2], not [3]"),
+            (r#"{"vary": ["a", "b"]}"#, r#"{"vary": ["b", "a"]}"#, r#"vary is ["a", "b"], not ["b", "a"]"#),
+            (r#"{"seed": 1, "runs": 2}"#, r#"{"seed": 1, "runs": 3}"#, "runs is 2, not 3"),
+            ("{", "{}", "what is there is no document of a sweep"),
+        ] {
+            assert_eq!(differences(there, here), expected);
+        }
+    }
 }

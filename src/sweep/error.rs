@@ -18,7 +18,7 @@ pub enum SweepError {
     #[error(transparent)]
     Fmi(#[from] FmiError),
     /// An option, or the key of the sweep file of the same name, makes no sense.
-    #[error("--{option} {value}: {reason}")]
+    #[error("--{option}{}{value}: {reason}", if value.is_empty() { "" } else { " " })]
     Option {
         /// Name of the option.
         option: &'static str,
@@ -39,7 +39,8 @@ pub enum SweepError {
     },
     /// Results could not be written; those before are kept.
     #[error(
-        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command goes on from there",
+        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command without --fresh goes \
+         on from there",
         path.display()
     )]
     Full {

@@ -1,6 +1,7 @@
 //! Reading results: whole lines in the order of the runs, as many as are what they should be.
 
 use std::io::{self, BufRead, Read as _};
+use std::ops::Range;
 
 /// Longest line that can be one, bytes.
 const LONGEST: u64 = 1 << 20;
@@ -16,6 +17,22 @@ pub(super) struct Extent {
     pub failed: u64,
     /// The last of them.
     pub last: Vec<u8>,
+}
+
+impl Extent {
+    /// That it is all of a file of `length` bytes with the results of the runs `range`; else what is wrong with them.
+    pub fn check_whole(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
+        let due = range.start + self.lines;
+        if self.bytes == 0 {
+            Err("its first line is not the heading of this sweep".to_owned())
+        } else if due < range.end {
+            Err(format!("line {} is not run {due} of runs {} to {}", self.lines + 2, range.start, range.end - 1))
+        } else if self.bytes < length {
+            Err(format!("{} bytes follow line {}, its last", length - self.bytes, self.lines + 1))
+        } else {
+            Ok(())
+        }
+    }
 }
 
 /// Follows results from their heading on, and hands each line of runs `first` and following, of which there are at most
@@ -49,8 +66,10 @@ fn next(from: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
     Ok(line.last() == Some(&b'\n'))
 }
 
+/// Whether a line is that of run `number`. A zero byte is what a power cut leaves, and in no text of an FMU.
 fn is_run(line: &[u8], number: u64) -> bool {
-    line.strip_prefix(number.to_string().as_bytes()).is_some_and(|rest| rest.first() == Some(&b','))
+    !line.contains(&0)
+        && line.strip_prefix(number.to_string().as_bytes()).is_some_and(|rest| rest.first() == Some(&b','))
 }
 
 /// Whether the line is that of a run that failed: its last cell, the error, is not empty. A text that ends in a comma
@@ -80,9 +99,22 @@ mod tests {
             ("run,error\n5,\n7,\n", (13, 1, 0)),
             ("run,error\n5,\n\0\0\0\0\n6,\n", (13, 1, 0)),
             ("run,error\n5,\n60,\n", (13, 1, 0)),
+            ("run,error\n5,\n6,\0\0,\n7,\n", (13, 1, 0)),
             ("run,error\n5,\n6,\n7,\n8,\n", (19, 3, 0)),
         ] {
             assert_eq!(extent(text, 5, 3), expected, "{text:?}");
+        }
+    }
+    #[test]
+    fn results_that_are_not_whole_are_told_by_what_is_wrong() {
+        for (text, expected) in [
+            ("run,error\n5,\n6,\n", None),
+            ("run,other\n5,\n6,\n", Some("its first line is not the heading of this sweep")),
+            ("run,error\n5,\n7,\n", Some("line 3 is not run 6 of runs 5 to 6")),
+            ("run,error\n5,\n6,\n7,\n", Some("3 bytes follow line 3, its last")),
+        ] {
+            let extent = follow(text.as_bytes(), b"run,error\n", 5, 2, |_| Ok::<_, io::Error>(())).unwrap();
+            assert_eq!(extent.check_whole(text.len() as u64, &(5..7)).err().as_deref(), expected, "{text:?}");
         }
     }
 }

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Seek as _, Write as _};
+use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::document::{Kept, differences};
-use super::record::{self, DOCUMENT, RESULTS};
+use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
 use super::{Shard, SweepError, column, lines, table};
+
+/// Version of this program: tables that another one writes may have other bytes.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Merges the shards in `folders` into `output`.
 ///
@@ -16,14 +19,18 @@ use super::{Shard, SweepError, column, lines, table};
 /// Shards that are missing, there twice, of other sweeps or of other divisions; a refusal of the file system.
 pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     let document = common_document(folders)?;
-    let kept: Kept = serde_json::from_str(&document)
-        .map_err(|error| SweepError::content(&folders[0].join(DOCUMENT), error.to_string()))?;
+    let refuse = |reason: String| SweepError::content(&folders[0].join(DOCUMENT), reason);
+    let kept: Kept = serde_json::from_str(&document).map_err(|error| refuse(error.to_string()))?;
+    if kept.videg != VERSION {
+        return Err(refuse(format!("it is of videg {}, and this is {VERSION}; merge it with that", kept.videg)));
+    }
     let shards = collect(folders)?;
     std::fs::create_dir_all(output).map_err(SweepError::file("make the folder", output))?;
-    claim(output, &document)?;
+    folder::check_document(output, &document)?;
     let path = output.join(RESULTS);
-    let part = record::partial(&path);
-    let file = record::lock(&part)?;
+    let part = folder::partial(&path);
+    let file = folder::lock(&part)?;
+    folder::write_document(output, &document, &path)?;
     let failed = join(&shards, &kept, &file, &part)?;
     file.sync_all().map_err(SweepError::file("write", &part))?;
     std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
@@ -90,19 +97,15 @@ fn collect(folders: &[PathBuf]) -> Result<Vec<(Shard, PathBuf)>, SweepError> {
     Ok(Shard::all(first.of()).filter_map(|shard| found.remove(&shard.file_name())).collect())
 }
 
-/// Writes the document into the folder, which must not hold another.
-fn claim(output: &Path, document: &str) -> Result<(), SweepError> {
-    let path = output.join(DOCUMENT);
-    match std::fs::read_to_string(&path) {
-        Ok(there) if there == document => Ok(()),
-        Ok(there) => {
-            let differences = differences(&there, document);
-            Err(SweepError::content(
-                &path,
-                format!("it belongs to another sweep ({differences}); choose another --output"),
-            ))
-        }
-        Err(_) => record::write_whole(&path, &record::partial(&path), document.as_bytes()),
+/// At which end a copy broke.
+enum Broken {
+    Read(io::Error),
+    Written(io::Error),
+}
+
+impl From<io::Error> for Broken {
+    fn from(cause: io::Error) -> Self {
+        Self::Read(cause)
     }
 }
 
@@ -116,14 +119,15 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> R
     for (shard, path) in shards {
         let range = shard.range(kept.runs);
         let from = BufReader::new(File::open(path).map_err(SweepError::file("open", path))?);
-        let extent = lines::follow(from, &heading, range.start, range.end - range.start, |line| out.write_all(line))
-            .map_err(SweepError::file("copy", path))?;
+        let extent = lines::follow(from, &heading, range.start, range.end - range.start, |line| {
+            out.write_all(line).map_err(Broken::Written)
+        });
+        let extent = extent.map_err(|broken| match broken {
+            Broken::Read(cause) => SweepError::file("read", path)(cause),
+            Broken::Written(cause) => written(cause),
+        })?;
         let length = std::fs::metadata(path).map_err(SweepError::file("read", path))?.len();
-        if extent.lines != range.end - range.start || extent.bytes != length {
-            let due = range.start + extent.lines;
-            let reason = format!("line {} is not run {due} of runs {} to {}", extent.lines + 2, range.start, range.end);
-            return Err(SweepError::content(path, reason));
-        }
+        extent.check_whole(length, &range).map_err(|reason| SweepError::content(path, reason))?;
         failed += extent.failed;
     }
     out.flush().map_err(written)?;

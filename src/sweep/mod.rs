@@ -13,6 +13,7 @@ mod document;
 mod engine;
 mod error;
 mod file;
+mod folder;
 mod lines;
 mod merge;
 mod plan;

@@ -235,6 +235,10 @@ fn as_setting((variable, value): &(Variable, Value)) -> Setting {
 
 fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {
     let most = if seeds.is_some_and(|seeds| !seeds.common) { seeds::MOST } else { MAX_RUNS };
+    if points > most {
+        let reason = format!("{points} points have no seeds of their own: at most {most}, or --common-seeds");
+        return Err(SweepError::option("points", points.to_string(), reason));
+    }
     let runs = points.checked_mul(samples).filter(|runs| (1..=most).contains(runs));
     let bound = || format!("with {points} points it must lie from 1 to {}", most / points);
     runs.ok_or_else(|| SweepError::option("samples", samples.to_string(), bound()))
@@ -263,7 +267,11 @@ fn columns(
     columns.push(Column::optional("error", Type::Text));
     let mut names = HashSet::new();
     match columns.iter().find(|column| !names.insert(column.name.as_str())) {
-        Some(twice) => Err(SweepError::option("record", &twice.name, "the results have a column of that name already")),
+        Some(twice) => {
+            let is_recorded = record.iter().any(|variable| variable.name == twice.name);
+            let option = if is_recorded { "record" } else { "vary" };
+            Err(SweepError::option(option, &twice.name, "the results have a column of that name already"))
+        }
         None => Ok(columns),
     }
 }

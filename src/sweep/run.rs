@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::folder;
 use super::record::{self, Found, Record};
 use super::{Engine, Shard, Sweep, SweepError, table};
 
@@ -65,7 +66,7 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
     let range = record::range(sweep, job.shard);
     let runs = range.end - range.start;
     let path = record::results_path(job.folder, job.shard);
-    let mut files = vec![path.clone(), job.folder.join(record::DOCUMENT)];
+    let mut files = vec![path.clone(), job.folder.join(folder::DOCUMENT)];
     let (done, failed, resumed_from) = match Record::open(job.folder, sweep, job.shard, job.fresh)? {
         Found::Complete { failed } => (runs, failed, runs),
         Found::Unfinished(mut record) => {
@@ -76,7 +77,7 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
             if done < runs {
                 record.sync()?;
             } else {
-                record.finish()?;
+                record.finish(sweep.document())?;
             }
             (done, failed, resumed_from)
         }
@@ -122,9 +123,17 @@ struct State {
     working: usize,
     /// Why no run can go on.
     broken: Option<SweepError>,
+    /// Whether a thread has left its run undone.
+    panicked: bool,
 }
 
 impl Desk {
+    /// For `working` threads that compute runs from number `next` on.
+    fn new(next: u64, working: usize) -> Self {
+        let state = State { next, due: next, done: BTreeMap::new(), working, broken: None, panicked: false };
+        Self { state: Mutex::new(state), changed: Condvar::new() }
+    }
+
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -135,7 +144,10 @@ struct Working<'a>(&'a Desk);
 
 impl Drop for Working<'_> {
     fn drop(&mut self) {
-        self.0.lock().working -= 1;
+        let mut state = self.0.lock();
+        state.working -= 1;
+        state.panicked |= std::thread::panicking();
+        drop(state);
         self.0.changed.notify_all();
     }
 }
@@ -150,17 +162,16 @@ fn compute(
 ) -> Result<(), SweepError> {
     let left = usize::try_from(range.end - record.next).unwrap_or(usize::MAX);
     let working = engine.at_once(job.jobs).clamp(1, left.max(1));
-    let state = State { next: record.next, due: record.next, done: BTreeMap::new(), working, broken: None };
-    let desk = Desk { state: Mutex::new(state), changed: Condvar::new() };
+    let desk = Desk::new(record.next, working);
     let halt = AtomicBool::new(false);
+    let line = |number| {
+        let run = sweep.run(number);
+        engine.run(sweep, &run).map(|outcome| sweep.line(&run, &outcome))
+    };
+    let stopped = || halt.load(Ordering::Relaxed) || job.stop.load(Ordering::Relaxed);
     std::thread::scope(|scope| {
         for _ in 0..working {
-            scope.spawn(|| {
-                let _working = Working(&desk);
-                work(sweep, engine, &desk, range.end, || {
-                    halt.load(Ordering::Relaxed) || job.stop.load(Ordering::Relaxed)
-                });
-            });
+            scope.spawn(|| work(&desk, range.end, line, stopped));
         }
         let written = write(&desk, range, record, watch);
         halt.store(true, Ordering::Relaxed); // nobody needs to compute what cannot be written
@@ -169,25 +180,26 @@ fn compute(
     })
 }
 
-/// Computes runs until there are none or they are to stop.
-fn work(sweep: &Sweep, engine: &Engine, desk: &Desk, end: u64, stopped: impl Fn() -> bool) {
+/// Has `line` compute runs until there are none or they are to stop.
+fn work(desk: &Desk, end: u64, line: impl Fn(u64) -> Result<Vec<u8>, SweepError>, stopped: impl Fn() -> bool) {
+    let _working = Working(desk);
     loop {
         let mut state = desk.lock();
-        while state.next < end && state.next >= state.due + AHEAD && !stopped() {
+        let is_over = |state: &State| state.next >= end || state.broken.is_some() || state.panicked || stopped();
+        while state.next >= state.due + AHEAD && !is_over(&state) {
             state = desk.changed.wait_timeout(state, BEAT).unwrap_or_else(PoisonError::into_inner).0;
         }
-        if state.next >= end || state.broken.is_some() || stopped() {
+        if is_over(&state) {
             return;
         }
         let number = state.next;
         state.next += 1;
         drop(state);
-        let run = sweep.run(number);
-        let outcome = engine.run(sweep, &run);
+        let outcome = line(number);
         let mut state = desk.lock();
         match outcome {
-            Ok(outcome) => {
-                state.done.insert(number, sweep.line(&run, &outcome));
+            Ok(line) => {
+                state.done.insert(number, line);
                 if state.done.len() as u64 == AHEAD / 2 {
                     desk.changed.notify_all();
                 }
@@ -226,5 +238,33 @@ fn write(desk: &Desk, range: &Range<u64>, record: &mut Record, watch: &mut dyn W
             watch.show(record.next - range.start, total);
             return desk.lock().broken.take().map_or(Ok(()), Err);
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::panic, reason = "one is what is tested")]
+mod tests {
+    use std::sync::atomic::AtomicUsize;
+
+    use super::*;
+
+    /// Whether a thread that is as far ahead as it may be waits for the run that is due.
+    fn waits(desk: &Desk) -> bool {
+        let asked = AtomicUsize::new(0);
+        desk.lock().next = AHEAD;
+        work(desk, u64::MAX, |_| Ok(Vec::new()), || asked.fetch_add(1, Ordering::Relaxed) >= 3);
+        asked.into_inner() > 3
+    }
+
+    #[test]
+    fn nobody_waits_for_a_run_that_nobody_will_finish() {
+        let slow = Desk::new(0, 1);
+        assert!(waits(&slow));
+        let broken = Desk::new(0, 2);
+        work(&broken, 1, |_| Err(SweepError::option("fmu", "x.fmu", "beyond use")), || false);
+        assert!(!waits(&broken));
+        let left = Desk::new(0, 2);
+        std::thread::scope(|scope| scope.spawn(|| work(&left, 1, |_| panic!("a run"), || false)).join().unwrap_err());
+        assert!(!waits(&left));
     }
 }

@@ -39,16 +39,17 @@ impl Seeds {
     /// If seeds are needed and the model has no variable for them, or the user gave it a value.
     pub fn new(description: &ModelDescription, asked: &Asked<'_>) -> Result<Option<Self>, SweepError> {
         let name = asked.variable.unwrap_or(SEED_VARIABLE);
-        let is_given = asked.given.iter().any(|(given, _)| *given == name);
+        let given = asked.given.iter().find(|(given, _)| *given == name);
         let noise = asked.given.iter().rfind(|(given, _)| *given == NOISE);
         let is_noisy = noise.is_some_and(|(_, value)| *value != Some(&Value::Real(0.0)));
         let must = asked.samples > 1 || asked.variable.is_some();
-        if !must && (is_given || !is_noisy) {
+        if !must && (given.is_some() || !is_noisy) {
             return Ok(None);
         }
-        if is_given {
+        if let Some((_, value)) = given {
+            let option = if value.is_some() { "set" } else { "vary" };
             let reason = "the samples give it a value of their own: choose the first by --seed";
-            return Err(SweepError::option("set", name, reason));
+            return Err(SweepError::option(option, name, reason));
         }
         let variable = match description.variable(name) {
             Ok(variable) if matches!(variable.kind, Kind::Integer { .. }) && variable.is_settable() => variable.clone(),
@@ -114,7 +115,7 @@ mod tests {
             assert_eq!(seeds(&asked(samples, None, given)).unwrap().is_some(), expected, "{samples} {given:?}");
         }
         let message = seeds(&asked(2, None, &[(SEED_VARIABLE, None)])).err().unwrap();
-        assert!(message.starts_with("--set excitation.seed: the samples give it a value of their own"), "{message}");
+        assert!(message.starts_with("--vary excitation.seed: the samples give it a value of their own"), "{message}");
         let message = seeds(&asked(1, Some("ball.mass"), &[])).err().unwrap();
         assert!(message.starts_with("--seed-variable ball.mass: a seed is an Integer"), "{message}");
     }

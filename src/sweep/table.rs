@@ -15,7 +15,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type as Schema;
 
 use super::column::{Column, Type};
-use super::{SweepError, record};
+use super::{SweepError, folder};
 
 /// Rows of a group.
 const GROUP: usize = 8_192;
@@ -31,7 +31,7 @@ pub(super) fn write(
 ) -> std::result::Result<PathBuf, SweepError> {
     let path = csv.with_extension("parquet");
     if anew || !path.exists() {
-        let part = record::partial(&path);
+        let part = folder::partial(&path);
         fill(csv, columns, document, &part).map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;
         std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
     }

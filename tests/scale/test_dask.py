@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import psutil
 import pytest
@@ -33,8 +34,7 @@ def test_a_worker_killed_with_its_shard_half_done_costs_nothing_but_time(start, 
     script = start(SCRIPT, "--output", tmp_path, "--workers", 2, "--shards", 2, "--", *SWEEP)
     part = tmp_path / "shards" / "sweep.1-of-2.csv.part"
     wait_for(lambda: part.exists() and part.stat().st_size > 3000)
-    everybody = psutil.Process(script.pid).children(recursive=True)
-    (videg,) = (process for process in everybody if "1/2" in process.cmdline())
+    videg = videg_of(script, "1/2")
     worker = videg.parent()
     videg.kill()
     worker.kill()
@@ -48,9 +48,16 @@ def test_a_videg_that_outlives_its_worker_is_not_disturbed(start, undivided, tmp
     script = start(SCRIPT, "--output", tmp_path, "--workers", 2, "--shards", 2, "--", *SWEEP)
     part = tmp_path / "shards" / "sweep.2-of-2.csv.part"
     wait_for(lambda: part.exists() and part.stat().st_size > 3000)
-    everybody = psutil.Process(script.pid).children(recursive=True)
-    (videg,) = (process for process in everybody if "2/2" in process.cmdline())
-    videg.parent().kill()
+    videg = videg_of(script, "2/2")
+    worker = videg.parent()
+    videg.suspend()
+    worker.kill()
+    try:
+        # The next try waits for the lock that videg holds.
+        launcher = psutil.Process(script.pid)
+        wait_for(lambda: any(has_open(process, part) for process in launcher.children(recursive=True)))
+    finally:
+        videg.resume()
     ended = end(script)
     assert ended.returncode == 0, ended.stderr
     assert same_bytes(tmp_path, undivided)
@@ -68,6 +75,34 @@ def test_the_same_command_goes_on_with_the_shards_that_are_there(run, undivided,
     assert other.returncode == 2 and "--shards 4" in other.stderr and "was begun with 3" in other.stderr
 
 
+def address_in(file: Path) -> str | None:
+    """The address of a scheduler, once it has written it to the end."""
+    try:
+        return json.loads(file.read_text())["address"]
+    except json.JSONDecodeError:
+        return None
+
+
+def videg_of(script: subprocess.Popen, shard: str) -> psutil.Process:
+    """The videg that runs this shard for the script. Others of its processes come and go meanwhile."""
+
+    def runs_it(process: psutil.Process) -> bool:
+        try:
+            return shard in process.cmdline()
+        except psutil.NoSuchProcess:
+            return False
+
+    (found,) = filter(runs_it, psutil.Process(script.pid).children(recursive=True))
+    return found
+
+
+def has_open(process: psutil.Process, file: Path) -> bool:
+    try:
+        return str(file) in (opened.path for opened in process.open_files())
+    except psutil.Error:
+        return False
+
+
 def test_a_scheduler_elsewhere_runs_the_tasks(run, undivided, tmp_path):
     environment = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     file = tmp_path / "scheduler.json"
@@ -76,7 +111,7 @@ def test_a_scheduler_elsewhere_runs_the_tasks(run, undivided, tmp_path):
     worker = [*dask[:2], "distributed.cli.dask_worker", "--nthreads", "1", "--no-dashboard"]
     processes = [subprocess.Popen([*scheduler, "--scheduler-file", file], **environment)]
     try:
-        address = wait_for(lambda: file.exists() and json.loads(file.read_text() or "{}").get("address"))
+        address = wait_for(lambda: file.exists() and address_in(file))
         processes.append(subprocess.Popen([*worker, address], cwd=tmp_path, **environment))
         ended = run(SCRIPT, "--output", tmp_path / "out", "--scheduler", address, "--shards", 2, "--", *SWEEP)
     finally:
@@ -96,6 +131,7 @@ def test_a_scheduler_elsewhere_runs_the_tasks(run, undivided, tmp_path):
         ),
         (["--scheduler", "nonsense://x", "--timeout", "1", "--", *SWEEP], "scheduler nonsense://x"),
         (["--shards", "0", "--", *SWEEP], "--shards 0: must lie from 1 to 1000000"),
+        (["--", *SWEEP, "--fresh"], "--fresh: a task that is tried again would begin anew"),
         (["--videg", "/nowhere/videg", "--", *SWEEP], "/nowhere/videg is not there"),
         (["--", "--vary", "membrane.restitutoin=0:1:2"], "membrane.restitutoin"),
     ],
