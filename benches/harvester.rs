@@ -43,6 +43,9 @@ fn runs_of_100_s(criterion: &mut Criterion) {
     group.bench_function("fig14, Runge-Kutta as the paper", |b| {
         b.iter(|| baseline::runge_kutta(black_box(&fig14), DT, UNTIL));
     });
+    group.bench_function("fig14, Runge-Kutta stage by stage", |b| {
+        b.iter(|| baseline::runge_kutta_by_stages(black_box(&fig14), DT, UNTIL));
+    });
     group.finish();
 }
 

@@ -5,6 +5,8 @@
 mod baseline;
 
 use std::hint::black_box;
+use std::panic::resume_unwind;
+use std::thread::ScopedJoinHandle;
 
 use baseline::Plain;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -46,7 +48,8 @@ fn ensemble(parameters: &Parameters, threads: usize) -> Vec<f64> {
     std::thread::scope(|scope| {
         let others: Vec<_> = (1..threads).map(|thread| scope.spawn(move || of_thread(thread))).collect();
         let mut gains = of_thread(0);
-        gains.extend(others.into_iter().flat_map(|other| other.join().unwrap_or_default()));
+        let join = |other: ScopedJoinHandle<'_, Vec<f64>>| other.join().unwrap_or_else(|panic| resume_unwind(panic));
+        gains.extend(others.into_iter().flat_map(join));
         gains
     })
 }

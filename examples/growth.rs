@@ -4,6 +4,7 @@
 
 use std::fmt;
 use std::num::NonZero;
+use std::panic::resume_unwind;
 use std::time::Instant;
 
 use videg_model::{Case, Harvester, ModelError, Parameters};
@@ -104,8 +105,8 @@ fn noisy(seed: i32) -> Parameters {
 }
 
 /// Runs with noise of one second each, with different seeds.
-fn ensemble(seeds: impl Iterator<Item = i32>) -> Result<(), ModelError> {
-    seeds.into_iter().try_for_each(|seed| events(&noisy(seed), 1.0).map(drop))
+fn ensemble(mut seeds: impl Iterator<Item = i32>) -> Result<(), ModelError> {
+    seeds.try_for_each(|seed| events(&noisy(seed), 1.0).map(drop))
 }
 
 /// The same, dealt out to threads.
@@ -114,7 +115,7 @@ fn ensemble_on(threads: usize, runs: i32) -> Result<(), ModelError> {
     std::thread::scope(|scope| {
         let others: Vec<_> = (1..threads).map(|thread| scope.spawn(move || of_thread(thread))).collect();
         let mut results = vec![of_thread(0)];
-        results.extend(others.into_iter().flat_map(std::thread::ScopedJoinHandle::join));
+        results.extend(others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic))));
         results.into_iter().collect()
     })
 }

@@ -1,6 +1,7 @@
 /* Phase noise as a plain program would have it: one hold interval after the other, ziggurat samples, the mathematical
-   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. Written with care for speed: what
-   is constant stands outside of the loop, which holds nothing but the state. */
+   library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. What is constant stands outside
+   of the loop. One version takes Runge-Kutta steps with three cosines each, as the paper's program would; the other,
+   which is leaner, the closed form of each interval, with one sine and cosine. */
 
 #include <math.h>
 #include <stdint.h>
@@ -93,14 +94,17 @@ enum method { RUNGE_KUTTA, CLOSED_FORM };
 static inline double run(const struct parameters *p, enum method method) {
     build_layers();
     seed(p->seed);
-    const double h = p->hold, x = 0.5 * p->omega * h, half = p->half_travel;
-    const double acceleration = p->amplitude / p->cylinder_mass, swing = acceleration / (p->omega * p->omega);
-    const double push = 2.0 * swing * p->omega * sin(x);
-    const double shift = swing * p->omega * h * sin(x), lag = 2.0 * swing * (sin(x) - x * cos(x));
+    /* Copies, since the compiler must take it that p->gain may change what p points to. */
+    const uint64_t steps = p->steps;
+    const double h = p->hold, omega = p->omega, phase = p->phase, noise = p->phase_noise, half = p->half_travel;
+    const double x = 0.5 * omega * h, restitution = p->restitution;
+    const double acceleration = p->amplitude / p->cylinder_mass, swing = acceleration / (omega * omega);
+    const double push = 2.0 * swing * omega * sin(x);
+    const double shift = swing * omega * h * sin(x), lag = 2.0 * swing * (sin(x) - x * cos(x));
     double position = p->cylinder_position, velocity = p->cylinder_velocity;
     double ball = p->ball_position, ball_velocity = p->ball_velocity, gain = 0.0;
-    for (uint64_t n = 0; n < p->steps; n++) {
-        double angle = p->omega * ((double)n * h) + p->phase + p->phase_noise * normal();
+    for (uint64_t n = 0; n < steps; n++) {
+        double angle = omega * ((double)n * h) + phase + noise * normal();
         if (method == RUNGE_KUTTA) {
             /* A new phase in each step leaves no value of the force to share with the next one. */
             double a = cos(angle), b = cos(angle + x), c = cos(angle + 2.0 * x);
@@ -115,7 +119,7 @@ static inline double run(const struct parameters *p, enum method method) {
         double dz = position - ball, approach = velocity - ball_velocity;
         if (fabs(dz) >= half && dz * approach > 0.0) {
             gain += p->gain(p->membrane, fabs(approach));
-            ball_velocity = (1.0 + p->restitution) * velocity - p->restitution * ball_velocity;
+            ball_velocity = (1.0 + restitution) * velocity - restitution * ball_velocity;
         }
     }
     return gain;

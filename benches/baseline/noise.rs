@@ -45,7 +45,10 @@ pub struct Plain(Library);
 
 impl Plain {
     pub fn compile() -> Result<Self> {
-        c::library("noise.c").map(Self)
+        let folder = tempfile::tempdir()?;
+        let library = c::compile("noise.c", folder.path(), &[])?;
+        // SAFETY: nothing runs when the library is loaded.
+        Ok(Self(unsafe { Library::new(library) }?))
     }
 
     /// Sum of `U_DE4` - `U_in`, V, over a run of `until`, s, by the paper's Runge-Kutta method.

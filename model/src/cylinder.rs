@@ -38,7 +38,8 @@ impl Drive {
 
     /// The same angle in turns.
     fn turns(&self, time: f64) -> f64 {
-        cycle_fraction(self.frequency, time) + self.phase / TAU
+        let own = self.phase / TAU;
+        cycle_fraction(self.frequency, time) + (own - round(own))
     }
 }
 

@@ -11,7 +11,7 @@ const MANTISSA: u64 = (1 << 52) - 1;
 const ONE: u64 = 1.0_f64.to_bits();
 const SIGN: u64 = 1 << 63;
 
-/// An integer that is nearest to `x`. From 2^51 on it may be another one, by which the two differ.
+/// An integer that is nearest to `x`. From 2^51 on it may be a neighbouring integer.
 #[inline(always)]
 pub fn round(x: f64) -> f64 {
     (x + ROUNDER) - ROUNDER

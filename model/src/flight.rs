@@ -176,16 +176,17 @@ impl Flight {
         if end == limit && !self.within_reach(&from, end) {
             return None;
         }
-        let extrema = self.zeros(1, begin, end);
+        for to in self.zeros(1, begin, end).iter() {
+            let contact = self.contact_in_piece(&from, &to);
+            if contact.is_some() {
+                return contact;
+            }
+            from = to;
+        }
         // After one period the angle is what it was; of many periods the end is not that exact.
         let is_first_period = begin == 0.0 && end == self.period;
-        let last = || self.knot(0, end, if is_first_period { self.sine } else { self.sine_at(end) });
-        let last = core::iter::once_with(last);
-        extrema.iter().chain(last).find_map(|to| {
-            let contact = self.contact_in_piece(&from, &to);
-            from = to;
-            contact
-        })
+        let last = self.knot(0, end, if is_first_period { self.sine } else { self.sine_at(end) });
+        self.contact_in_piece(&from, &last)
     }
 
     fn window_bounds(&self, window: u64, limit: f64) -> (f64, f64) {

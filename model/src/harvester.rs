@@ -168,7 +168,7 @@ impl Harvester {
             voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             totals: Totals::default(),
             ledger: Ledger::default(),
-            tangent: Tangent::of_force(start, p.cylinder_mass),
+            tangent: Tangent::none(),
             placed: false,
             calm_until: f64::NEG_INFINITY,
             second: 0.0,
@@ -210,6 +210,7 @@ impl Harvester {
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
+        self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing foreseen
         while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
             let turn = self.turn_at(event);
             self.process(event)?;

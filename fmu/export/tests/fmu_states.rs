@@ -124,6 +124,28 @@ fn states_stay_what_they_were_whatever_is_saved_restored_overwritten_and_freed_m
 }
 
 #[test]
+fn going_from_one_state_to_another_copies_nothing() {
+    let host = busy_host();
+    let mut held = Vec::new();
+    for k in 0..4 {
+        held.push((host.save(), fingerprint(&host)));
+        assert_eq!(host.step(0.3 + 0.1 * f64::from(k), 0.1), fmi2OK);
+    }
+    PANIC_IN_CLONE.set(true);
+    for k in [0, 3, 1, 1, 2, 0, 3] {
+        assert_eq!(host.restore(held[k].0), fmi2OK);
+        assert_eq!(fingerprint(&host), held[k].1, "{k}");
+    }
+    PANIC_IN_CLONE.set(false);
+    for (state, here) in held {
+        assert_eq!(host.restore(state), fmi2OK);
+        assert_eq!(host.step(host.real(TIME), 0.1), fmi2OK);
+        assert_eq!(host.restore(state), fmi2OK);
+        assert_eq!(fingerprint(&host), here);
+    }
+}
+
+#[test]
 fn states_that_are_foreign_stale_or_null_are_refused() {
     let host = Host::initialized();
     let mut freed = host.save();

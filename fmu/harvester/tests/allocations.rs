@@ -7,6 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use common::host::Host;
+use fmi2_export::abi::fmi2CoSimulation;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
@@ -79,4 +80,33 @@ fn a_state_takes_memory_once_and_none_when_it_is_saved_again() {
     assert!(allocations(try_step) <= 4);
     try_step();
     assert_eq!(allocations(|| (0..50).for_each(|_| try_step())), 0);
+}
+
+/// A contact of the compliant law holds the motion up to its end, which no copy takes anew.
+#[test]
+fn a_state_in_a_contact_takes_no_memory_when_it_is_saved_again() {
+    const FINE: f64 = 1e-4;
+    let host = Host::initializing(fmi2CoSimulation, 0.0, &[("initial.ballVelocity", 0.3)]);
+    host.choose("contact.law", 2);
+    host.exit_initialization();
+    let in_contact = || host.get("left.deflection") + host.get("right.deflection") > 0.0;
+    let begin = (0..100_000).find(|k| {
+        let inside = in_contact();
+        if !inside {
+            host.step(f64::from(*k) * FINE, FINE);
+        }
+        inside
+    });
+    let time = f64::from(begin.expect("a contact")) * FINE;
+    let try_step = || {
+        let state = host.save();
+        host.step(time, FINE);
+        assert!(in_contact());
+        host.restore(state);
+        host.free(state);
+    };
+    let reading = allocations(|| assert!(in_contact()));
+    try_step();
+    try_step();
+    assert_eq!(allocations(|| (0..50).for_each(|_| try_step())), 50 * reading);
 }

@@ -11,20 +11,11 @@ use crate::elementary::fraction;
 /// Bisection alone needs at most some 110 to exhaust the digits of a double.
 const MAX_SERIES: u32 = 200;
 
-/// Halley's method triples the digits. Once a change is as small as this relative to the step, the next one is small beside
-/// what the first series leaves out, or beside the last correction.
+/// A root of the first series need not be better than what that leaves out: the last change of a step, relative to it.
 const ROUGH: f64 = 0.3;
-const FINE: f64 = 1e-5;
 
 /// The gap about a place: coefficients of the powers of the time since then, s.
 struct Series([f64; 8]);
-
-/// A root of a series.
-struct Root {
-    step: f64,
-    /// Slope of the series near the root.
-    slope: f64,
-}
 
 impl Series {
     /// Series of `gap` less `sign` times what dz adds to it.
@@ -49,22 +40,33 @@ impl Series {
         ]
     }
 
-    /// The root that Halley's method finds from where the series has been taken; none if it is not on the way down.
+    /// The step of Halley's method from where the series has this value, slope and half the second derivative; none if
+    /// that is not on the way down.
     #[inline]
-    fn root(&self, tolerance: f64) -> Option<Root> {
+    fn halley([value, slope, half_curvature]: [f64; 3]) -> Option<f64> {
+        (slope < 0.0).then(|| -value * slope / (slope * slope - value * half_curvature))
+    }
+
+    /// The root of the first three terms ahead, where the gap is still open; none if they have none.
+    #[inline]
+    fn root_of_parabola(&self) -> Option<f64> {
+        let Self([c0, c1, c2, ..]) = *self;
+        let root = (c1 * c1 - 4.0 * c0 * c2).sqrt();
+        let step = 2.0 * c0 / (root - c1);
+        (step > 0.0).then_some(step)
+    }
+
+    /// About the root that Halley's method finds from `start` on.
+    #[inline]
+    fn rough_root(&self, start: f64) -> Option<f64> {
         const MAX_STEPS: u32 = 8;
-        let mut step = 0.0;
-        let [mut value, mut slope, mut half_curvature] = [self.0[0], self.0[1], self.0[2]];
+        let mut step = start;
         for _ in 0..MAX_STEPS {
-            let change = -value * slope / (slope * slope - value * half_curvature);
+            let change = Self::halley(self.at(step))?;
             step += change;
-            if slope >= 0.0 {
-                return None;
+            if change.abs() <= ROUGH * step.abs() {
+                return Some(step);
             }
-            if change.abs() <= tolerance * step.abs() {
-                return Some(Root { step, slope });
-            }
-            [value, slope, half_curvature] = self.at(step);
         }
         None
     }
@@ -76,44 +78,71 @@ impl Flight {
     pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> f64 {
         let (sign, level) = (side.sign(), self.half_travel + beyond);
         let (mut low, mut high) = (from.tau, to.tau);
-        let (mut tau, mut sine) = self.steepest(side, from, to).unwrap_or((from.tau, from.sine));
-        let mut tolerance = ROUGH;
+        let (begin, sine) = self.steepest(side, from, to).unwrap_or((from.tau, from.sine));
+        let first = self.series(begin, sine, level, sign);
+        let start = if begin == from.tau { first.root_of_parabola() } else { Some(0.0) };
+        let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
+        let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
         for _ in 0..MAX_SERIES {
-            let derivatives = self.derivatives(tau, sine);
-            let gap = level - sign * derivatives[0];
-            if gap > 0.0 {
+            let sine = self.sine_at(tau);
+            let series = self.series(tau, sine, level, sign);
+            if series.0[0] > 0.0 {
                 low = tau;
             } else {
                 high = tau;
             }
-            let root = Series::new(gap, sign, derivatives).root(tolerance);
-            match root.filter(|root| tau + root.step > low && tau + root.step < high) {
-                Some(root) if tolerance == FINE && self.is_complete(&root, tau) => {
-                    let gap = level - sign * self.beside(tau, sine, root.step);
-                    return tau + root.step - gap / root.slope;
-                }
-                Some(root) => tau += root.step,
-                None if high - low <= f64::EPSILON * high => return high,
-                None => tau = 0.5 * (low + high),
+            if high - low <= f64::EPSILON * high {
+                return high;
             }
-            (sine, tolerance) = (self.sine_at(tau), FINE);
+            let step = Series::halley([series.0[0], series.0[1], series.0[2]]);
+            let Some(step) = step.filter(|step| (low..=high).contains(&(tau + step))) else {
+                tau = 0.5 * (low + high);
+                continue;
+            };
+            let [_, slope, half_curvature] = series.at(step);
+            let gap = level - sign * self.beside(tau, sine, step);
+            let change = Series::halley([gap, slope, half_curvature]);
+            if let Some(change) = change.filter(|_| self.is_found(tau, step, gap / slope, slope)) {
+                return (tau + (step + change)).clamp(low, high);
+            }
+            let next = tau + step;
+            tau = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         tau
     }
 
-    /// Where on the way from one extremum to the next the harmonic part is steepest: sine and cosine are known there.
+    /// The gap about `tau`, s, where the angle has this sine and cosine.
     #[inline]
-    fn steepest(&self, side: Side, from: &Knot, to: &Knot) -> Option<(f64, [f64; 2])> {
-        let tau = from.tau + fraction(0.25 * side.sign() - self.turns_at(from.tau)) * self.period;
-        (tau < to.tau).then_some((tau, [side.sign(), 0.0]))
+    fn series(&self, tau: f64, sine: [f64; 2], level: f64, sign: f64) -> Series {
+        let derivatives = self.derivatives(tau, sine);
+        Series::new(level - sign * derivatives[0], sign, derivatives)
     }
 
-    /// Whether the first term that the series about `tau` leaves out is too small to move its root.
+    /// Whether the `step`, s, of Halley's method from `tau` and one more of that method lead to the crossing, if Newton's method
+    /// would put that off by `rest`, s, from there.
+    ///
+    /// An error e becomes K e^3 by a step. The first step has left K step^3 = rest, so that the next leaves rest^4 / step^3.
+    /// Where the method crawls along a flat gap, the rest is larger than the step.
     #[inline]
-    fn is_complete(&self, root: &Root, tau: f64) -> bool {
-        let square = (self.omega() * root.step).powi(2);
+    fn is_found(&self, tau: f64, step: f64, rest: f64, slope: f64) -> bool {
+        let allowed = 0.25 * f64::EPSILON * tau;
+        let square = (self.omega() * step).powi(2);
         let left_out = self.swing * (square * square) * (square * square) * (1.0 / 40_320.0);
-        left_out <= 0.25 * f64::EPSILON * tau * root.slope.abs()
+        let is_complete = left_out <= allowed * slope.abs();
+        let (rest, step) = (rest.abs(), step.abs());
+        is_complete && (rest <= allowed || (rest <= 0.01 * step && rest.powi(4) <= allowed * step.powi(3)))
+    }
+
+    /// Where on the way from one extremum to the next the harmonic part is steepest: sine and cosine are known there. It
+    /// is counted from the begin of the flight, so that nobody waits for the extrema.
+    #[inline]
+    fn steepest(&self, side: Side, from: &Knot, to: &Knot) -> Option<(f64, [f64; 2])> {
+        let first = fraction(0.25 * side.sign() - self.turns) * self.period;
+        if first >= from.tau && first < to.tau {
+            return Some((first, [side.sign(), 0.0]));
+        }
+        let tau = from.tau + fraction(0.25 * side.sign() - self.turns_at(from.tau)) * self.period;
+        (tau < to.tau).then_some((tau, [side.sign(), 0.0]))
     }
 
     /// dz, m, a short `step`, s, beside `tau`, with all digits: in a series about `tau`, the straight part of the flight would

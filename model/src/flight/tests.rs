@@ -53,6 +53,27 @@ proptest! {
     }
 
     #[test]
+    fn a_ball_that_just_reaches_a_membrane_meets_it_on_the_way_and_not_past_the_turn(
+        flight in any_flight(), depth in -19..-8_i32,
+    ) {
+        let end = flight.window_length();
+        let Some(turn) = flight.zeros(1, 0.0, end).iter().next() else { return Ok(()) };
+        let depth = 10.0_f64.powi(depth);
+        let flight = Flight { half_travel: turn.value.abs() - depth, ..flight };
+        if flight.dz.abs() >= flight.half_travel {
+            return Ok(()); // what begins on a membrane or beyond
+        }
+        let rounding = 4.0 * flight.rounding(end);
+        let Some(contact) = flight.contact_in_window(0, f64::INFINITY) else {
+            prop_assert!(depth <= rounding, "missed by {depth:e} m");
+            return Ok(());
+        };
+        prop_assert!(contact.elapsed <= end, "{} s", contact.elapsed);
+        let beyond = flight.derivative(0, contact.elapsed).abs() - flight.half_travel;
+        prop_assert!(beyond.abs() <= rounding, "{beyond:e} m off");
+    }
+
+    #[test]
     fn zeros_are_zeros_and_carry_the_lower_derivative(flight in any_flight(), order in 1..3_usize) {
         let (begin, end) = flight.window_bounds(0, f64::INFINITY);
         let omega = flight.omega();

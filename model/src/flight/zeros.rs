@@ -86,7 +86,7 @@ impl Flight {
         if level.is_nan() || level.abs() > 1.0 {
             return zeros; // the constant outweighs the harmonic part, or both are zero
         }
-        let first = level.asin() / TAU;
+        let first = level.asin() * (1.0 / TAU);
         let other = ((1.0 - level) * (1.0 + level)).sqrt();
         // cos x is the sine of an angle that is ahead by a quarter of a turn.
         let at_begin = self.turns_at(begin) + if is_cosine { 0.25 } else { 0.0 };

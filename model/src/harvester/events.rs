@@ -1,7 +1,7 @@
 //! The events of the motion: what comes next, and what it does.
 
 use super::course::{Boundary, Place};
-use super::tangent::Hit;
+use super::tangent::{Hit, HitChange};
 use super::{Ball, Harvester, phase};
 use crate::cylinder::{CylinderState, Drive};
 use crate::error::ModelError;
@@ -256,9 +256,8 @@ impl Harvester {
 
     /// Counts an event against the budget of its second.
     pub(super) fn spend(&mut self, time: f64) -> Result<(), ModelError> {
-        let second = time.floor();
-        if second != self.second {
-            (self.second, self.second_events) = (second, 0);
+        if !(0.0..1.0).contains(&(time - self.second)) {
+            (self.second, self.second_events) = (time.floor(), 0);
         }
         self.second_events += 1;
         if self.second_events > EVENT_BUDGET {
@@ -277,13 +276,19 @@ impl Harvester {
         let wall = self.cylinder.at(time);
         let speed = (side.sign() * (wall.velocity - self.ball.velocity)).max(0.0);
         let peak = self.membrane.deflection(speed);
-        let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
-        let change = self.change_of(&Hit { side, speed, peak, excess_slope, wall });
+        let (excess, change) = if self.tangent.idle {
+            (self.membrane.capacitance_excess(peak), HitChange::default())
+        } else {
+            let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
+            (excess, self.change_of(&Hit { side, speed, peak, excess_slope, wall }))
+        };
         self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak, change: change.pulse });
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
         self.credit(excess);
-        self.take_over(&change, excess);
+        if !self.tangent.idle {
+            self.take_over(&change, excess);
+        }
         self.book_impact(side, wall.velocity, speed);
         let rebound = self.parameters.restitution * speed;
         let dz = side.sign() * self.half_travel();
@@ -294,7 +299,9 @@ impl Harvester {
             Some(Tail::Summed) => {
                 let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
                 self.credit(excess);
-                self.take_over_tail(speed, excess);
+                if !self.tangent.idle {
+                    self.take_over_tail(speed, excess);
+                }
                 self.settle(side, &wall, change.wall);
             }
             Some(Tail::Unresolved) => self.settle(side, &wall, change.wall),

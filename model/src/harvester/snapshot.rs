@@ -1,7 +1,7 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
 use super::energy::{Ledger, LedgerChange};
-use super::events::Search;
+use super::events::{Event, Search};
 use super::tangent::Tangent;
 use super::{Ball, Harvester, Noise, Totals, phase};
 use crate::compliant::{ContactSnapshot, Ramp, Touch};
@@ -52,8 +52,8 @@ pub struct Snapshot {
     pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
     /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
-    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them.
-    pub changes: [f64; 8],
+    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them. None before anybody asked.
+    pub changes: Option<[f64; 8]>,
     /// Number of the second in which events are being counted.
     pub second: f64,
     /// Events counted in it.
@@ -85,7 +85,16 @@ impl Harvester {
             voltages: self.voltages.map(|ramp| [ramp.start, ramp.value, ramp.rate]),
             totals: self.totals,
             ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
-            changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy, wall, loss],
+            changes: (!tangent.idle).then_some([
+                tangent.since,
+                position,
+                velocity,
+                last_speed,
+                voltage_gain,
+                energy,
+                wall,
+                loss,
+            ]),
             second: self.second,
             second_events: self.second_events,
         }
@@ -105,6 +114,11 @@ impl Harvester {
             Search::resumed(harvester.search.flight, snapshot.time)
         };
         harvester.plan_touch();
+        let due = harvester.next_event(snapshot.time, true).filter(|event| event.time() <= snapshot.time);
+        if let Some(Event::Impact { time, .. } | Event::Release { time }) = due {
+            // All of them have happened; a state that says otherwise could hold any number.
+            check("event before the present time", time, false)?;
+        }
         harvester.advance(snapshot.time)?;
         Ok(harvester)
     }
@@ -135,11 +149,14 @@ impl Harvester {
         let cylinder = CylinderMotion::new(start, position, velocity, drive);
         let [since, position, velocity] = snapshot.ball;
         let ball = Ball { since, position, velocity, resting: snapshot.resting };
-        let [since, position_change, velocity_change, last_speed, voltage_gain, energy, wall, loss] = snapshot.changes;
-        let mut tangent = Tangent::of_force(since, p.cylinder_mass);
-        tangent.ball = [position_change, velocity_change];
-        tangent.totals = [last_speed, voltage_gain, energy];
-        tangent.ledger = LedgerChange { wall, loss };
+        let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| {
+            let [since, position, velocity, last_speed, voltage_gain, energy, wall, loss] = changes;
+            let mut tangent = Tangent::of_force(since, p.cylinder_mass);
+            tangent.ball = [position, velocity];
+            tangent.totals = [last_speed, voltage_gain, energy];
+            tangent.ledger = LedgerChange { wall, loss };
+            tangent
+        });
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
         let [start, dz] = snapshot.flight;
         let here = cylinder.at(start);
@@ -180,10 +197,11 @@ impl Snapshot {
             let PulseChange { start, speed, peak } = pulse.change;
             [start, speed, peak]
         });
-        for change in changes.chain(self.changes) {
+        for change in changes.chain(self.changes.into_iter().flatten()) {
             check("change", change, change.is_finite())?;
         }
-        for start in [self.cylinder[0], self.ball[0], self.flight[0], self.changes[0]] {
+        let since = self.changes.map(|[since, ..]| since);
+        for start in [self.cylinder[0], self.ball[0], self.flight[0]].into_iter().chain(since) {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
             check("start of a motion", start, start <= time && (time - start) * parameters.frequency < 9.0e15)?;
         }

@@ -71,6 +71,8 @@ pub(super) struct ParameterChange {
 pub(super) struct Tangent {
     /// Time from which on the force is changed, s.
     pub(super) since: f64,
+    /// Nobody has asked for them yet: all are zero, and impacts are spared the work.
+    pub(super) idle: bool,
     /// Nothing but the time has come into them since they were forgotten.
     pub(super) fresh: bool,
     /// Change of the external force over M, m/s^2.
@@ -151,10 +153,15 @@ pub(super) fn bounded(change: f64) -> f64 {
 }
 
 impl Tangent {
+    /// No change at all, until somebody asks for one.
+    pub(super) fn none() -> Self {
+        Self { idle: true, push: 0.0, ..Self::of_force(0.0, 1.0) }
+    }
+
     /// One more newton from `since`, s, on.
     pub(super) fn of_force(since: f64, cylinder_mass: f64) -> Self {
         let (ball, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
-        Self { since, fresh: false, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
+        Self { since, idle: false, fresh: false, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
     }
 
     /// The start of `harvester` under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of
@@ -186,6 +193,7 @@ impl Tangent {
             shape: harvester.shape.change(d.stiffness_exponent, d.restitution),
         };
         Self {
+            idle: false,
             fresh: false,
             since: harvester.time,
             push: (direction.force - force * heavier) / p.cylinder_mass,
@@ -335,7 +343,7 @@ impl Harvester {
 
     /// First-order changes of everything, per newton of the external force: that set by the last
     /// [`Harvester::set_external_force`], moved by a constant and held since then. Of a harvester made by
-    /// [`Harvester::along`], before that is called: per unit of its direction.
+    /// [`Harvester::along`], before that is called: per unit of its direction. Of any other harvester they are zero before.
     ///
     /// They are those of the side that the state is on: after an event at the present time. Events stay in their order, a
     /// ball at rest stays there. Grazing impacts ([`GRAZING_SPEED`]) count as none, so that all values are

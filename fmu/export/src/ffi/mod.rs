@@ -57,8 +57,8 @@ impl Fmu {
 }
 
 /// What a component points to: an instance, and whether a call of it is under way. FMI 2.0 forbids calls from inside a
-/// logger callback and from two threads at once. The former are always refused, the latter if they do not begin within the
-/// same few nanoseconds.
+/// logger callback and from two threads at once. The former are always refused. Calls from a second thread are usually
+/// refused; nothing guarantees it, and two that begin together are undefined behaviour.
 pub(crate) struct Handle<S: Slave> {
     busy: AtomicBool,
     instance: UnsafeCell<Instance<S>>,

@@ -56,8 +56,8 @@ impl<S: Slave> Instance<S> {
     #[inline]
     fn check_step(&self, t: f64, h: f64) -> Call {
         let (end, stop) = (t + h, self.core.experiment.and_then(|e| e.stop_time));
-        let advances = t < end && end.is_finite() && stop.is_none_or(|stop| end <= stop);
-        if advances && (t - self.core.time).abs() <= TIME_ROUNDING * t.abs() {
+        let latest = stop.map_or(f64::MAX, |stop| stop.min(f64::MAX));
+        if t < end && end <= latest && (t - self.core.time).abs() <= TIME_ROUNDING * t.abs() {
             return Ok(());
         }
         self.check_step_closely(t, h)

@@ -2,9 +2,10 @@
 //! token that was not given out, or was freed, or belongs to another instance is recognised, and no token is ever given out
 //! twice.
 //!
-//! Masters that try steps save, restore and free a state at each of them, so none of that copies anything: the state that was
-//! saved or restored last is the present one until that changes. Only then is it given a copy, in memory that was freed
-//! before if there is some.
+//! Masters that try steps save, restore and free a state at each of them, so the state that was saved or restored last
+//! is the present one until that changes or another is saved. Only then is it given a copy, in memory that was freed
+//! before if there is some. Restoring and freeing copy nothing, nor does saving a state that has changed since the last
+//! one was saved or restored.
 
 use super::{Call, Core};
 use crate::error::CallError;
@@ -12,7 +13,7 @@ use crate::slave::Slave;
 use core::ops::{Deref, DerefMut, Range};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-/// How many states have been given a number in this process.
+/// Numbers below this one are taken: instances take a block of them at a time.
 static COUNTER: AtomicUsize = AtomicUsize::new(0);
 
 /// A token is a number plus this. The address of the counter keeps the tokens of different FMUs in one process apart.
@@ -110,9 +111,10 @@ impl<S: Slave> Cores<S> {
         self.settle();
         let position = self.place(token)?;
         let Saved { number, core } = &mut self.saved[position];
-        self.spare = core.take().or(self.spare.take());
-        self.twin = Some(*number);
-        Ok(base().wrapping_add(*number))
+        let (number, before) = (*number, core.take());
+        self.twin = Some(number); // first: to drop a spare may panic
+        self.keep(before);
+        Ok(base().wrapping_add(number))
     }
 
     /// Keeps `core` as [`save`](Self::save) keeps the present state.
@@ -124,17 +126,20 @@ impl<S: Slave> Cores<S> {
         Ok(base().wrapping_add(*number))
     }
 
-    /// Goes to the state with this token.
+    /// Goes to the state with this token. If the present one is a saved one, it is handed back to that.
     pub(super) fn restore(&mut self, token: usize) -> Call {
         if self.is_twin(token) {
             return Ok(());
         }
-        self.settle();
         let position = self.position(token)?;
         let Saved { number, core } = &mut self.saved[position];
         let core = core.take().ok_or(CallError::UnknownFmuState(token))?;
-        self.spare = Some(core::mem::replace(&mut self.present, core));
-        self.twin = Some(*number);
+        let number = *number;
+        let before = core::mem::replace(&mut self.present, core);
+        match self.twin.replace(number).and_then(|twin| self.find(twin).ok()) {
+            Some(twin) => self.saved[twin].core = Some(before),
+            None => self.keep(Some(before)),
+        }
         Ok(())
     }
 
@@ -142,8 +147,15 @@ impl<S: Slave> Cores<S> {
     pub(super) fn free(&mut self, token: usize) -> Call {
         let Saved { number, core } = self.saved.remove(self.position(token)?);
         self.twin = self.twin.filter(|twin| *twin != number);
-        self.spare = core.or(self.spare.take());
+        self.keep(core);
         Ok(())
+    }
+
+    /// Keeps memory for the next copy.
+    fn keep(&mut self, spare: Option<Box<Core<S>>>) {
+        if spare.is_some() {
+            self.spare = spare;
+        }
     }
 
     fn is_twin(&self, token: usize) -> bool {
@@ -151,17 +163,14 @@ impl<S: Slave> Cores<S> {
     }
 
     /// Gives the saved state that is the present one a copy of its own.
-    fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         let Some(number) = self.twin.take() else { return };
         let Ok(position) = self.find(number) else { return };
-        let copy = match self.spare.take() {
-            Some(mut spare) => {
-                spare.as_mut().clone_from(&self.present);
-                spare
-            }
-            None => Box::new(self.present.as_ref().clone()),
-        };
-        self.saved[position].core = Some(copy);
+        match &mut self.spare {
+            Some(spare) => spare.as_mut().clone_from(&self.present),
+            None => self.spare = Some(Box::new(self.present.as_ref().clone())),
+        }
+        self.saved[position].core = self.spare.take();
     }
 
     /// Where the state with this token is kept, or a new one if it is NULL.

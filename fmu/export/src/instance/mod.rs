@@ -125,15 +125,16 @@ impl<S: Slave> Instance<S> {
     fn fail(&mut self, function: Function, error: &CallError) -> fmi2Status {
         let status = error.status();
         self.logger.take_warned();
-        guard(status, || {
-            self.logger.status(status, format_args!("{}: {error}", function.name()));
-            match status {
-                fmi2Error => self.core.state = CallState::Error,
-                fmi2Fatal => self.core.state = CallState::Fatal,
-                _ => {}
-            }
-            status
-        })
+        guard((), || self.logger.status(status, format_args!("{}: {error}", function.name())));
+        let state = match status {
+            fmi2Error => CallState::Error,
+            fmi2Fatal => CallState::Fatal,
+            _ => return status,
+        };
+        // A saved state that is the present one and cannot be copied is lost; then nothing is to be copied any more.
+        guard((), || self.core.settle());
+        self.core.state = state;
+        status
     }
 
     /// Brings calculated values up to date, if something was set and initialisation is still ahead. In model exchange,
