@@ -13,7 +13,7 @@ use crate::sweep::{Design, Request, SweepFile, Times, Vary};
 /// What is swept. An option wins over the same key of the file.
 #[derive(Args)]
 pub struct What {
-    /// Sweep file (TOML): a case file that may also have design, points, samples, seed, record and a [vary] table
+    /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
     #[arg(value_name = "FILE.toml")]
     pub file: Option<PathBuf>,
     /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
@@ -72,7 +72,7 @@ impl What {
         let has_case = self.case.is_some() || file.case.case.is_some();
         anyhow::ensure!(is_harvester || !has_case, "--case: {model} is not the harvester, of which the cases are");
         let step = self.step.or(file.case.step);
-        let SweepFile { case, design, points, samples, seed, record, vary } = file;
+        let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
         let name = case.name.clone();
         let scenario = self.scenario(case, description, is_harvester)?;
         let own_step = || description.default_experiment.step_size.unwrap_or(scenario.until / 1000.0);
@@ -92,8 +92,8 @@ impl What {
             points: self.points.or(points),
             samples: self.samples.or(samples).unwrap_or(1),
             seed: self.seed.or(seed).unwrap_or(1),
-            common_seeds: self.common_seeds,
-            seed_variable: self.seed_variable.clone(),
+            common_seeds: self.common_seeds || common_seeds.unwrap_or(false),
+            seed_variable: self.seed_variable.clone().or(seed_variable),
             record: if self.record.is_empty() { record } else { self.record.clone() },
         })
     }

@@ -153,6 +153,9 @@ fn check_range(range: &Range, design: Design) -> Result<(), String> {
     if scale == Scale::Log && !(from > 0.0 && to > 0.0) {
         return Err(format!("equal ratios need numbers above 0, not from {from} to {to}"));
     }
+    if scale == Scale::Log && !(to / from).is_normal() {
+        return Err(format!("the ratio of {to:e} to {from:e} is beyond floating-point numbers"));
+    }
     match (design, count) {
         (Design::Grid, None) => Err(format!("a grid needs a count, as in {from}:{to}:11")),
         (Design::Grid, Some(0)) => Err("a count of 0 leaves nothing to run; at least 1 is allowed".to_owned()),
@@ -237,6 +240,7 @@ mod tests {
             ("membrane.restitution=0:1:5", Design::Lhs, "a count of 5 belongs to a grid; the design lhs"),
             ("membrane.restitution=0:inf", Design::Random, "from 0 to inf"),
             ("membrane.stiffness=log:0:1", Design::Random, "above 0, not from 0 to 1"),
+            ("membrane.stiffness=log:1e-200:1e200", Design::Random, "the ratio of 1e200 to 1e-200"),
             ("membrane.restitution=0.5,high", Design::Grid, "membrane.restitution = \"high\": allowed is a number"),
             ("membrane.restitution=1.5,2", Design::Grid, "membrane.restitution = 1.5"),
             ("membrane.restitution=1.5:2", Design::Random, "membrane.restitution = 1.5"),

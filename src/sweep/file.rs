@@ -7,6 +7,8 @@
 //! points = 1000                  # of lhs and random; a grid has as many as it has
 //! samples = 20                   # runs of each point, each with a seed of its own
 //! seed = 7
+//! common_seeds = true            # sample i has the same seed in all points
+//! seed_variable = "excitation.seed"
 //! record = ["cylinder.position"]
 //!
 //! [set]
@@ -39,6 +41,10 @@ pub struct SweepFile {
     pub samples: Option<u64>,
     /// Seed of design and samples.
     pub seed: Option<u64>,
+    /// Sample i has the same seed in all points.
+    pub common_seeds: Option<bool>,
+    /// The variable that takes the seed.
+    pub seed_variable: Option<String>,
     /// Variables to record at the end of each run.
     pub record: Vec<String>,
     /// Variables to vary.
@@ -52,13 +58,15 @@ struct Layout {
     points: Option<u64>,
     samples: Option<u64>,
     seed: Option<u64>,
+    common_seeds: Option<bool>,
+    seed_variable: Option<String>,
     #[serde(default)]
     record: Vec<String>,
     #[serde(default)]
     vary: Table,
 }
 
-const KEYS: [&str; 6] = ["design", "points", "samples", "seed", "record", "vary"];
+const KEYS: [&str; 8] = ["design", "points", "samples", "seed", "common_seeds", "seed_variable", "record", "vary"];
 
 impl SweepFile {
     /// Reads the file at `path`. The sweep is called after it unless it says otherwise.
@@ -79,13 +87,16 @@ impl SweepFile {
         let said = |error: toml::de::Error| error.to_string().trim_end().to_owned();
         let table: Table = toml::from_str(text).map_err(said)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
-        let Layout { design, points, samples, seed, record, vary } = own.try_into().map_err(said)?;
+        let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =
+            own.try_into().map_err(said)?;
         Ok(Self {
             case: CaseFile::from_table(case)?,
             design,
             points,
             samples,
             seed,
+            common_seeds,
+            seed_variable,
             record,
             vary: Vary::all_of(&vary)?,
         })
@@ -110,6 +121,7 @@ mod tests {
         let options =
             ["membrane.restitution=0.2:0.9", "membrane.stiffness=log:1e4:1e6", "initial.outsideGap=project,free"];
         assert_eq!(file.vary, options.map(|text| Vary::parse(text).unwrap()));
+        assert_eq!((file.common_seeds, file.seed_variable.as_deref()), (Some(true), Some("excitation.seed")));
         assert_eq!(file.case.settings.len(), 1);
     }
 

@@ -11,6 +11,8 @@ use super::{Shard, SweepError};
 pub(super) const DOCUMENT: &str = "sweep.json";
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
+/// What to do about a folder of another sweep.
+const WAY_OUT: &str = "choose another --output, or --fresh to begin anew";
 
 /// Name under which a file is written before it is complete.
 pub(super) fn partial(path: &Path) -> PathBuf {
@@ -59,7 +61,6 @@ fn check(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<(), 
             None => Ok(()),
         };
     }
-    const WAY_OUT: &str = "choose another --output, or --fresh to begin anew";
     match there {
         Some(there) => Err(foreign(folder, &there, document, WAY_OUT)),
         None => match results(folder)?.first() {
