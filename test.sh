@@ -3,10 +3,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy conformance browser)
+readonly STAGES=(setup lint unit valgrind fmpy scale conformance browser)
 readonly VENV=.venv
 # Each takes the one before in.
-readonly REQUIREMENTS=(tests/requirements.txt tests/requirements-conformance.txt tests/requirements-browser.txt)
+readonly REQUIREMENTS=(
+    tests/requirements.txt
+    scale/requirements.txt
+    tests/requirements-conformance.txt
+    tests/requirements-browser.txt
+)
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
@@ -23,6 +28,7 @@ Runs the stages named, or all of them in this order:
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line
+  scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
   browser      reports in headless Chromium: drawn, without errors or requests, on a phone and a desktop, on paper;
@@ -46,6 +52,10 @@ fail() {
 
 has_command() {
     command -v "$1" >/dev/null
+}
+
+has_daemon() {
+    PATH="$PATH:/usr/sbin:/sbin" has_command "$1"
 }
 
 has_library() {
@@ -75,6 +85,11 @@ missing_packages() {
     has_command ngspice || echo ngspice
     has_library libngspice.so.0 || echo libngspice0
     has_command chromium || echo chromium
+    has_command shellcheck || echo shellcheck
+    has_daemon slurmctld || echo slurmctld
+    has_daemon slurmd || echo slurmd
+    has_command sbatch || echo slurm-client
+    has_daemon munged || echo munge
 }
 
 install_packages() {
@@ -171,6 +186,12 @@ stage_fmpy() {
     need_python
     build_fmus
     run "$VENV/bin/python" -m pytest tests/fmpy
+}
+
+stage_scale() {
+    need_python
+    build_fmus
+    run "$VENV/bin/python" -m pytest tests/scale
 }
 
 stage_conformance() {

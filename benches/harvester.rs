@@ -5,33 +5,46 @@ mod baseline;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use videg_model::{Case, Harvester, Parameters};
+use videg_model::{Case, Harvester, ModelError, Parameters};
 
 /// Duration of the paper's runs, s.
 const UNTIL: f64 = 100.0;
 /// Step of the paper's runs, s.
 const DT: f64 = 1e-5;
+/// Communication step of a coupled run, s.
+const COMMUNICATION_STEP: f64 = 1e-3;
 
 fn parameters(case: &str) -> Parameters {
     Case::find(case).map_or_else(Parameters::default, |case| (case.parameters)())
 }
 
-fn event_driven(parameters: &Parameters) -> f64 {
-    let mut harvester = Harvester::new(parameters, 0.0).ok();
-    let advanced = harvester.as_mut().is_some_and(|harvester| harvester.advance(UNTIL).is_ok());
-    harvester.filter(|_| advanced).map_or(f64::NAN, |harvester| harvester.totals().voltage_gain)
+/// Sum of `U_DE4` - `U_in`, V, of a run in this number of steps.
+fn event_driven(parameters: &Parameters, steps: u32) -> Result<f64, ModelError> {
+    let mut harvester = Harvester::new(parameters, 0.0)?;
+    for k in 1..=steps {
+        harvester.advance(UNTIL * f64::from(k) / f64::from(steps))?;
+    }
+    Ok(harvester.totals().voltage_gain)
 }
 
 fn runs_of_100_s(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("100 s");
     for case in ["fig14", "table3-2hz"] {
         let parameters = parameters(case);
-        group.bench_function(format!("{case}, event-driven"), |b| b.iter(|| event_driven(black_box(&parameters))));
+        group.bench_function(format!("{case}, event-driven"), |b| b.iter(|| event_driven(black_box(&parameters), 1)));
     }
     let fig14 = parameters("fig14");
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number of steps
+    let steps = (UNTIL / COMMUNICATION_STEP).round() as u32;
+    group.bench_function("fig14, event-driven in steps of 1 ms", |b| {
+        b.iter(|| event_driven(black_box(&fig14), steps));
+    });
     group.sample_size(10);
     group.bench_function("fig14, Runge-Kutta as the paper", |b| {
         b.iter(|| baseline::runge_kutta(black_box(&fig14), DT, UNTIL));
+    });
+    group.bench_function("fig14, Runge-Kutta stage by stage", |b| {
+        b.iter(|| baseline::runge_kutta_by_stages(black_box(&fig14), DT, UNTIL));
     });
     group.finish();
 }

@@ -8,6 +8,7 @@
 //! - [`crosscheck`] holds both, and the closed forms of the paper, against each other;
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`report`] draws figures and writes the HTML report;
+//! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`cli`] is the command-line tool.
 
 pub mod cli;
@@ -19,3 +20,4 @@ pub mod package;
 pub mod paper;
 pub mod report;
 pub mod scenario;
+pub mod sweep;

@@ -1,56 +1,102 @@
-//! Phase noise as a plain program would have it: one hold interval after the other, ziggurat samples, the mathematical
-//! library's cosine, Eq. (11) at the end of each interval that ends beyond a membrane. Written with care for speed: what is
-//! constant stands outside of the loop, which holds nothing but the state.
+//! Phase noise as a plain program in C has it (`noise.c`).
 
-use std::f64::consts::TAU;
+#[path = "c.rs"]
+mod c;
 
-use rand::SeedableRng;
-use rand::rngs::SmallRng;
-use rand_distr::{Distribution, StandardNormal};
+use core::f64::consts::TAU;
+use core::ffi::c_void;
+
+use anyhow::Result;
+use libloading::Library;
 use videg_model::{Membrane, Parameters};
 
-/// Cylinder: position, m, and velocity, m/s.
-type Cylinder = [f64; 2];
-
-/// Sum of `U_DE4` - `U_in`, V, over a run of `until`, s, by the paper's Runge-Kutta method with the hold time as step. A new
-/// phase in each step leaves no value of the force to share with the next one.
-pub fn runge_kutta(p: &Parameters, until: f64) -> f64 {
-    let (omega, amplitude, h) = (TAU * p.frequency, p.amplitude / p.cylinder_mass, p.noise_hold);
-    run(p, until, |[z, v], n, phase| {
-        let begin = omega * (n as f64 * h) + phase;
-        let [a, b, c] = [begin, begin + 0.5 * omega * h, begin + omega * h].map(f64::cos);
-        [z + h * v + amplitude * h * h / 6.0 * (a + 2.0 * b), v + amplitude * h / 6.0 * (a + 4.0 * b + c)]
-    })
+/// `struct parameters` of `noise.c`.
+#[repr(C)]
+struct Run {
+    cylinder_mass: f64,
+    amplitude: f64,
+    omega: f64,
+    phase: f64,
+    phase_noise: f64,
+    hold: f64,
+    restitution: f64,
+    half_travel: f64,
+    cylinder_position: f64,
+    cylinder_velocity: f64,
+    ball_position: f64,
+    ball_velocity: f64,
+    gain: extern "C" fn(*const c_void, f64) -> f64,
+    membrane: *const c_void,
+    seed: u64,
+    steps: u64,
 }
 
-/// The same by the closed form of a hold interval, the angle taken in its middle: one sine and cosine each.
-pub fn closed_form(p: &Parameters, until: f64) -> f64 {
-    let (omega, h) = (TAU * p.frequency, p.noise_hold);
-    let (swing, x) = (p.amplitude / p.cylinder_mass / (omega * omega), 0.5 * omega * h);
-    let push = 2.0 * swing * omega * x.sin();
-    let shift = [swing * omega * h * x.sin(), swing * 2.0 * (x.sin() - x * x.cos())];
-    run(p, until, |[z, v], n, phase| {
-        let (sin, cos) = (omega * ((n as f64 + 0.5) * h) + phase).sin_cos();
-        [z + h * v + shift[0] * cos + shift[1] * sin, v + push * cos]
-    })
+/// A membrane and its bias voltage, V.
+struct Generator(Membrane, f64);
+
+extern "C" fn gain(generator: *const c_void, speed: f64) -> f64 {
+    // SAFETY: `Plain::run` hands this over and keeps it meanwhile.
+    let Generator(membrane, bias) = unsafe { &*generator.cast() };
+    bias * membrane.capacitance_excess(membrane.deflection(speed))
 }
 
-fn run(p: &Parameters, until: f64, step: impl Fn(Cylinder, u64, f64) -> Cylinder) -> f64 {
-    let (membrane, half) = (Membrane::new(p), p.travel() / 2.0);
-    let mut random = SmallRng::seed_from_u64(u64::from(p.seed.cast_unsigned()));
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number of steps
-    let steps = (until / p.noise_hold).round() as u64;
-    let mut cylinder = [p.cylinder_position, p.cylinder_velocity];
-    let (mut ball, mut ball_velocity, mut gain) = (p.ball_position, p.ball_velocity, 0.0);
-    for n in 0..steps {
-        let xi: f64 = StandardNormal.sample(&mut random);
-        cylinder = step(cylinder, n, p.phase + p.phase_noise * xi);
-        ball += p.noise_hold * ball_velocity;
-        let (dz, approach) = (cylinder[0] - ball, cylinder[1] - ball_velocity);
-        if dz.abs() >= half && dz * approach > 0.0 {
-            gain += p.bias_voltage * membrane.capacitance_excess(membrane.deflection(approach.abs()));
-            ball_velocity = -p.restitution * ball_velocity + (1.0 + p.restitution) * cylinder[1];
-        }
+/// The plain program.
+pub struct Plain(Library);
+
+impl Plain {
+    pub fn compile() -> Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let library = c::compile("noise.c", folder.path(), &[])?;
+        // SAFETY: nothing runs when the library is loaded.
+        Ok(Self(unsafe { Library::new(library) }?))
     }
-    gain
+
+    /// Sum of `U_DE4` - `U_in`, V, over a run of `until`, s, by the paper's Runge-Kutta method.
+    pub fn runge_kutta(&self, p: &Parameters, until: f64) -> Result<f64> {
+        self.run(b"noise_runge_kutta", p, until)
+    }
+
+    /// The same by the closed form of each hold interval.
+    pub fn closed_form(&self, p: &Parameters, until: f64) -> Result<f64> {
+        self.run(b"noise_closed_form", p, until)
+    }
+
+    fn run(&self, function: &[u8], p: &Parameters, until: f64) -> Result<f64> {
+        let generator = Generator(Membrane::new(p), p.bias_voltage);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number of steps
+        let steps = (until / p.noise_hold).round() as u64;
+        let run = Run {
+            cylinder_mass: p.cylinder_mass,
+            amplitude: p.amplitude,
+            omega: TAU * p.frequency,
+            phase: p.phase,
+            phase_noise: p.phase_noise,
+            hold: p.noise_hold,
+            restitution: p.restitution,
+            half_travel: p.travel() / 2.0,
+            cylinder_position: p.cylinder_position,
+            cylinder_velocity: p.cylinder_velocity,
+            ball_position: p.ball_position,
+            ball_velocity: p.ball_velocity,
+            gain,
+            membrane: (&raw const generator).cast(),
+            seed: u64::from(p.seed.cast_unsigned()),
+            steps,
+        };
+        // SAFETY: the functions of this name in noise.c have this signature.
+        let function = unsafe { self.0.get::<unsafe extern "C" fn(*const Run) -> f64>(function) }?;
+        // SAFETY: `run` and what it points to live until the call returns.
+        Ok(unsafe { function(&raw const run) })
+    }
+
+    /// Standard normal samples of the plain program.
+    #[allow(dead_code)] // for the tests of the baseline
+    pub fn samples(&self, seed: u64, count: usize) -> Result<Vec<f64>> {
+        let mut samples = vec![0.0; count];
+        // SAFETY: the function of this name in noise.c has this signature.
+        let fill = unsafe { self.0.get::<unsafe extern "C" fn(u64, u64, *mut f64)>(b"noise_samples") }?;
+        // SAFETY: there is room for so many samples.
+        unsafe { fill(seed, count as u64, samples.as_mut_ptr()) };
+        Ok(samples)
+    }
 }

@@ -18,6 +18,7 @@
 //! are integrated.
 
 mod chebyshev;
+mod copy;
 mod law;
 mod step;
 
@@ -52,7 +53,7 @@ pub struct ContactSnapshot {
 const MAX_STEPS: usize = 1000;
 
 /// The present contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Touch {
     pub(crate) side: Side,
     /// Time at which it began, s.
@@ -71,7 +72,7 @@ pub(crate) struct Touch {
 }
 
 /// The motion on one branch up to where it is left.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, PartialEq, Default)]
 struct Pass {
     steps: Vec<Step>,
     end: f64,

@@ -2,6 +2,8 @@
 
 use core::f64::consts::TAU;
 
+use crate::elementary::{round, sin_cos};
+
 /// Force on the cylinder over its mass: harmonic, plus an external part that is linear in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
@@ -32,6 +34,12 @@ impl Drive {
     /// no digits.
     pub fn angle(&self, time: f64) -> f64 {
         TAU * cycle_fraction(self.frequency, time) + self.phase
+    }
+
+    /// The same angle in turns.
+    fn turns(&self, time: f64) -> f64 {
+        let own = self.phase / TAU;
+        cycle_fraction(self.frequency, time) + (own - round(own))
     }
 }
 
@@ -65,45 +73,87 @@ pub struct CylinderMotion {
     pub velocity: f64,
     /// Force over mass.
     pub drive: Drive,
-    /// Angle of the harmonic force at the start, rad, and its sine and cosine.
+    /// Sine and cosine of the angle of the harmonic force at the start.
     sin_start: f64,
     cos_start: f64,
+    /// A / M over omega, m/s, and over omega^2, m.
+    speed: f64,
+    swing: f64,
+}
+
+/// The cylinder at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct CylinderState {
+    /// t, s.
+    pub time: f64,
+    /// `z_M`, m.
+    pub position: f64,
+    /// `z_M'`, m/s: Eq. (7) integrated once.
+    pub velocity: f64,
+    /// `z_M''`, m/s^2: Eq. (7).
+    pub acceleration: f64,
+    /// `z_M'''`, m/s^3.
+    pub jerk: f64,
+    /// Angle of the harmonic force, in turns, and its sine and cosine.
+    pub turns: f64,
+    /// Its sine and cosine.
+    pub sine: [f64; 2],
 }
 
 impl CylinderMotion {
     /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
     pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
-        let (sin_start, cos_start) = drive.angle(start).sin_cos();
-        Self { start, position, velocity, drive, sin_start, cos_start }
+        let [sin_start, cos_start] = sin_cos(4.0 * drive.turns(start));
+        let speed = drive.amplitude / drive.omega();
+        let swing = speed / drive.omega();
+        Self { start, position, velocity, drive, sin_start, cos_start, speed, swing }
+    }
+
+    /// Amplitude of the oscillation under the harmonic force alone, m.
+    pub(crate) fn swing(&self) -> f64 {
+        self.swing
+    }
+
+    /// All of the motion at `time`, s.
+    #[inline]
+    pub(crate) fn at(&self, time: f64) -> CylinderState {
+        let Drive { amplitude, external, external_rate, .. } = self.drive;
+        let turns = self.drive.turns(time);
+        let sine = sin_cos(4.0 * turns);
+        let ([sin, cos], elapsed) = (sine, time - self.start);
+        let drift = self.velocity - self.speed * self.sin_start;
+        let displacement = 0.5 * external + elapsed * external_rate * (1.0 / 6.0);
+        CylinderState {
+            time,
+            position: self.position + self.swing * (self.cos_start - cos) + elapsed * (drift + elapsed * displacement),
+            velocity: self.velocity
+                + self.speed * (sin - self.sin_start)
+                + elapsed * (external + 0.5 * external_rate * elapsed),
+            acceleration: amplitude * cos + external + external_rate * elapsed,
+            jerk: external_rate - amplitude * self.drive.omega() * sin,
+            turns,
+            sine,
+        }
     }
 
     /// `z_M''`, m/s^2, at `time`, s: Eq. (7).
     pub fn acceleration(&self, time: f64) -> f64 {
-        self.drive.amplitude * self.drive.angle(time).cos()
-            + self.drive.external
-            + self.drive.external_rate * (time - self.start)
+        self.at(time).acceleration
     }
 
     /// `z_M'''`, m/s^3, at `time`, s.
     pub fn jerk(&self, time: f64) -> f64 {
-        self.drive.external_rate - self.drive.amplitude * self.drive.omega() * self.drive.angle(time).sin()
+        self.at(time).jerk
     }
 
     /// `z_M'`, m/s, at `time`, s: Eq. (7) integrated once.
     pub fn velocity(&self, time: f64) -> f64 {
-        let elapsed = time - self.start;
-        let harmonic = self.drive.amplitude / self.drive.omega() * (self.drive.angle(time).sin() - self.sin_start);
-        self.velocity + harmonic + elapsed * (self.drive.external + 0.5 * self.drive.external_rate * elapsed)
+        self.at(time).velocity
     }
 
     /// `z_M`, m, at `time`, s: Eq. (7) integrated twice.
     pub fn position(&self, time: f64) -> f64 {
-        let elapsed = time - self.start;
-        let omega = self.drive.omega();
-        let swing = self.drive.amplitude / (omega * omega);
-        let drift = self.velocity - swing * omega * self.sin_start;
-        let external = 0.5 * self.drive.external + elapsed * self.drive.external_rate / 6.0;
-        self.position + swing * (self.cos_start - self.drive.angle(time).cos()) + elapsed * (drift + elapsed * external)
+        self.at(time).position
     }
 
     /// First-order changes of position, m, and velocity, m/s, at `time`, s, with the harmonic force; the values at the start
@@ -114,7 +164,7 @@ impl CylinderMotion {
         let speed = self.drive.amplitude / omega;
         let speed_change = drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
-        let (sin, cos) = self.drive.angle(time).sin_cos();
+        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
         let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
         let drift = speed_change * self.sin_start + speed * self.cos_start * from;
@@ -124,14 +174,15 @@ impl CylinderMotion {
 
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
-        let (sin, cos) = self.drive.angle(time).sin_cos();
+        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
         drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
     }
 
     /// The same motion described from `time`, s, on, under another drive.
     #[must_use]
     pub fn continued(&self, time: f64, drive: Drive) -> Self {
-        Self::new(time, self.position(time), self.velocity(time), drive)
+        let here = self.at(time);
+        Self::new(time, here.position, here.velocity, drive)
     }
 }
 
@@ -139,7 +190,7 @@ impl CylinderMotion {
 /// (Dekker 1971), so that the fraction is right to rounding however many turns there were.
 pub fn cycle_fraction(frequency: f64, time: f64) -> f64 {
     let product = frequency * time;
-    (product - product.round()) + product_error(frequency, time, product)
+    (product - round(product)) + product_error(frequency, time, product)
 }
 
 /// What rounding has taken from the `product` of `x` and `y`.

@@ -1,6 +1,7 @@
 //! The vibro-impact harvester: from event to event, exactly under the impulsive law.
 
 mod contact;
+mod copy;
 mod course;
 mod energy;
 mod events;
@@ -74,7 +75,7 @@ struct Noise {
 }
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Harvester {
     parameters: Parameters,
     membrane: Membrane,
@@ -95,6 +96,8 @@ pub struct Harvester {
     tangent: Tangent,
     /// Its states are placed by an integrator.
     placed: bool,
+    /// Up to here, s, nothing happens and nothing more is to be foreseen: on the way only the time changes.
+    calm_until: f64,
     /// Second in which events are being counted, and their number: the budget.
     second: f64,
     second_events: u64,
@@ -148,7 +151,8 @@ impl Harvester {
             OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
         };
         let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
-        let flight = Flight::new(&cylinder, start, p.cylinder_position - position, p.ball_velocity, half);
+        let dz = p.cylinder_position - position;
+        let flight = Flight::new(&cylinder, &cylinder.at(start), dz, p.ball_velocity, half);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
@@ -164,8 +168,9 @@ impl Harvester {
             voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             totals: Totals::default(),
             ledger: Ledger::default(),
-            tangent: Tangent::of_force(start, p.cylinder_mass),
+            tangent: Tangent::none(),
             placed: false,
+            calm_until: f64::NEG_INFINITY,
             second: 0.0,
             second_events: 0,
         })
@@ -182,6 +187,7 @@ impl Harvester {
     ///
     /// # Errors
     /// A time that is not finite or lies in the past; more events than can be resolved.
+    #[inline]
     pub fn advance(&mut self, time: f64) -> Result<(), ModelError> {
         self.advance_with(time, |_| {})
     }
@@ -190,11 +196,21 @@ impl Harvester {
     ///
     /// # Errors
     /// As [`Harvester::advance`].
-    pub fn advance_with(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
+    #[inline]
+    pub fn advance_with(&mut self, time: f64, show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
+        if self.time <= time && time < self.calm_until {
+            self.time = time;
+            return Ok(());
+        }
+        self.advance_through_events(time, show)
+    }
+
+    fn advance_through_events(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
         finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
+        self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing foreseen
         while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
             let turn = self.turn_at(event);
             self.process(event)?;
@@ -213,6 +229,7 @@ impl Harvester {
     ///
     /// # Errors
     /// A force or rate that is not finite.
+    #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         finite("externalForce", force)?;
         finite("derivative of externalForce", rate)?;
@@ -221,12 +238,13 @@ impl Harvester {
         Ok(())
     }
 
+    #[inline]
     fn push(&mut self, force: f64, rate: f64) {
-        let mass = self.parameters.cylinder_mass;
-        let drive = self.cylinder.drive;
+        let (mass, drive) = (self.parameters.cylinder_mass, &self.cylinder.drive);
+        let (external, external_rate) = (force / mass, rate / mass);
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
-        if force / mass != present || rate / mass != drive.external_rate {
-            self.restart(self.time, Drive { external: force / mass, external_rate: rate / mass, ..drive });
+        if external != present || external_rate != drive.external_rate {
+            self.restart(self.time, Drive { external, external_rate, ..*drive });
             self.look_ahead();
         }
     }
@@ -234,6 +252,7 @@ impl Harvester {
     /// Makes the next impact known; what is found does not depend on the steps.
     fn look_ahead(&mut self) {
         self.next_event(self.time + self.horizon(), false);
+        self.calm_until = self.calm();
     }
 
     fn half_travel(&self) -> f64 {

@@ -1,45 +1,44 @@
 //! What the harmonic force does in the hold intervals of the phase noise, many of them at once.
 //!
-//! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by
-//! (A / M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force
-//! by constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out for a
-//! block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector instructions.
+//! In one hold interval of length h, whose middle the force passes at the angle a, Eq. (7) changes the velocity by (A /
+//! M) h (sin x / x) cos a, where x = pi `f_0` h, and takes the cylinder farther than it would get without a force by
+//! constant multiples of cos a and sin a. Both follow from the number of the interval alone. They are worked out and
+//! summed for a block at a time, on a grid of numbers that no step of a caller moves, in loops that become vector
+//! instructions: the state at the begin of any interval of the block is then a closed form in the state at that of
+//! another.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use core::f64::consts::{PI, TAU};
+mod block;
+
+pub use self::block::{BLOCK, Block};
+
+use core::f64::consts::{FRAC_2_PI, PI};
 
 use crate::cylinder::{cycle_fraction, product_error};
 use crate::elementary::sin_cos;
-use crate::noise;
+use crate::noise::{self, Aligned};
 use crate::parameters::Parameters;
 
-/// Hold intervals in a block.
-pub const BLOCK: usize = noise::GROUP;
-
-/// The hold intervals of one block.
-#[derive(Clone)]
-pub struct Block {
-    number: u64,
-    /// Changes of `z_M'`, m/s.
-    pub velocity: [f64; BLOCK],
-    /// Changes of `z_M` besides `z_M'` h, m.
-    pub position: [f64; BLOCK],
-}
-
-impl Block {
-    const EMPTY: Self = Self { number: u64::MAX, velocity: [0.0; BLOCK], position: [0.0; BLOCK] };
-}
+/// Number, in its block, of the hold interval at each place.
+static NUMBERS: Aligned<[f64; BLOCK]> = {
+    let (mut numbers, mut k) = ([0.0; BLOCK], 0);
+    while k < BLOCK {
+        numbers[noise::place(k)] = k as f64;
+        k += 1;
+    }
+    Aligned(numbers)
+};
 
 /// The harmonic force with held phase noise.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Force {
     seed: i32,
     intensity: f64,
     phase: f64,
     frequency: f64,
     hold: f64,
-    /// Turns of the force in one hold interval, without whole ones.
-    turn: f64,
+    /// Quarter turns of the force in one hold interval, without whole turns.
+    quarters: f64,
     /// Change of velocity, m/s, at cos a = 1.
     push: f64,
     /// Changes of position, m, at cos a = 1 and at sin a = 1.
@@ -56,17 +55,17 @@ impl Force {
             phase: p.phase,
             frequency: p.frequency,
             hold,
-            turn: cycle_fraction(p.frequency, hold),
+            quarters: 4.0 * cycle_fraction(p.frequency, hold),
             push: push * x.sin() / x,
             shift: [0.5 * push * hold * x.sin() / x, push * hold * lag(x)],
         }
     }
 
-    /// Angle in the middle of hold interval `sample`, in turns, without phase and noise.
+    /// Angle in the middle of hold interval `sample`, in quarter turns, without phase and noise.
     fn carrier(&self, sample: u64) -> f64 {
         let middle = sample as f64 + 0.5;
         let time = middle * self.hold;
-        cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time)
+        4.0 * (cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time))
     }
 
     /// Works out block `number`, with the widest vectors that this machine has.
@@ -102,13 +101,14 @@ impl Force {
     fn fill_plainly(&self, block: &mut Block, number: u64) {
         block.number = number;
         let carrier = self.carrier(number * BLOCK as u64);
-        let samples = noise::normals(self.seed, number);
-        for (k, xi) in samples.iter().enumerate() {
-            let phase = self.phase + self.intensity * xi;
-            let [sin, cos] = sin_cos(carrier + (k as f64 * self.turn + phase * (1.0 / TAU)));
-            block.velocity[k] = self.push * cos;
-            block.position[k] = self.shift[0] * cos + self.shift[1] * sin;
+        noise::normals(self.seed, number, &mut block.samples.0);
+        for k in 0..BLOCK {
+            let phase = self.phase + self.intensity * block.samples.0[k];
+            let [sin, cos] = sin_cos(carrier + (NUMBERS.0[k] * self.quarters + phase * FRAC_2_PI));
+            block.velocity.0[k] = self.push * cos;
+            block.position.0[k] = self.shift[0] * cos + self.shift[1] * sin;
         }
+        block.sum(self.hold);
     }
 }
 
@@ -136,22 +136,31 @@ impl Holds {
         Self { force: Force::new(parameters), blocks: None }
     }
 
-    /// The block with hold interval number `sample`, and the place of that in it.
-    pub fn block(&mut self, sample: u64) -> (&Block, usize) {
+    /// The block with hold interval number `sample`.
+    pub fn block(&mut self, sample: u64) -> &Block {
         let number = sample / BLOCK as u64;
         let blocks = self.blocks.get_or_insert_with(|| Box::new([Block::EMPTY; 2]));
         let block = &mut blocks[usize::from(number % 2 == 1)];
         if block.number != number {
             self.force.fill(block, number);
         }
-        #[allow(clippy::cast_possible_truncation)] // less than BLOCK
-        (block, (sample % BLOCK as u64) as usize)
+        block
     }
 }
 
 impl Clone for Holds {
     fn clone(&self) -> Self {
         Self { force: self.force, blocks: None }
+    }
+
+    /// Keeps its own blocks if they are those of the same force, so that a run that is taken back over and over works
+    /// them out and takes memory for them once. The price: each saved state that was once run from holds two blocks, six
+    /// arrays of 256 numbers in all, as long as it is held.
+    fn clone_from(&mut self, source: &Self) {
+        if self.blocks.is_some() && self.force != source.force {
+            self.blocks = None;
+        }
+        self.force = source.force;
     }
 }
 
@@ -171,11 +180,12 @@ impl core::fmt::Debug for Holds {
 mod tests {
     use super::*;
     use crate::cylinder::{CylinderMotion, Drive};
+    use core::f64::consts::TAU;
     use proptest::prelude::*;
 
     proptest! {
         #[test]
-        fn a_block_has_the_closed_form_of_each_hold_interval(
+        fn a_block_adds_up_the_closed_forms_of_its_hold_intervals(
             intensity in 0.0_f64..20.0, frequency in 0.5_f64..50.0, hold in prop_oneof![1e-6_f64..1e-4, 1e-3..2e-2],
             number in prop_oneof![0..4_u64, 1_000_000..1_000_010_u64], seed in any::<i32>(), phase in -7.0_f64..7.0,
         ) {
@@ -195,9 +205,18 @@ mod tests {
                 let (time, swing) = (4.0 * f64::EPSILON * end, amplitude / (TAU * frequency).powi(2));
                 let velocity = amplitude * (time + angle / (TAU * frequency));
                 let position = amplitude * hold * time + swing * (1.0 + TAU * frequency * hold) * angle;
-                prop_assert!((block.velocity[k] - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
-                prop_assert!((block.position[k] - motion.position(end)).abs() <= position, "position, {k}");
+                // Rounding of the sums.
+                let length = BLOCK as f64 * hold;
+                let [velocity, position] =
+                    [velocity + 2e-15 * amplitude * length, position + 2e-15 * amplitude * length * length];
+                let ([v, z], [next_v, next_z]) = (block.at(k, hold), block.at(k + 1, hold));
+                prop_assert!((next_v - v - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
+                prop_assert!((next_z - z - hold * v - motion.position(end)).abs() <= position, "position, {k}");
+                prop_assert!(z.abs().max(next_z.abs()) <= block.reach * (1.0 + 1e-14), "reach, {k}");
             }
+            prop_assert_eq!(block.at(0, hold), [0.0, 0.0]);
+            prop_assert!((0..BLOCK).all(|k| block.sample(k) == noise::normal(seed, number * BLOCK as u64 + k as u64)));
+            prop_assert!(block.reach < 2.0 * amplitude * (BLOCK as f64 * hold).powi(2));
         }
 
         #[test]
@@ -205,13 +224,14 @@ mod tests {
             seed in any::<i32>(), number in 0..1_000_000_u64, intensity in 0.0..10.0,
         ) {
             let force = Force::new(&Parameters { phase_noise: intensity, seed, ..Parameters::default() });
-            let mut blocks = [Block::EMPTY, Block::EMPTY, Block::EMPTY];
+            let mut blocks = [(); 3].map(|()| Box::new(Block::EMPTY));
             force.fill_plainly(&mut blocks[0], number);
             force.fill(&mut blocks[1], number);
             fill_by_four_if_possible(&force, &mut blocks[2], number);
-            let bits = blocks.map(|block| [block.velocity, block.position].map(|list| list.map(f64::to_bits)));
-            prop_assert_eq!(bits[0], bits[1]);
-            prop_assert_eq!(bits[0], bits[2]);
+            let bits_at = |block: &Block, k| block.at(k, force.hold).map(f64::to_bits);
+            let bits = blocks.map(|block| (0..=BLOCK).map(|k| bits_at(&block, k)).collect::<Vec<_>>());
+            prop_assert_eq!(&bits[0], &bits[1]);
+            prop_assert_eq!(&bits[0], &bits[2]);
         }
     }
 

@@ -39,5 +39,5 @@ pub use harvester::{
 };
 pub use limits::{Excess, Limit};
 pub use membrane::Membrane;
-pub use parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
+pub use parameters::{Choice, ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
 pub use pulse::{Deflection, Pulse, PulseChange, PulseShape};

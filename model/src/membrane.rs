@@ -19,9 +19,10 @@ pub struct Membrane {
     permittivity: f64,
     ball_radius: f64,
     rest_capacitance: f64,
-    stiffness: f64,
     exponent: f64,
-    ball_mass: f64,
+    /// Eq. (10) is delta = (`loading` v^2)^`power`: (n + 1) m / (2 K), and 1 / (n + 1).
+    loading: f64,
+    power: f64,
 }
 
 /// Cosine of the angle alpha between the free membrane and its original plane, and 1 - cos(alpha) without cancellation.
@@ -46,9 +47,9 @@ impl Membrane {
             permittivity,
             ball_radius: parameters.ball_radius,
             rest_capacitance: permittivity * PI * radius * radius / thickness,
-            stiffness: parameters.stiffness,
             exponent: parameters.stiffness_exponent,
-            ball_mass: parameters.ball_mass,
+            loading: 0.5 * (parameters.stiffness_exponent + 1.0) * parameters.ball_mass / parameters.stiffness,
+            power: 1.0 / (parameters.stiffness_exponent + 1.0),
         }
     }
 
@@ -79,8 +80,7 @@ impl Membrane {
 
     /// Largest deflection delta, m, after an impact at relative `speed`, m/s: Eq. (10).
     pub fn deflection(&self, speed: f64) -> f64 {
-        let energy = 0.5 * self.ball_mass * speed * speed;
-        ((self.exponent + 1.0) * energy / self.stiffness).powf(1.0 / (self.exponent + 1.0))
+        (self.loading * speed * speed).powf(self.power)
     }
 
     /// The angle alpha at `deflection`, m, from Eq. (5).
@@ -92,12 +92,9 @@ impl Membrane {
         let root = (r2 * r2 + deflection * (deflection - 2.0 * rb)).sqrt();
         let half = deflection / (r2 + root);
         let square = half * half;
-        let half_slope = (1.0 - square) / (2.0 * root);
-        Tangent {
-            cos: (1.0 - square) / (1.0 + square),
-            versine: 2.0 * square / (1.0 + square),
-            cos_slope: -4.0 * half / ((1.0 + square) * (1.0 + square)) * half_slope,
-        }
+        let inverse = 1.0 / (1.0 + square);
+        let (cos, sin) = ((1.0 - square) * inverse, 2.0 * half * inverse);
+        Tangent { cos, versine: half * sin, cos_slope: -sin * cos / root }
     }
 
     /// cos(alpha) at `deflection`, m: Eq. (6).
@@ -107,7 +104,10 @@ impl Membrane {
 
     /// `A_3` / `A_2` - 1 at `deflection`, m: Eqs. (3) and (4), written without cancellation.
     pub fn area_excess(&self, deflection: f64) -> f64 {
-        let Tangent { cos, versine, .. } = self.tangent(deflection);
+        self.area_excess_by(&self.tangent(deflection))
+    }
+
+    fn area_excess_by(&self, &Tangent { cos, versine, .. }: &Tangent) -> f64 {
         let (r2, rb) = (self.radius * self.radius, self.ball_radius * self.ball_radius);
         versine * (rb + (r2 - rb) / cos) / r2
     }
@@ -141,6 +141,14 @@ impl Membrane {
     pub fn capacitance_excess(&self, deflection: f64) -> f64 {
         let excess = self.area_excess(deflection);
         excess * (2.0 + excess)
+    }
+
+    /// The same and its derivative, 1/m.
+    pub(crate) fn capacitance_excess_and_slope(&self, deflection: f64) -> [f64; 2] {
+        let tangent = self.tangent(deflection);
+        let excess = self.area_excess_by(&tangent);
+        let slope = self.area_slope_by_cos(tangent.cos) * tangent.cos_slope;
+        [excess * (2.0 + excess), 2.0 * (1.0 + excess) * slope]
     }
 
     /// dC/dx, F/m, at `deflection` x, m: the derivative of [`Membrane::capacitance`].

@@ -1,4 +1,5 @@
-//! The parameters of the harvester: name, unit, start value, bounds and meaning of each, in one table.
+//! The parameters of the harvester: name, unit, start value, bounds and meaning of each, in two tables: real numbers, and
+//! choices.
 
 use crate::error::ModelError;
 
@@ -24,6 +25,22 @@ pub struct Quantity {
     pub get: fn(&Parameters) -> f64,
     /// Writes the parameter, unchecked.
     pub set: fn(&mut Parameters, f64),
+}
+
+/// One parameter that chooses or counts. Its value travels as an integer, as in FMI 2.0: items count from 1, a switch is
+/// 0 or 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Choice {
+    /// Structured name, as the FMU shows it.
+    pub name: &'static str,
+    /// Start value.
+    pub start: i32,
+    /// What it chooses, and where the paper speaks of it.
+    pub description: &'static str,
+    /// Reads the parameter.
+    pub get: fn(&Parameters) -> i32,
+    /// Writes the parameter; a number that is no item counts as the last.
+    pub set: fn(&mut Parameters, i32),
 }
 
 impl Quantity {
@@ -134,6 +151,54 @@ pub enum ContactLaw {
 }
 
 impl Parameters {
+    /// Every parameter that chooses or counts, in the order in which the FMU lists them.
+    pub const CHOICES: &'static [Choice] = &[
+        Choice {
+            name: "excitation.seed",
+            start: 1,
+            description: "Seed of the phase noise: equal seeds, equal noise",
+            get: |p| p.seed,
+            set: |p, seed| p.seed = seed,
+        },
+        Choice {
+            name: "excitation.noiseModel",
+            start: 1,
+            description: "How the phase noise is read, Section 5.2",
+            get: |p| if p.noise_model == NoiseModel::Held { 1 } else { 2 },
+            set: |p, item| p.noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
+        },
+        Choice {
+            name: "initial.outsideGap",
+            start: 1,
+            description: "Meaning of a start beyond a membrane, as in Fig. 12",
+            get: |p| if p.outside_gap == OutsideGap::Project { 1 } else { 2 },
+            set: |p, item| p.outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free },
+        },
+        Choice {
+            name: "contact.law",
+            start: 1,
+            description: "Law of the contact between ball and membrane, Section 3.2",
+            get: |p| if p.contact_law == ContactLaw::Impulsive { 1 } else { 2 },
+            set: |p, item| p.contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
+        },
+        Choice {
+            name: "contact.electrostaticFeedback",
+            start: 0,
+            description: "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in \
+                          Section 2.1",
+            get: |p| i32::from(p.electrostatic_feedback),
+            set: |p, on| p.electrostatic_feedback = on != 0,
+        },
+        Choice {
+            name: "contact.reaction",
+            start: 0,
+            description: "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: \
+                          m / M is small",
+            get: |p| i32::from(p.reaction),
+            set: |p, on| p.reaction = on != 0,
+        },
+    ];
+
     /// All real parameters zero: no change of any.
     pub(crate) fn none() -> Self {
         let mut parameters = Self::default();

@@ -152,9 +152,19 @@ fn newton(start: f64, end: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
 }
 
 /// Pulses under way on one membrane. Where they overlap, the larger deflection wins.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, PartialEq, Default)]
 pub struct Pulses {
     under_way: Vec<Pulse>,
+}
+
+impl Clone for Pulses {
+    fn clone(&self) -> Self {
+        Self { under_way: self.under_way.clone() }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.under_way.clone_from(&source.under_way);
+    }
 }
 
 impl Pulses {

@@ -9,20 +9,32 @@ fn fig17(intensity: f64, seed: i32) -> Parameters {
     Parameters { amplitude: p.amplitude * 5.0 / p.normalized_amplitude(), ..p }
 }
 
-/// Mean of the voltage gain, V/s, over runs of 100 s with `seeds` seeds.
+/// Voltage gain, V/s, of a run of 100 s.
+fn gain(parameters: &Parameters) -> f64 {
+    let mut harvester = Harvester::new(parameters, 0.0).unwrap();
+    harvester.advance(100.0).unwrap();
+    harvester.totals().voltage_gain / 100.0
+}
+
+/// Mean over runs with `seeds` seeds, V/s.
 fn mean_gain(intensity: f64, seeds: i32) -> f64 {
-    let gain = |seed| {
-        let mut harvester = Harvester::new(&fig17(intensity, seed), 0.0).unwrap();
-        harvester.advance(100.0).unwrap();
-        harvester.totals().voltage_gain / 100.0
-    };
-    (1..=seeds).map(gain).sum::<f64>() / f64::from(seeds)
+    (1..=seeds).map(|seed| gain(&fig17(intensity, seed))).sum::<f64>() / f64::from(seeds)
+}
+
+/// Median over runs without noise, V/s, whose starts differ by little: a single one is at the mercy of its last bits.
+fn median_gain_without_noise() -> f64 {
+    let p = fig17(0.0, 1);
+    let nudged = |k| Parameters { ball_velocity: p.ball_velocity + 1e-7 * f64::from(k), ..p };
+    let mut gains: Vec<f64> = (0..101).map(|k| gain(&nudged(k))).collect();
+    gains.sort_by(f64::total_cmp);
+    gains[50]
 }
 
 #[test]
 fn the_voltage_gain_falls_with_the_intensity_of_the_noise_as_in_fig_17() {
     // A single run with noise deviates by as much as the mean: a heavy tail of runs in which elastic impacts gain energy.
-    let [none, weak, strong] = [(0.0, 1), (4.0, 8), (10.0, 8)].map(|(intensity, seeds)| mean_gain(intensity, seeds));
+    let none = median_gain_without_noise();
+    let [weak, strong] = [4.0, 10.0].map(|intensity| mean_gain(intensity, 8));
     assert!((none - 31_700.0).abs() < 1_500.0, "{none} V/s without noise");
     assert!((3_000.0..26_000.0).contains(&weak), "{weak} V/s at D = 4");
     assert!((500.0..20_000.0).contains(&strong), "{strong} V/s at D = 10");

@@ -114,6 +114,11 @@ fn a_snapshot_that_no_harvester_had_is_refused() {
         let refused = Harvester::restore(&parameters, &bad);
         assert!(matches!(refused, Err(ModelError::Snapshot { .. })), "damage {k}: {refused:?}");
     }
+    // The ball would have met a membrane since: how often, nobody can say beforehand.
+    let mut late = run_to(&fig14(), 2.0).snapshot();
+    late.time += 0.4;
+    let refused = Harvester::restore(&fig14(), &late).unwrap_err().to_string();
+    assert!(refused.contains("event before the present time"), "{refused}");
     let invalid = Parameters { restitution: 2.0, ..parameters };
     assert!(matches!(Harvester::restore(&invalid, &good), Err(ModelError::Bounds { .. })));
 }

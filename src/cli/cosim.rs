@@ -142,7 +142,7 @@ pub fn couple(
     scenario: Scenario,
     csv: &Path,
 ) -> anyhow::Result<Finished> {
-    let (mechanical, of_circuit) = settings::split(fmu, &scenario)?;
+    let (mechanical, of_circuit) = settings::split(fmu.description(), &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;
     let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratios.best)?;

@@ -160,7 +160,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 
 /// Runs the mechanics of `scenario`, and its circuit in every solver.
 pub fn follow(fmu: &Fmu, scenario: Scenario, ngspice: &Ngspice, sweep: bool) -> anyhow::Result<Finished> {
-    let (mechanical, electrical) = settings::split(fmu, &scenario)?;
+    let (mechanical, electrical) = settings::split(fmu.description(), &scenario)?;
     let mut bar = TimeBar::new(format!("{}: mechanics", scenario.name), scenario.until);
     let case = Case::new(fmu, &scenario, &mechanical, &mut bar)?;
     bar.finish();

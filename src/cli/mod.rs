@@ -1,7 +1,7 @@
 //! The command-line tool: one verb a file.
 //!
 //! Data goes to stdout, messages and progress to stderr. Exit codes: 0 done; 1 checked, and a check failed; 2 could not
-//! run, with one line on stderr that says why.
+//! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal.
 
 mod completions;
 mod cosim;
@@ -29,6 +29,8 @@ mod simulate_both_report;
 mod simulate_contacts;
 mod simulate_law;
 mod ssp;
+mod sweep;
+mod sweep_options;
 mod worker;
 
 use std::process::ExitCode;
@@ -51,6 +53,8 @@ enum Verb {
     Crosscheck(crosscheck::Arguments),
     /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
     Simulate(simulate::Arguments),
+    /// Run many times over parameters and seeds, on all cores; resumes what was interrupted, merges what was divided
+    Sweep(sweep::Arguments),
     /// Reproduce the tables and figures of the paper, as data, pictures and one report
     Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs
@@ -70,6 +74,8 @@ pub(crate) enum Verdict {
     Passed,
     /// A check failed; what was found is printed.
     Failed,
+    /// Ended early and in order by a signal of this number.
+    Stopped(u8),
 }
 
 /// Runs the tool with the arguments of the process.
@@ -82,6 +88,7 @@ pub fn main() -> ExitCode {
         Verb::Cosim(arguments) => cosim::run(&arguments),
         Verb::Crosscheck(arguments) => crosscheck::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
+        Verb::Sweep(arguments) => sweep::run(&arguments),
         Verb::Reproduce(arguments) => reproduce::run(&arguments),
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Ssp(arguments) => ssp::run(&arguments),
@@ -91,6 +98,8 @@ pub fn main() -> ExitCode {
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,
         Ok(Verdict::Failed) => ExitCode::from(1),
+        // As shells say it.
+        Ok(Verdict::Stopped(signal)) => ExitCode::from(128 + signal),
         // A reader that has seen enough (`videg ... | head`) is no failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {

@@ -45,9 +45,10 @@ pub struct RunOptions {
 
 /// An averaging window, s. A type of its own, because clap would take a plain array for a repeated option.
 #[derive(Clone, Copy)]
-struct Window([f64; 2]);
+pub struct Window(pub [f64; 2]);
 
-fn parse_window(text: &str) -> Result<Window, String> {
+/// Reads two times with a comma between them.
+pub fn parse_window(text: &str) -> Result<Window, String> {
     let times: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match times.as_deref() {
         Some(&[from, to]) => Ok(Window([from, to])),

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cosim::{CosimError, Observer, Row};
 use crate::crosscheck::Watch;
-use crate::paper;
+use crate::{paper, sweep};
 
 /// Parts into which the bar divides a run.
 const PARTS: u64 = 1000;
@@ -133,6 +133,41 @@ impl paper::Watch for ItemBar {
     fn show(&self, done: usize, total: usize) {
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+    }
+}
+
+/// A bar that follows runs, their rate and the time that is left.
+pub struct RunBar {
+    bar: ProgressBar,
+    is_begun: bool,
+}
+
+impl RunBar {
+    /// A bar for the runs of `name`.
+    pub fn new(name: String) -> Self {
+        let bar = ProgressBar::new(1).with_message(name);
+        let style = ProgressStyle::with_template(
+            "{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left",
+        );
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        Self { bar, is_begun: false }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl sweep::Watch for RunBar {
+    fn show(&mut self, done: u64, total: u64) {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
+        if !self.is_begun {
+            // Runs that were there from the beginning took no time.
+            self.bar.reset_eta();
+            self.is_begun = true;
+        }
     }
 }
 

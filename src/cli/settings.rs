@@ -3,27 +3,27 @@
 use videg_circuit::Settings;
 
 use crate::cosim::EmbeddedCircuit;
-use crate::fmi::{Fmu, nearest_name};
+use crate::fmi::{ModelDescription, nearest_name};
 use crate::scenario::{Scenario, Setting};
 
 /// Settings of the harvester, and those of the circuit. A name that both have is the harvester's.
-pub fn split(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
+pub fn split(harvester: &ModelDescription, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
     let (mut mechanical, mut electrical) = (Vec::new(), Vec::new());
     for setting in &scenario.settings {
         let of_circuit = EmbeddedCircuit::apply(&mut Settings::default(), setting)?;
-        if fmu.description().variable(&setting.name).is_ok() {
+        if harvester.variable(&setting.name).is_ok() {
             mechanical.push(setting.clone());
         } else if of_circuit {
             electrical.push(setting.clone());
         } else {
-            anyhow::bail!(unknown(fmu, &setting.name));
+            anyhow::bail!(unknown(harvester, &setting.name));
         }
     }
     Ok((mechanical, electrical))
 }
 
-fn unknown(fmu: &Fmu, name: &str) -> String {
-    let harvester = fmu.description().variables.iter().map(|variable| variable.name.as_str());
+fn unknown(harvester: &ModelDescription, name: &str) -> String {
+    let harvester = harvester.variables.iter().map(|variable| variable.name.as_str());
     let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
     let choices = Settings::CHOICES.iter().map(|choice| choice.name);
     let hint = nearest_name(name, harvester.chain(quantities).chain(choices));

@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 
 /// Runs the harvester alone and writes the time series to `csv`.
 pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mechanics> {
-    let (mechanical, electrical) = settings::split(fmu, scenario)?;
+    let (mechanical, electrical) = settings::split(fmu.description(), scenario)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
     let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
     let mut recorder = CsvRecorder::create(&output::partial(csv), false)?;

@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
 /// What to set in harvester and circuit. They are tried, so that what is packaged can run. The circuit starts with the
 /// capacitances that the harvester starts with.
 fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
-    let (mechanical, asked) = settings::split(fmu, scenario)?;
+    let (mechanical, asked) = settings::split(fmu.description(), scenario)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
     let ratio = electrical::capacitance_ratios(fmu, scenario, &mechanical)?.best;
     let resolved = electrical::resolve(&asked, harvester.bias_voltage(), ratio)?;

@@ -4,8 +4,8 @@ use super::adaptive::StepControl;
 use super::coupling::Books;
 use super::signal::{Curve, Line};
 use super::{
-    CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, EnergyBalance, HarvesterFmu, HarvesterSample,
-    MechanicsSummary, Method, Schedule,
+    Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, EnergyBalance, Gains, HarvesterFmu,
+    HarvesterSample, MechanicsSummary, Method, Schedule,
 };
 use crate::scenario::Scenario;
 
@@ -75,13 +75,6 @@ struct Point {
     step: f64,
 }
 
-/// Running sums of the harvester at an edge of the averaging window.
-#[derive(Debug, Clone, Copy, Default)]
-struct Gain {
-    voltage: f64,
-    energy: f64,
-}
-
 /// Most times that a step may be longer than the one before if voltages are extrapolated at what they did in that: further
 /// on, the jump of a diode would count as a slope.
 const REACH: f64 = 10.0;
@@ -124,7 +117,7 @@ impl Master {
     /// # Errors
     /// What a subsystem or an observer says.
     pub fn run(mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, CosimError> {
-        let [from, to] = self.scenario.window;
+        let window = self.scenario.window;
         let mut point = self.start()?;
         let energies_at_start = self.harvester.energies()?;
         let mut gains = [None; 2];
@@ -132,9 +125,10 @@ impl Master {
             let harvester = &point.harvester;
             let row = Row { time: point.time, harvester, circuits: &point.circuits };
             observers.iter_mut().try_for_each(|observer| observer.observe(&row))?;
-            for (gain, edge) in gains.iter_mut().zip([from, to]) {
+            for (gain, edge) in gains.iter_mut().zip(window) {
                 if gain.is_none() && point.time >= edge {
-                    *gain = Some(Gain { voltage: harvester.voltage_gain(), energy: harvester.energy_eq13() });
+                    let (voltage, energy) = (harvester.voltage_gain(), harvester.energy_eq13());
+                    *gain = Some(Gains { voltage, energy, impacts: point.impacts });
                 }
             }
             if point.time >= self.scenario.until {
@@ -145,14 +139,15 @@ impl Master {
             point = next;
         }
         let [start, end] = gains.map(Option::unwrap_or_default);
+        let averages = Averages::over(window, &start, &end);
         let [impacts, events] = self.harvester.counts()?;
         let energies = energies_at_start.zip(self.harvester.energies()?);
         self.harvester.terminate()?;
         let mechanics = MechanicsSummary {
             impacts,
             events,
-            average_voltage_gain: (end.voltage - start.voltage) / (to - from),
-            average_power_eq13: (end.energy - start.energy) / (to - from),
+            average_voltage_gain: averages.voltage_gain,
+            average_power_eq13: averages.power,
             voltage_gain: point.harvester.voltage_gain(),
             energy_eq13: point.harvester.energy_eq13(),
         };

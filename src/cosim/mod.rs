@@ -31,4 +31,4 @@ pub use master::{Master, Observer, Outcome, Row};
 pub use ngspice::NgspiceCircuit;
 pub use record::{CsvRecorder, Trace, TracePoint};
 pub use schedule::Schedule;
-pub use summary::{Charges, CircuitSummary, Energies, MechanicsSummary};
+pub use summary::{Averages, Charges, CircuitSummary, Energies, Gains, MechanicsSummary};

@@ -23,6 +23,39 @@ pub struct MechanicsSummary {
     pub energy_eq13: f64,
 }
 
+/// Running sums of the harvester at one time.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Gains {
+    /// Sum of `U_DE4` - `U_in` so far, V.
+    pub voltage: f64,
+    /// Sum of W, Eq. (13), so far, J.
+    pub energy: f64,
+    /// Impacts so far.
+    pub impacts: i32,
+}
+
+/// What the sums come to over an averaging window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Averages {
+    /// `<U>`, Eq. (15), V/s.
+    pub voltage_gain: f64,
+    /// P, Eq. (14), W.
+    pub power: f64,
+    /// Impacts within the window.
+    pub impacts: i32,
+}
+
+impl Averages {
+    /// Averages over `window`, s, from the sums at its edges.
+    pub fn over([from, to]: [f64; 2], before: &Gains, after: &Gains) -> Self {
+        Self {
+            voltage_gain: (after.voltage - before.voltage) / (to - from),
+            power: (after.energy - before.energy) / (to - from),
+            impacts: after.impacts - before.impacts,
+        }
+    }
+}
+
 /// A circuit: where energy and charge went over the whole run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CircuitSummary {

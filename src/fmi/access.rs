@@ -185,7 +185,7 @@ impl Instance {
             return Err(not_settable(variable).into());
         }
         let value = Value::parse(self.description(), variable, text)?;
-        let reference = [variable.value_reference];
+        let reference = variable.value_reference;
         self.set_value(reference, &value)
     }
 
@@ -219,7 +219,12 @@ impl Instance {
         })
     }
 
-    fn set_value(&mut self, reference: [u32; 1], value: &Value) -> Result<()> {
+    /// Sets the variable with this reference, which must be of the value's type. Bounds are not checked.
+    ///
+    /// # Errors
+    /// When the call fails.
+    pub fn set_value(&mut self, reference: u32, value: &Value) -> Result<()> {
+        let reference = [reference];
         match value {
             Value::Real(value) => self.set_real(&reference, &[*value]),
             Value::Integer(value) | Value::Enumeration { value, .. } => self.set_integer(&reference, &[*value]),

@@ -56,18 +56,25 @@ impl Value {
     /// # Errors
     /// When the text does not read as the variable's type, or lies out of its range.
     pub fn parse(description: &ModelDescription, variable: &Variable, text: &str) -> Result<Self, ValueError> {
+        let value = Self::read(description, variable, text)?;
+        value.check(variable)?;
+        Ok(value)
+    }
+
+    /// As [`Value::parse`], whatever the bounds.
+    ///
+    /// # Errors
+    /// When the text does not read as the variable's type.
+    pub fn read(description: &ModelDescription, variable: &Variable, text: &str) -> Result<Self, ValueError> {
         let trimmed = text.trim();
         match &variable.kind {
-            Kind::Real { min, max, unit, .. } => {
+            Kind::Real { .. } => {
                 // Infinity is a value to some models, such as a load that is not there; bounds say so if it is not.
                 let value = trimmed.parse().ok().filter(|value: &f64| !value.is_nan());
-                let value = value.ok_or_else(|| unreadable(variable, text, "a number"))?;
-                in_range(variable, value, *min, *max, unit.as_deref())?;
-                Ok(Self::Real(value))
+                value.map(Self::Real).ok_or_else(|| unreadable(variable, text, "a number"))
             }
-            Kind::Integer { min, max, .. } => {
+            Kind::Integer { .. } => {
                 let value = trimmed.parse().map_err(|_| unreadable(variable, text, "an integer of 32 bits"))?;
-                in_range(variable, value, *min, *max, None)?;
                 Ok(Self::Integer(value))
             }
             Kind::Boolean { .. } => match trimmed {
@@ -78,6 +85,20 @@ impl Value {
             Kind::String { .. } if text.contains('\0') => Err(unreadable(variable, text, "text without zero bytes")),
             Kind::String { .. } => Ok(Self::String(text.to_owned())),
             Kind::Enumeration { .. } => item(description.enumeration(variable), variable, trimmed),
+        }
+    }
+
+    /// Whether it lies within the bounds of `variable`, which is of its type.
+    ///
+    /// # Errors
+    /// When it does not.
+    pub fn check(&self, variable: &Variable) -> Result<(), ValueError> {
+        match (self, &variable.kind) {
+            (Self::Real(value), Kind::Real { min, max, unit, .. }) => {
+                in_range(variable, *value, *min, *max, unit.as_deref())
+            }
+            (Self::Integer(value), Kind::Integer { min, max, .. }) => in_range(variable, *value, *min, *max, None),
+            _ => Ok(()),
         }
     }
 

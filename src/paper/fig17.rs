@@ -2,7 +2,8 @@
 
 use super::excitation::{Cylinder, nudge, set};
 use super::statistics::{Summary, TWO_SIDED, mean, slope};
-use super::{Artefact, Averages, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
+use crate::cosim::Averages;
 use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
 

@@ -38,7 +38,7 @@ mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
 pub use error::PaperError;
-pub use workshop::{Averages, Effort, Run, Watch, Workshop};
+pub use workshop::{Effort, Run, Watch, Workshop};
 
 /// Averaging window of the paper, s (Section 5).
 const WINDOW: [f64; 2] = [50.0, 100.0];

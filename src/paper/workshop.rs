@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::PaperError;
+use crate::cosim::{Averages, Gains};
 use crate::fmi::{Fmu, Instance, Logging};
 use crate::scenario::{Request, Setting};
 
@@ -45,17 +46,6 @@ pub struct Run {
     pub settings: Vec<Setting>,
     /// Averaging window, s; the run ends with it.
     pub window: [f64; 2],
-}
-
-/// What a [`Run`] comes to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Averages {
-    /// `<U>`, Eq. (15), V/s.
-    pub voltage_gain: f64,
-    /// P, Eq. (14), W.
-    pub power: f64,
-    /// Impacts within the window.
-    pub impacts: i32,
 }
 
 impl Workshop<'_> {
@@ -146,22 +136,21 @@ impl Workshop<'_> {
     fn average(&self, run: &Run) -> Result<Averages, PaperError> {
         let [from, to] = run.window;
         let mut instance = self.start(&run.settings)?;
-        let gains = [self.reference("gain.voltage")?, self.reference("gain.energyEq13")?];
+        let sums = [self.reference("gain.voltage")?, self.reference("gain.energyEq13")?];
         let impacts = [self.reference("impact.count")?];
-        let read = |instance: &Instance| -> Result<([f64; 2], i32), PaperError> {
-            let (mut sums, mut count) = ([0.0; 2], [0]);
-            instance.get_real(&gains, &mut sums)?;
+        let read = |instance: &Instance| -> Result<Gains, PaperError> {
+            let (mut values, mut count) = ([0.0; 2], [0]);
+            instance.get_real(&sums, &mut values)?;
             instance.get_integer(&impacts, &mut count)?;
-            Ok((sums, count[0]))
+            Ok(Gains { voltage: values[0], energy: values[1], impacts: count[0] })
         };
         if from > 0.0 {
             instance.do_step(0.0, from)?;
         }
-        let (before, first) = read(&instance)?;
+        let before = read(&instance)?;
         instance.do_step(from, to - from)?;
-        let (after, last) = read(&instance)?;
+        let after = read(&instance)?;
         instance.terminate()?;
-        let average = |k: usize| (after[k] - before[k]) / (to - from);
-        Ok(Averages { voltage_gain: average(0), power: average(1), impacts: last - first })
+        Ok(Averages::over(run.window, &before, &after))
     }
 }

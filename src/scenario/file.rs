@@ -74,7 +74,18 @@ impl CaseFile {
     /// # Errors
     /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let layout: Layout = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+        Self::of(toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?)
+    }
+
+    /// What a table says that is laid out as a case file.
+    ///
+    /// # Errors
+    /// An unknown key; a value that no variable can have.
+    pub fn from_table(table: Table) -> Result<Self, String> {
+        Self::of(table.try_into().map_err(|error: toml::de::Error| error.to_string().trim_end().to_owned())?)
+    }
+
+    fn of(layout: Layout) -> Result<Self, String> {
         let mut settings = Vec::new();
         flatten("", &layout.set, &mut settings)?;
         let Layout { case, name, description, until, step, window, .. } = layout;
@@ -86,25 +97,31 @@ impl CaseFile {
 fn flatten(prefix: &str, table: &Table, settings: &mut Vec<Setting>) -> Result<(), String> {
     for (key, value) in table {
         let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
-        let value = match value {
-            Value::Table(inner) => {
-                flatten(&name, inner, settings)?;
-                continue;
-            }
-            Value::String(text) => text.clone(),
-            Value::Integer(number) => number.to_string(),
-            Value::Float(number) => format!("{number:?}"),
-            Value::Boolean(flag) => flag.to_string(),
-            other => {
-                return Err(format!(
-                    "{name} is of type {}: a variable takes a number, a boolean or a string",
-                    other.type_str()
-                ));
-            }
-        };
+        if let Value::Table(inner) = value {
+            flatten(&name, inner, settings)?;
+            continue;
+        }
+        let value = value_text(&name, value)?;
         settings.push(Setting { name, value });
     }
     Ok(())
+}
+
+/// A value of the variable called `name`, as a user types it on the command line.
+///
+/// # Errors
+/// If no variable can have it.
+pub fn value_text(name: &str, value: &Value) -> Result<String, String> {
+    match value {
+        Value::String(text) => Ok(text.clone()),
+        Value::Integer(number) => Ok(number.to_string()),
+        Value::Float(number) => Ok(format!("{number:?}")),
+        Value::Boolean(flag) => Ok(flag.to_string()),
+        other => {
+            let kind = other.type_str();
+            Err(format!("{name} is of type {kind}: a variable takes a number, a boolean or a string"))
+        }
+    }
 }
 
 #[cfg(test)]

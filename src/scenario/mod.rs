@@ -3,7 +3,7 @@
 mod file;
 mod preset;
 
-pub use file::CaseFile;
+pub use file::{CaseFile, value_text};
 
 use serde::Serialize;
 use thiserror::Error;
@@ -130,6 +130,15 @@ pub struct Scenario {
     pub window: [f64; 2],
     /// What the paper prints, if the case stands as it is in the paper.
     pub paper: PaperValues,
+    /// How many of the settings are those of the case.
+    of_case: usize,
+}
+
+impl Scenario {
+    /// The settings that were asked for, without those of the case.
+    pub fn changes(&self) -> &[Setting] {
+        &self.settings[self.of_case..]
+    }
 }
 
 impl Request {
@@ -149,6 +158,7 @@ impl Request {
         }
         let as_printed = changes.is_empty();
         let mut settings = preset::settings(case);
+        let of_case = settings.len();
         settings.extend(changes);
         let until = self.until.or(file.until).unwrap_or(DEFAULT_UNTIL);
         let step = self.step.or(file.step).unwrap_or_else(|| DEFAULT_STEP.min(until));
@@ -163,6 +173,7 @@ impl Request {
             step,
             window,
             paper: if as_printed { paper } else { PaperValues::default() },
+            of_case,
         })
     }
 }

@@ -214,6 +214,7 @@ impl Function {
     /// - `fmi2SetTime` in event mode, where the standard wants a purely discrete FMU: importers go to the time of an
     ///   event on either side of `fmi2EnterEventMode`,
     /// - giving memory back after a fatal error: otherwise it would be lost.
+    #[inline]
     pub fn legality(self, interface: Interface, state: CallState) -> Legality {
         let (legal, tolerated) = self.states();
         if self.interface().is_some_and(|own| own != interface) {

@@ -56,10 +56,12 @@
 //!   the first is written. A refused value is an error that names variable, value and bound.
 //! - Any `fmi2Error` leaves the instance in the error state, from which only restoring an FMU state or
 //!   `fmi2Reset` leads back, as the standard has it.
-//! - FMU states are clones of the model, together with call state and time. The importer holds tokens, not
-//!   pointers; a token that is foreign, stale or freed twice is refused. A state belongs to the instance that gave
-//!   it; serialise it to carry it to another.
-//! - Calls from inside a callback, or from two threads at once, are refused.
+//! - FMU states are clones of the model, together with call state and time; the state saved or restored last is cloned
+//!   when the instance is about to change or another state is saved. The importer holds tokens, not pointers; a token
+//!   that is foreign, stale or freed twice is refused. A state belongs to the instance that gave it; serialise it to
+//!   carry it to another.
+//! - Calls from inside a callback are refused. Calls from a second thread, which FMI 2.0 forbids, are usually refused;
+//!   nothing guarantees it, and two that begin together are undefined behaviour.
 //! - Panics become `fmi2Error` ([`ffi`] says what that means for stderr).
 //! - Messages go to the importer's logger only. Events, warnings and discarded steps are reported while logging is on
 //!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.

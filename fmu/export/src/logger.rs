@@ -74,6 +74,8 @@ pub struct Logger {
     instance_name: CString,
     enabled: u8,
     warned: Cell<bool>,
+    /// Numbers of the warnings that have been given once, as bits.
+    given: Cell<u64>,
 }
 
 const ALL_BITS: u8 = 0b1_1111;
@@ -93,6 +95,7 @@ impl Logger {
             instance_name: c_string(instance_name),
             enabled: if logging_on { ALL_BITS } else { 0 },
             warned: Cell::new(false),
+            given: Cell::new(0),
         }
     }
 
@@ -106,6 +109,30 @@ impl Logger {
     pub fn warning(&self, message: impl Display) {
         self.warned.set(true);
         self.send(fmi2Warning, LogCategory::Warning, &message);
+    }
+
+    /// Gives a [`warning`](Self::warning), unless one of the same `number`, 0 to 63, was given since the instance was made
+    /// or reset. No FMU state holds which were: a step that is taken back and tried again does not warn twice. One that
+    /// nobody saw, since its category is off, counts as given: the call returned `fmi2Warning` all the same.
+    pub fn warning_once(&self, number: u32, message: impl Display) {
+        if !self.has_given(number) {
+            self.given.set(self.given.get() | Self::given_bit(number));
+            self.warning(message);
+        }
+    }
+
+    /// Whether [`warning_once`](Self::warning_once) has nothing to say under this number any more.
+    pub fn has_given(&self, number: u32) -> bool {
+        self.given.get() & Self::given_bit(number) != 0
+    }
+
+    const fn given_bit(number: u32) -> u64 {
+        1 << (number % u64::BITS)
+    }
+
+    /// Warnings that were given once may be given again.
+    pub(crate) fn forget_given(&self) {
+        self.given.set(0);
     }
 
     /// Whether messages of this category reach anyone, for models that must work to make them. Errors always do: what
@@ -172,4 +199,24 @@ impl Logger {
 /// A C string; a NUL inside, which C cannot hold, becomes the replacement character.
 pub(crate) fn c_string(text: &str) -> CString {
     CString::new(text).unwrap_or_else(|_| CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Logger;
+
+    #[test]
+    fn a_warning_is_given_once_though_nobody_sees_it_and_again_after_a_reset() {
+        let log = Logger::silent();
+        for number in [0, 63] {
+            assert!(!log.has_given(number));
+            log.warning_once(number, "odd");
+            assert!(log.has_given(number) && log.take_warned());
+            log.warning_once(number, "odd");
+            assert!(!log.take_warned());
+        }
+        assert!(!log.has_given(1));
+        log.forget_given();
+        assert!(!log.has_given(0) && !log.has_given(63));
+    }
 }

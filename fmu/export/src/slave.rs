@@ -35,7 +35,8 @@ pub struct EventOutcome {
 /// [`terminate`](Self::terminate).
 ///
 /// `Clone` is the FMU state: a clone must hold *everything*, random generators, event history and input
-/// derivatives included. A panic in any of these functions is caught and becomes `fmi2Error`.
+/// derivatives included. Functions that take `&self`, getters included, change nothing that a clone holds. A panic in any of
+/// these functions is caught and becomes `fmi2Error`. Where `clone_from` takes no new memory, trying steps takes none.
 pub trait Slave: Clone + Send + 'static {
     /// Facts about the FMU as a whole.
     const INFO: ModelInfo;

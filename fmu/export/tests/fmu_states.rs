@@ -88,6 +88,63 @@ fn a_state_given_back_is_overwritten_in_place() {
     assert_eq!(fingerprint(&host), here);
 }
 
+/// The state saved last shares the memory of the present one until that changes.
+#[test]
+fn states_stay_what_they_were_whatever_is_saved_restored_overwritten_and_freed_meanwhile() {
+    let host = Host::initialized();
+    let mut held: Vec<(fmi2FMUstate, f64, _)> = Vec::new();
+    let (mut time, mut random) = (0.0, 1_u64);
+    for round in 0..3000 {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let choice = usize::try_from(random >> 33).unwrap();
+        let k = choice / 8 % held.len().max(1);
+        match choice % 8 {
+            0 | 1 => held.push((host.save(), time, fingerprint(&host))),
+            2 if !held.is_empty() => {
+                unsafe { assert_eq!(fmi2GetFMUstate(host.component, &raw mut held[k].0), fmi2OK) };
+                (held[k].1, held[k].2) = (time, fingerprint(&host));
+            }
+            3 | 4 if !held.is_empty() => {
+                assert_eq!(host.restore(held[k].0), fmi2OK);
+                time = held[k].1;
+                assert_eq!(fingerprint(&host), held[k].2, "round {round}");
+            }
+            5 if held.len() > 5 => {
+                let mut freed = held.swap_remove(k).0;
+                assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut freed) }, fmi2OK);
+            }
+            _ => {
+                assert_eq!(host.set_real(INPUT, time.sin() + f64::from(round)), fmi2OK);
+                assert_eq!(host.step(time, 0.5), fmi2OK);
+                time += 0.5;
+            }
+        }
+    }
+    assert!(held.len() > 5);
+}
+
+#[test]
+fn going_from_one_state_to_another_copies_nothing() {
+    let host = busy_host();
+    let mut held = Vec::new();
+    for k in 0..4 {
+        held.push((host.save(), fingerprint(&host)));
+        assert_eq!(host.step(0.3 + 0.1 * f64::from(k), 0.1), fmi2OK);
+    }
+    PANIC_IN_CLONE.set(true);
+    for k in [0, 3, 1, 1, 2, 0, 3] {
+        assert_eq!(host.restore(held[k].0), fmi2OK);
+        assert_eq!(fingerprint(&host), held[k].1, "{k}");
+    }
+    PANIC_IN_CLONE.set(false);
+    for (state, here) in held {
+        assert_eq!(host.restore(state), fmi2OK);
+        assert_eq!(host.step(host.real(TIME), 0.1), fmi2OK);
+        assert_eq!(host.restore(state), fmi2OK);
+        assert_eq!(fingerprint(&host), here);
+    }
+}
+
 #[test]
 fn states_that_are_foreign_stale_or_null_are_refused() {
     let host = Host::initialized();

@@ -120,19 +120,25 @@ fn a_panic_in_serialisation_is_an_error() {
     assert_survives(&host, status, "fmi2DeSerializeFMUstate", "read");
 }
 
+/// The state that was saved last is copied when the present one is about to change.
 #[test]
 fn a_panic_in_clone_is_an_error() {
     let host = Host::initialized();
     let (saved, mut state) = (host.save(), null_mut());
     PANIC_IN_CLONE.set(true);
+    let status = host.step(0.0, 1.0);
+    PANIC_IN_CLONE.set(false);
+    assert_survives(&host, status, "fmi2DoStep", "clone");
+    assert_eq!(host.restore(saved), fmi2Error, "there is no copy");
+    assert!(host.error().contains("is no FMU state of this instance"));
+
+    let host = Host::initialized();
+    host.save();
+    PANIC_IN_CLONE.set(true);
     let status = unsafe { fmi2GetFMUstate(host.component, &raw mut state) };
     PANIC_IN_CLONE.set(false);
     assert!(state.is_null());
     assert_survives(&host, status, "fmi2GetFMUstate", "clone");
-    PANIC_IN_CLONE.set(true);
-    let status = host.restore(saved);
-    PANIC_IN_CLONE.set(false);
-    assert_survives(&host, status, "fmi2SetFMUstate", "clone");
 }
 
 #[test]
@@ -160,4 +166,54 @@ fn a_panic_in_drop_ends_with_the_call() {
     unsafe { fmi2FreeInstance(core::mem::replace(&mut host.component, null_mut())) };
     assert_eq!(host.error(), "fmi2FreeInstance: internal error, the model panicked: panic in drop");
     assert!(!PANIC_IN_DROP.get());
+}
+
+/// A call that fails without touching the model leaves the error state behind, too, where a saved state is to be copied
+/// first.
+#[test]
+fn a_panic_in_clone_while_a_call_fails_leaves_the_error_state() {
+    let host = Host::initialized();
+    host.save();
+    PANIC_IN_CLONE.set(true);
+    let status = host.try_real(COUNT_OF_VARIABLES).0;
+    PANIC_IN_CLONE.set(false);
+    assert_eq!(status, fmi2Error);
+    assert_eq!(host.step(0.0, 1.0), fmi2Error, "the error state");
+    assert!(host.error().contains("in state error"), "{}", host.error());
+}
+
+/// A host at 3 s with a state at 1 s that has its own memory, and memory for a copy that is dropped when more comes.
+fn host_with_a_spare() -> (Host, fmi2FMUstate) {
+    let host = Host::initialized();
+    let mut first = host.save();
+    assert_eq!(host.step(0.0, 1.0), fmi2OK);
+    let second = host.save();
+    assert_eq!(host.step(1.0, 1.0), fmi2OK);
+    assert_eq!(host.restore(first), fmi2OK);
+    assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut first) }, fmi2OK);
+    assert_eq!(host.step(0.0, 3.0), fmi2OK);
+    (host, second)
+}
+
+#[test]
+fn a_panic_in_drop_does_not_lose_the_state_that_was_just_restored() {
+    let (host, saved) = host_with_a_spare();
+    PANIC_IN_DROP.set(true);
+    assert_eq!(host.restore(saved), fmi2Error);
+    assert!(!PANIC_IN_DROP.get(), "nothing was dropped");
+    assert_eq!(host.step(1.0, 1.0), fmi2Error, "the error state");
+    assert_eq!(host.restore(saved), fmi2OK);
+    assert_eq!(host.real(TIME), 1.0);
+    assert_eq!(host.step(1.0, 1.0), fmi2OK);
+}
+
+#[test]
+fn a_panic_in_drop_does_not_lose_the_state_that_was_just_saved() {
+    let (host, mut saved) = host_with_a_spare();
+    PANIC_IN_DROP.set(true);
+    assert_eq!(unsafe { fmi2GetFMUstate(host.component, &raw mut saved) }, fmi2Error);
+    assert!(!PANIC_IN_DROP.get(), "nothing was dropped");
+    assert_eq!(host.restore(saved), fmi2OK);
+    assert_eq!(host.real(TIME), 3.0);
+    assert_eq!(host.step(3.0, 1.0), fmi2OK);
 }

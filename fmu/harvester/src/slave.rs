@@ -4,9 +4,11 @@ use fmi2_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{ContactLaw, Harvester as Model, Impact, ModelError, Occurrence, Parameters, Peak, PulseShape, Side};
+use videg_model::{
+    ContactLaw, Harvester as Model, Impact, Membrane, ModelError, Occurrence, Parameters, Peak, PulseShape, Side,
+};
 
-use crate::limits::Warned;
+use crate::limits;
 use crate::variables::VARIABLES;
 
 /// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
@@ -14,7 +16,6 @@ use crate::variables::VARIABLES;
 const MAX_PERIODS: f64 = 1e7;
 
 /// The harvester as a slave.
-#[derive(Clone)]
 pub struct Harvester {
     pub(crate) parameters: Parameters,
     pub(crate) external_force: f64,
@@ -24,9 +25,35 @@ pub struct Harvester {
     pub(crate) start_time: f64,
     /// The model runs under an integrator of the importer's: model exchange.
     pub(crate) placed: bool,
-    pub(crate) warned: Warned,
+    /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
+    pub(crate) checked: [f64; 2],
     /// The model; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, ModelError>,
+}
+
+impl Clone for Harvester {
+    fn clone(&self) -> Self {
+        Self { model: self.model.clone(), ..*self }
+    }
+
+    /// Takes no memory that is there already.
+    fn clone_from(&mut self, source: &Self) {
+        let Self {
+            parameters,
+            external_force,
+            external_force_rate,
+            voltages,
+            voltage_rates,
+            start_time,
+            placed,
+            checked,
+            ref model,
+        } = *source;
+        self.model.clone_from(model);
+        (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
+        (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
+        (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
+    }
 }
 
 impl Harvester {
@@ -40,8 +67,34 @@ impl Harvester {
         self.model.as_ref().ok()
     }
 
-    fn running(&mut self) -> Result<&mut Model, SlaveError> {
-        self.model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+    /// The inputs are where their rates have taken them in a step of `h`, s, and stay there.
+    fn follow_rates(&mut self, h: f64) {
+        self.external_force += core::mem::take(&mut self.external_force_rate) * h;
+        let rates = core::mem::take(&mut self.voltage_rates);
+        self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
+    }
+
+    #[cold]
+    fn too_long(&self, t: f64, h: f64) -> SlaveError {
+        let longest = MAX_PERIODS / self.parameters.frequency;
+        let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+        SlaveError::discard(t, message)
+    }
+
+    /// Warns of limits exceeded at present. Nothing needs looking at while the voltages have not changed since both membranes
+    /// were flat: a membrane is worst off when flat or at a peak, and peaks are checked as they come.
+    #[inline]
+    fn check_limits(&mut self, log: &Logger) {
+        if self.voltages != self.checked {
+            self.check_limits_closely(log);
+        }
+    }
+
+    fn check_limits_closely(&mut self, log: &Logger) {
+        let Ok(model) = &self.model else { return };
+        limits::check_present(model, self.voltages, log);
+        let flat = [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0);
+        self.checked = if flat { self.voltages } else { [f64::NAN; 2] };
     }
 
     /// The model at the start, as parameters and inputs have it.
@@ -80,7 +133,7 @@ impl Slave for Harvester {
             voltage_rates: [0.0; 2],
             start_time: 0.0,
             placed: false,
-            warned: Warned::default(),
+            checked: [f64::NAN; 2],
             model: Model::new(&parameters, 0.0),
         }
     }
@@ -104,49 +157,42 @@ impl Slave for Harvester {
                 PulseShape::MIN_RESTITUTION
             ));
         }
-        self.running().map(|_| ())
+        running(&mut self.model).map(|_| ())
     }
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        let longest = MAX_PERIODS / self.parameters.frequency;
-        if h > longest {
-            let message =
-                format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
-            return Err(SlaveError::discard(t, message));
+        if h * self.parameters.frequency > MAX_PERIODS {
+            return Err(self.too_long(t, h));
         }
-        let (force, rate) = (self.external_force, core::mem::take(&mut self.external_force_rate));
-        let (voltages, voltage_rates) = (self.voltages, core::mem::take(&mut self.voltage_rates));
-        let warned = self.warned.clone();
-        let model = self.running()?;
-        let membrane = *model.membrane();
-        let events = log.is_enabled(LogCategory::Events);
+        self.check_limits(log);
+        let Self { parameters, model, .. } = self;
+        let model = running(model)?;
         let mut number = model.totals().impacts;
+        let show = |shown: &Occurrence| match shown {
+            Occurrence::Impact(impact) => {
+                number += 1;
+                if log.is_enabled(LogCategory::Events) {
+                    log.event(describe(number, impact));
+                }
+            }
+            Occurrence::Peak(peak) => limits::check(&Membrane::new(parameters), peak, log),
+        };
         let advanced = model
-            .set_external_force(force, rate)
-            .and_then(|()| model.set_voltages(voltages, voltage_rates))
-            .and_then(|()| {
-                warned.check_present(model, voltages, log);
-                model.advance_with(t + h, |shown| match shown {
-                    Occurrence::Impact(impact) => {
-                        number += 1;
-                        if events {
-                            log.event(describe(number, impact));
-                        }
-                    }
-                    Occurrence::Peak(peak) => warned.check(&membrane, peak, log),
-                })
-            });
+            .set_external_force(self.external_force, self.external_force_rate)
+            .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
+            .and_then(|()| model.advance_with(t + h, show));
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        self.external_force = force + rate * h;
-        self.voltages = [0, 1].map(|k| voltages[k] + voltage_rates[k] * h);
+        if self.external_force_rate != 0.0 || self.voltage_rates != [0.0; 2] {
+            self.follow_rates(h);
+        }
         Ok(())
     }
 
     fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
         let force = self.external_force;
         self.placed = true;
-        let model = self.running()?;
+        let model = running(&mut self.model)?;
         let present = model.states();
         let states = states.map_or(Ok(present), <[f64; 4]>::try_from);
         let states = states.map_err(|error| SlaveError::error(error.to_string()))?;
@@ -158,8 +204,8 @@ impl Slave for Harvester {
     }
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
-        let (warned, voltages) = (self.warned.clone(), self.voltages);
-        let model = self.running()?;
+        let voltages = self.voltages;
+        let model = running(&mut self.model)?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if model.totals().impacts > impacts {
@@ -168,15 +214,15 @@ impl Slave for Harvester {
             let speed = totals.last_speed;
             log.event(describe(totals.impacts, &Impact { time, side, speed, rests }));
             let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
-            warned.check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
+            limits::check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }
 
     /// Each step checks the point that it starts from; the last point starts none.
     fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
-        if let Some(model) = self.model().filter(|_| !self.placed) {
-            self.warned.check_present(model, self.voltages, log);
+        if !self.placed {
+            self.check_limits(log);
         }
         Ok(())
     }
@@ -192,6 +238,11 @@ impl Slave for Harvester {
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         Self::read_from(from)
     }
+}
+
+/// The model, or why there is none.
+fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveError> {
+    model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
 }
 
 /// An impact as the log shows it.

@@ -6,7 +6,6 @@ use videg_model::{
     Side, Snapshot, Totals,
 };
 
-use crate::limits::Warned;
 use crate::slave::Harvester;
 
 impl Harvester {
@@ -41,7 +40,7 @@ impl Harvester {
             voltage_rates,
             start_time,
             placed,
-            warned: Warned::default(),
+            checked: [f64::NAN; 2],
             model: Model::new(&Parameters::default(), 0.0),
         };
         slave.model = if from.bool()? {
@@ -106,7 +105,8 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
     }
     write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
     write_all(snapshot.ledger, out);
-    write_all(snapshot.changes, out);
+    out.bool(snapshot.changes.is_some());
+    snapshot.changes.into_iter().for_each(|changes| write_all(changes, out));
     out.f64(snapshot.second);
     out.u64(snapshot.second_events);
 }
@@ -133,7 +133,7 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
             energy: from.f64()?,
         },
         ledger: array(from)?,
-        changes: array(from)?,
+        changes: if from.bool()? { Some(array(from)?) } else { None },
         second: from.f64()?,
         second_events: from.u64()?,
     })

@@ -1,8 +1,8 @@
-//! The variable table: each name, unit and description stands here once, those of the real parameters in the table of
-//! the model.
+//! The variable table: each name, unit and description stands here once, those of the parameters in the tables of the
+//! model.
 
 use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
-use videg_model::{ContactLaw, Energies, NoiseModel, OutsideGap, Parameters, Side};
+use videg_model::{Energies, Parameters, Side};
 
 use crate::slave::Harvester;
 
@@ -54,51 +54,41 @@ macro_rules! parameters {
 /// Every real parameter of the model.
 static PARAMETERS: [V; Parameters::TABLE.len()] = parameters!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21);
 
+/// Integer parameter number `INDEX` of the model's choices.
+const fn number<const INDEX: usize>() -> V {
+    let choice = &Parameters::CHOICES[INDEX];
+    V::integer_parameter(choice.name, choice.start, choice.description).access(
+        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters),
+        |slave, value| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, value),
+    )
+}
+
+/// Number `INDEX` of the model's choices, among the items of an enumeration.
+const fn item<const INDEX: usize>(of: &'static EnumerationType) -> V {
+    let choice = &Parameters::CHOICES[INDEX];
+    V::enumeration_parameter(choice.name, of, choice.start, choice.description).access(
+        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters),
+        |slave, item| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, item),
+    )
+}
+
+/// Number `INDEX` of the model's choices, on or off.
+const fn switch<const INDEX: usize>() -> V {
+    let choice = &Parameters::CHOICES[INDEX];
+    V::boolean_parameter(choice.name, choice.start != 0, choice.description).access(
+        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters) != 0,
+        |slave, on| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, i32::from(on)),
+    )
+}
+
 /// Parameters that choose or count.
-static CHOICES: [V; 6] = [
-    V::integer_parameter("excitation.seed", 1, "Seed of the phase noise: equal seeds, equal noise")
-        .access(|slave| slave.parameters.seed, |slave, value| slave.parameters.seed = value),
-    V::enumeration_parameter("excitation.noiseModel", &NOISE_MODEL, 1, "How the phase noise is read, Section 5.2")
-        .access(
-            |slave| if slave.parameters.noise_model == NoiseModel::Held { 1 } else { 2 },
-            |slave, item| slave.parameters.noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
-        ),
-    V::enumeration_parameter(
-        "initial.outsideGap",
-        &OUTSIDE_GAP,
-        1,
-        "Meaning of a start beyond a membrane, as in Fig. 12",
-    )
-    .access(
-        |slave| if slave.parameters.outside_gap == OutsideGap::Project { 1 } else { 2 },
-        |slave, item| {
-            slave.parameters.outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free };
-        },
-    ),
-    V::enumeration_parameter(
-        "contact.law",
-        &CONTACT_LAW,
-        1,
-        "Law of the contact between ball and membrane, Section 3.2",
-    )
-    .access(
-        |slave| if slave.parameters.contact_law == ContactLaw::Impulsive { 1 } else { 2 },
-        |slave, item| {
-            slave.parameters.contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant };
-        },
-    ),
-    V::boolean_parameter(
-        "contact.electrostaticFeedback",
-        false,
-        "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in Section 2.1",
-    )
-    .access(|slave| slave.parameters.electrostatic_feedback, |slave, on| slave.parameters.electrostatic_feedback = on),
-    V::boolean_parameter(
-        "contact.reaction",
-        false,
-        "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: m / M is small",
-    )
-    .access(|slave| slave.parameters.reaction, |slave, on| slave.parameters.reaction = on),
+static CHOICES: [V; Parameters::CHOICES.len()] = [
+    number::<0>(),
+    item::<1>(&NOISE_MODEL),
+    item::<2>(&OUTSIDE_GAP),
+    item::<3>(&CONTACT_LAW),
+    switch::<4>(),
+    switch::<5>(),
 ];
 
 /// What follows from the parameters.

@@ -22,6 +22,11 @@ impl Ramp {
     pub(crate) fn at(&self, time: f64) -> f64 {
         self.value + self.rate * (time - self.start)
     }
+
+    /// Whether it stays at `value`, V.
+    pub(crate) fn stays_at(&self, value: f64) -> bool {
+        self.value == value && self.rate == 0.0
+    }
 }
 
 /// On which branch of the membrane's force a contact is.

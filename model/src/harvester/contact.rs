@@ -19,7 +19,16 @@ impl Harvester {
     ///
     /// # Errors
     /// A voltage or rate that is not finite.
+    #[inline]
     pub fn set_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
+        let [left, right] = &self.voltages;
+        if rates == [0.0; 2] && left.stays_at(voltages[0]) && right.stays_at(voltages[1]) {
+            return Ok(());
+        }
+        self.change_voltages(voltages, rates)
+    }
+
+    fn change_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
         for side in [Side::Left, Side::Right] {
             let (value, rate) = (voltages[side.index()], rates[side.index()]);
             finite("voltage of a membrane", value)?;
@@ -200,6 +209,7 @@ impl Harvester {
         self.book_pass(time);
         self.touch = self.touch.as_ref().map(|touch| touch.continued(time));
         self.plan_touch();
+        self.look_ahead();
     }
 
     /// The contact goes on from `time`, s, under another force.
@@ -212,7 +222,7 @@ impl Harvester {
         self.book_pass(time);
         self.cylinder = cylinder;
         let dz = sign * (self.half_travel() + next.start.x);
-        self.search.flight = Flight::new(&self.cylinder, time, dz, velocity, self.half_travel());
+        self.search.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), dz, velocity, self.half_travel());
         self.ball = Ball { since: time, position: self.cylinder.position - dz, velocity, resting: None };
         self.touch = Some(next);
         self.plan_touch();

@@ -88,19 +88,17 @@ impl Harvester {
         self.ledger.loss += (1.0 - r * r) * self.kinetic(speed);
     }
 
-    /// The ball takes on the velocity of the wall, which changes by `wall_change`, m/s.
-    pub(super) fn book_settling(&mut self, time: f64, wall_change: f64) {
-        let wall = self.cylinder.velocity(time);
+    /// The ball takes on the velocity of the `wall`, m/s, which changes by `wall_change`, m/s.
+    pub(super) fn book_settling(&mut self, wall: f64, wall_change: f64) {
         let slip = self.ball.velocity - wall;
         self.ledger.wall -= self.parameters.ball_mass * slip * wall;
         self.ledger.loss += self.kinetic(slip);
         self.change_by_settling([slip, self.tangent.ball[1] - wall_change], [wall, wall_change]);
     }
 
-    /// The wall begins to carry the ball: its work is the gain of kinetic energy. Its velocity changes by
+    /// The wall begins to carry the ball: its work is the gain of kinetic energy. Its velocity `wall`, m/s, changes by
     /// `wall_change`, m/s.
-    pub(super) fn book_rest(&mut self, time: f64, wall_change: f64) {
-        let wall = self.cylinder.velocity(time);
+    pub(super) fn book_rest(&mut self, wall: f64, wall_change: f64) {
         self.ledger.wall -= self.kinetic(wall);
         self.tangent.ledger.wall -= self.kinetic_change([wall, wall_change]);
     }

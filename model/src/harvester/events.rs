@@ -1,9 +1,9 @@
 //! The events of the motion: what comes next, and what it does.
 
-use super::course::Boundary;
-use super::tangent::Hit;
+use super::course::{Boundary, Place};
+use super::tangent::{Hit, HitChange};
 use super::{Ball, Harvester, phase};
-use crate::cylinder::Drive;
+use crate::cylinder::{CylinderState, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
 use crate::noise;
@@ -72,14 +72,16 @@ pub(super) struct Search {
     pub(super) found: Option<Event>,
     /// With phase noise: the begin of the first hold interval that has not been searched, or of that in which the event is
     /// that has been found, unless it is the present one.
-    pub(super) ahead: Option<Boundary>,
+    pub(super) ahead: Option<Place>,
+    /// With phase noise: the begin of an earlier hold interval of the block, which the present one follows from.
+    pub(super) anchor: Option<Boundary>,
     /// No event will ever come.
     exhausted: bool,
 }
 
 impl Search {
     pub(super) fn new(flight: Flight) -> Self {
-        Self { flight, window: 0, found: None, ahead: None, exhausted: false }
+        Self { flight, window: 0, found: None, ahead: None, anchor: None, exhausted: false }
     }
 
     /// No search at all: no event is foreseen.
@@ -106,9 +108,10 @@ impl Harvester {
         let side = if dz > 0.0 { Side::Left } else { Side::Right };
         let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
         let at_rest = self.cylinder.velocity == self.ball.velocity;
-        if touching && at_rest && self.end_of_bounces(self.time, side, 0.0, self.cylinder_acceleration()).is_some() {
+        let wall = self.cylinder.at(self.time);
+        if touching && at_rest && self.end_of_bounces(side, 0.0, &wall).is_some() {
             let [_, wall_change] = self.cylinder_change(self.time);
-            self.rest(self.time, side, wall_change);
+            self.rest(side, &wall, wall_change);
         }
     }
 
@@ -125,8 +128,13 @@ impl Harvester {
     /// Searches from `time` on, at which `z_M` - `z_m` is `dz`. That is handed on rather than computed from positions,
     /// so that a ball on a membrane is there to the last bit however far the cylinder has drifted.
     pub(super) fn new_search(&mut self, time: f64, dz: f64) {
-        let flight = Flight::new(&self.cylinder, time, dz, self.ball_velocity_at(time), self.half_travel());
-        self.search = Search::new(flight);
+        let velocity = self.ball_velocity_at(time);
+        self.new_flight(&self.cylinder.at(time), dz, velocity);
+    }
+
+    /// The same of a ball with this `velocity`, m/s, when the cylinder is `here`.
+    fn new_flight(&mut self, here: &CylinderState, dz: f64, velocity: f64) {
+        self.search = Search::new(Flight::new(&self.cylinder, here, dz, velocity, self.half_travel()));
     }
 
     /// The next event, if there is one before the search windows have passed `until`, s. If the caller is to get there,
@@ -146,14 +154,14 @@ impl Harvester {
             None => f64::INFINITY,
         };
         while self.search.found.is_none() && !self.search.exhausted {
-            if let Some(boundary) = self.search.ahead {
-                self.search_ahead(boundary, until, follow);
+            if let Some(place) = self.search.ahead {
+                self.search_ahead(place, until, follow);
                 break;
             }
             let begin = self.search.window as f64 * self.search.flight.window_length();
             if begin >= limit_elapsed && in_blocks {
                 self.search.window = 0;
-                self.search.ahead = Some(self.next_boundary());
+                self.search.ahead = Some(self.next_place());
                 continue;
             }
             if begin >= limit_elapsed {
@@ -171,9 +179,30 @@ impl Harvester {
         self.search.found
     }
 
+    /// The time, s, up to which nothing happens and the search has nothing more to foresee. It follows from what has been
+    /// found, not from the present time, so that no step of a caller changes it.
+    pub(super) fn calm(&self) -> f64 {
+        if self.parameters.phase_noise > 0.0 {
+            return f64::NEG_INFINITY; // there is always a hold interval to enter
+        }
+        if let Some(touch) = &self.touch {
+            return touch.end();
+        }
+        let Search { flight, window, found, exhausted, .. } = &self.search;
+        match found {
+            Some(event) => event.time(),
+            None if *exhausted => f64::INFINITY,
+            None => {
+                let (searched, horizon) = (flight.start + *window as f64 * flight.window_length(), self.horizon());
+                // Less the rounding of this difference and of the sum that the search compares with.
+                searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
+            }
+        }
+    }
+
     /// Searches one window of the flight or of the rest.
     fn search_window(&mut self, limit: f64) {
-        let Search { flight, window, .. } = self.search;
+        let Search { ref flight, window, .. } = self.search;
         let end = self.noise_limit().unwrap_or(f64::INFINITY);
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if let Some(side) = self.ball.resting {
@@ -198,8 +227,9 @@ impl Harvester {
     }
 
     pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
-        if let Some(boundary) = self.search.ahead {
-            self.enter(boundary);
+        self.tangent.fresh = false;
+        if let Some(place) = self.search.ahead {
+            self.enter(place);
         }
         match event {
             Event::Impact { time, side } => {
@@ -226,9 +256,8 @@ impl Harvester {
 
     /// Counts an event against the budget of its second.
     pub(super) fn spend(&mut self, time: f64) -> Result<(), ModelError> {
-        let second = time.floor();
-        if second != self.second {
-            (self.second, self.second_events) = (second, 0);
+        if !(0.0..1.0).contains(&(time - self.second)) {
+            (self.second, self.second_events) = (time.floor(), 0);
         }
         self.second_events += 1;
         if self.second_events > EVENT_BUDGET {
@@ -244,49 +273,54 @@ impl Harvester {
 
     /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
     pub(super) fn impact(&mut self, time: f64, side: Side) {
-        let (wall, acceleration) = (self.cylinder.velocity(time), self.cylinder.acceleration(time));
-        let speed = (side.sign() * (wall - self.ball.velocity)).max(0.0);
+        let wall = self.cylinder.at(time);
+        let speed = (side.sign() * (wall.velocity - self.ball.velocity)).max(0.0);
         let peak = self.membrane.deflection(speed);
-        let excess = self.membrane.capacitance_excess(peak);
-        let change = self.change_of(&Hit { time, side, speed, peak, wall, acceleration });
+        let (excess, change) = if self.tangent.idle {
+            (self.membrane.capacitance_excess(peak), HitChange::default())
+        } else {
+            let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
+            (excess, self.change_of(&Hit { side, speed, peak, excess_slope, wall }))
+        };
         self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak, change: change.pulse });
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
         self.credit(excess);
-        self.take_over(&change, excess);
-        self.book_impact(side, wall, speed);
+        if !self.tangent.idle {
+            self.take_over(&change, excess);
+        }
+        self.book_impact(side, wall.velocity, speed);
         let rebound = self.parameters.restitution * speed;
-        self.ball = Ball {
-            since: time,
-            position: self.cylinder.position(time) - side.sign() * self.half_travel(),
-            velocity: wall + side.sign() * rebound, // Eq. (11), with v_M subtracted from both sides
-            resting: None,
-        };
-        self.new_search(time, side.sign() * self.half_travel());
-        match self.end_of_bounces(time, side, rebound, acceleration) {
+        let dz = side.sign() * self.half_travel();
+        let velocity = wall.velocity + side.sign() * rebound; // Eq. (11), with v_M subtracted from both sides
+        self.ball = Ball { since: time, position: wall.position - dz, velocity, resting: None };
+        self.new_flight(&wall, dz, velocity);
+        match self.end_of_bounces(side, rebound, &wall) {
             Some(Tail::Summed) => {
                 let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
                 self.credit(excess);
-                self.take_over_tail(speed, excess);
-                self.settle(time, side, change.wall);
+                if !self.tangent.idle {
+                    self.take_over_tail(speed, excess);
+                }
+                self.settle(side, &wall, change.wall);
             }
-            Some(Tail::Unresolved) => self.settle(time, side, change.wall),
+            Some(Tail::Unresolved) => self.settle(side, &wall, change.wall),
             None => {}
         }
     }
 
-    /// Ends a chattering sequence at `time`, s, when the velocity of the wall changes by `wall_change`, m/s.
-    fn settle(&mut self, time: f64, side: Side, wall_change: f64) {
+    /// Ends a chattering sequence on this `wall`, whose velocity changes by `wall_change`, m/s.
+    fn settle(&mut self, side: Side, wall: &CylinderState, wall_change: f64) {
         self.totals.chatters += 1;
-        self.book_settling(time, wall_change);
-        self.rest(time, side, wall_change);
+        self.book_settling(wall.velocity, wall_change);
+        self.rest(side, wall, wall_change);
     }
 
-    /// From `time`, s, on the ball rests on the membrane at `side`, whose velocity then changes by `wall_change`, m/s.
-    fn rest(&mut self, time: f64, side: Side, wall_change: f64) {
-        self.book_rest(time, wall_change);
+    /// From now on the ball rests on the membrane at `side`, on this `wall`, whose velocity changes by `wall_change`, m/s.
+    fn rest(&mut self, side: Side, wall: &CylinderState, wall_change: f64) {
+        self.book_rest(wall.velocity, wall_change);
         self.ball.resting = Some(side);
-        self.new_search(time, side.sign() * self.half_travel());
+        self.new_flight(wall, side.sign() * self.half_travel(), wall.velocity);
     }
 
     /// Adds impacts whose `C_3` / `C_2` - 1 sum to `excess`: Eqs. (12) and (13).
@@ -296,30 +330,34 @@ impl Harvester {
         self.totals.energy += 0.5 * bias * bias * self.membrane.rest_capacitance() * excess;
     }
 
-    /// Whether a ball that leaves `side` with relative speed `rebound`, m/s, comes to rest there, because the wall
-    /// pushes (`acceleration`, m/s^2) and the next bounce is lower than rounding, or at least very low, with all that
+    /// Whether a ball that leaves the `wall` at `side` with relative speed `rebound`, m/s, comes to rest there, because that
+    /// pushes and the next bounce is lower than rounding, or at least very low, with all that
     /// follow so short that the push is constant meanwhile.
-    fn end_of_bounces(&self, time: f64, side: Side, rebound: f64, acceleration: f64) -> Option<Tail> {
-        let push = side.sign() * acceleration;
-        let jerk = self.cylinder.jerk(time);
+    fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState) -> Option<Tail> {
+        let CylinderState { time, jerk, .. } = *wall;
+        let push = side.sign() * wall.acceleration;
         if push <= 0.0 {
             return (push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
+        }
+        let (highest, tolerance) = if self.placed {
+            (PLACED_CHATTER_HEIGHT, PLACED_CHATTER_TOLERANCE)
+        } else {
+            (CHATTER_HEIGHT, CHATTER_TOLERANCE)
+        };
+        let (highest, unresolved) = (highest * self.half_travel(), 4.0 * self.search.flight.rounding(0.0));
+        if rebound * rebound > 2.0 * push * highest.max(unresolved) {
+            return None;
         }
         // Flights of 2 v / a, 2 v r / a, ...: their sum.
         let duration = 2.0 * rebound / (push * (1.0 - self.parameters.restitution));
         let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
         let change = duration * (jerk.abs() + 0.5 * duration * curvature);
         let noise_limit = self.noise_limit().unwrap_or(f64::INFINITY);
-        let (highest, tolerance) = if self.placed {
-            (PLACED_CHATTER_HEIGHT, PLACED_CHATTER_TOLERANCE)
-        } else {
-            (CHATTER_HEIGHT, CHATTER_TOLERANCE)
-        };
         let height = rebound * rebound / (2.0 * push);
-        if height <= highest * self.half_travel() && change <= tolerance * push && time + duration <= noise_limit {
+        if height <= highest && change <= tolerance * push && time + duration <= noise_limit {
             return Some(Tail::Summed);
         }
-        (height <= 4.0 * self.search.flight.rounding(0.0)).then_some(Tail::Unresolved)
+        (height <= unresolved).then_some(Tail::Unresolved)
     }
 
     pub(super) fn next_noise_sample(&mut self, time: f64) {

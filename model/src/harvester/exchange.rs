@@ -75,6 +75,7 @@ impl Harvester {
     /// # Errors
     /// More events than can be resolved.
     pub fn handle_events(&mut self) -> Result<bool, ModelError> {
+        self.tangent.fresh = false;
         while let Some(due) = self.noise_limit().filter(|due| *due <= self.time * (1.0 + f64::EPSILON)) {
             self.next_noise_sample(due.min(self.time));
         }
@@ -138,7 +139,9 @@ impl Harvester {
     /// The future is the integrator's: no impact is foreseen.
     fn forget_search(&mut self) {
         let (position, velocity) = (self.ball_position(), self.ball_velocity());
-        let dz = self.cylinder.position(self.time) - position;
-        self.search = Search::none(Flight::new(&self.cylinder, self.time, dz, velocity, self.half_travel()));
+        let here = self.cylinder.at(self.time);
+        self.calm_until = f64::NEG_INFINITY;
+        let flight = Flight::new(&self.cylinder, &here, here.position - position, velocity, self.half_travel());
+        self.search = Search::none(flight);
     }
 }

@@ -1,14 +1,14 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
 use super::energy::{Ledger, LedgerChange};
-use super::events::Search;
+use super::events::{Event, Search};
 use super::tangent::Tangent;
 use super::{Ball, Harvester, Noise, Totals, phase};
 use crate::compliant::{ContactSnapshot, Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
-use crate::holds::Holds;
+use crate::holds::{BLOCK, Holds};
 use crate::membrane::Membrane;
 use crate::parameters::{ContactLaw, Parameters};
 use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
@@ -34,7 +34,8 @@ pub struct Snapshot {
     pub resting: Option<Side>,
     /// Start of the present search for events, s, and `z_M` - `z_m`, m, there.
     pub flight: [f64; 2],
-    /// Number of the phase-noise sample in force.
+    /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
+    /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
     pub noise_sample: u64,
     /// The Wiener process of the phase noise, sqrt(s).
     pub noise_walk: f64,
@@ -51,8 +52,8 @@ pub struct Snapshot {
     pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
     /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
-    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them.
-    pub changes: [f64; 8],
+    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them. None before anybody asked.
+    pub changes: Option<[f64; 8]>,
     /// Number of the second in which events are being counted.
     pub second: f64,
     /// Events counted in it.
@@ -65,21 +66,35 @@ impl Harvester {
         let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
         let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
         let LedgerChange { wall, loss } = tangent.ledger;
+        // What follows from an anchor does so again, to the last bit, from nothing else.
+        let anchor = self.search.anchor.unwrap_or_else(|| self.present_boundary());
+        let is_behind = self.search.anchor.is_some();
+        let start = if is_behind { self.hold_start(anchor.sample) } else { cylinder.start };
+        let flight_start = if is_behind { start } else { self.search.flight.start };
         Snapshot {
             time: self.time,
-            cylinder: [cylinder.start, cylinder.position, cylinder.velocity],
-            external: [cylinder.drive.external, cylinder.drive.external_rate],
+            cylinder: [start, anchor.position, anchor.velocity],
+            external: [anchor.external, cylinder.drive.external_rate],
             ball: [ball.since, ball.position, ball.velocity],
             resting: ball.resting,
-            flight: [self.search.flight.start, self.search.flight.dz],
-            noise_sample: noise.sample,
+            flight: [flight_start, anchor.dz],
+            noise_sample: anchor.sample,
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
             contact: self.touch.as_ref().map(Touch::snapshot),
             voltages: self.voltages.map(|ramp| [ramp.start, ramp.value, ramp.rate]),
             totals: self.totals,
             ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
-            changes: [tangent.since, position, velocity, last_speed, voltage_gain, energy, wall, loss],
+            changes: (!tangent.idle).then_some([
+                tangent.since,
+                position,
+                velocity,
+                last_speed,
+                voltage_gain,
+                energy,
+                wall,
+                loss,
+            ]),
             second: self.second,
             second_events: self.second_events,
         }
@@ -91,7 +106,7 @@ impl Harvester {
     /// # Errors
     /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        let mut harvester = Self::rebuild(parameters, snapshot, 0.0)?;
+        let mut harvester = Self::rebuild(parameters, snapshot, BLOCK as f64)?;
         harvester.placed = false;
         harvester.search = if harvester.touch.is_some() {
             Search::new(harvester.search.flight)
@@ -99,6 +114,11 @@ impl Harvester {
             Search::resumed(harvester.search.flight, snapshot.time)
         };
         harvester.plan_touch();
+        let due = harvester.next_event(snapshot.time, true).filter(|event| event.time() <= snapshot.time);
+        if let Some(Event::Impact { time, .. } | Event::Release { time }) = due {
+            // All of them have happened; a state that says otherwise could hold any number.
+            check("event before the present time", time, false)?;
+        }
         harvester.advance(snapshot.time)?;
         Ok(harvester)
     }
@@ -129,15 +149,19 @@ impl Harvester {
         let cylinder = CylinderMotion::new(start, position, velocity, drive);
         let [since, position, velocity] = snapshot.ball;
         let ball = Ball { since, position, velocity, resting: snapshot.resting };
-        let [since, position_change, velocity_change, last_speed, voltage_gain, energy, wall, loss] = snapshot.changes;
-        let mut tangent = Tangent::of_force(since, p.cylinder_mass);
-        tangent.ball = [position_change, velocity_change];
-        tangent.totals = [last_speed, voltage_gain, energy];
-        tangent.ledger = LedgerChange { wall, loss };
+        let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| {
+            let [since, position, velocity, last_speed, voltage_gain, energy, wall, loss] = changes;
+            let mut tangent = Tangent::of_force(since, p.cylinder_mass);
+            tangent.ball = [position, velocity];
+            tangent.totals = [last_speed, voltage_gain, energy];
+            tangent.ledger = LedgerChange { wall, loss };
+            tangent
+        });
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
         let [start, dz] = snapshot.flight;
-        let ball_velocity = if ball.resting.is_some() { cylinder.velocity(start) } else { velocity };
-        let flight = Flight::new(&cylinder, start, dz, ball_velocity, p.travel() / 2.0);
+        let here = cylinder.at(start);
+        let ball_velocity = if ball.resting.is_some() { here.velocity } else { velocity };
+        let flight = Flight::new(&cylinder, &here, dz, ball_velocity, p.travel() / 2.0);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),
@@ -155,6 +179,7 @@ impl Harvester {
             ledger: Ledger { wall, electrical, loss, contact_time },
             tangent,
             placed: true,
+            calm_until: f64::NEG_INFINITY,
             second: snapshot.second,
             second_events: snapshot.second_events,
         })
@@ -172,10 +197,11 @@ impl Snapshot {
             let PulseChange { start, speed, peak } = pulse.change;
             [start, speed, peak]
         });
-        for change in changes.chain(self.changes) {
+        for change in changes.chain(self.changes.into_iter().flatten()) {
             check("change", change, change.is_finite())?;
         }
-        for start in [self.cylinder[0], self.ball[0], self.flight[0], self.changes[0]] {
+        let since = self.changes.map(|[since, ..]| since);
+        for start in [self.cylinder[0], self.ball[0], self.flight[0]].into_iter().chain(since) {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
             check("start of a motion", start, start <= time && (time - start) * parameters.frequency < 9.0e15)?;
         }

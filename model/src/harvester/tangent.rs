@@ -8,7 +8,7 @@
 
 use super::energy::LedgerChange;
 use super::{Energies, Harvester, Side};
-use crate::cylinder::DriveChange;
+use crate::cylinder::{CylinderState, DriveChange};
 use crate::membrane::MembraneChange;
 use crate::parameters::Parameters;
 use crate::pulse::{PulseChange, Pulses, ShapeChange};
@@ -71,6 +71,10 @@ pub(super) struct ParameterChange {
 pub(super) struct Tangent {
     /// Time from which on the force is changed, s.
     pub(super) since: f64,
+    /// Nobody has asked for them yet: all are zero, and impacts are spared the work.
+    pub(super) idle: bool,
+    /// Nothing but the time has come into them since they were forgotten.
+    pub(super) fresh: bool,
     /// Change of the external force over M, m/s^2.
     push: f64,
     /// Of `z_m`, m, and `z_m'`, m/s, at the last event of a free ball.
@@ -84,13 +88,12 @@ pub(super) struct Tangent {
 
 /// An impact and its surroundings.
 pub(super) struct Hit {
-    pub(super) time: f64,
     pub(super) side: Side,
     pub(super) speed: f64,
     pub(super) peak: f64,
-    /// `z_M'`, m/s, and `z_M''`, m/s^2.
-    pub(super) wall: f64,
-    pub(super) acceleration: f64,
+    /// Derivative of `C_3` / `C_2` - 1 with the deflection, 1/m.
+    pub(super) excess_slope: f64,
+    pub(super) wall: CylinderState,
 }
 
 /// How an impact changes.
@@ -150,10 +153,15 @@ pub(super) fn bounded(change: f64) -> f64 {
 }
 
 impl Tangent {
+    /// No change at all, until somebody asks for one.
+    pub(super) fn none() -> Self {
+        Self { idle: true, push: 0.0, ..Self::of_force(0.0, 1.0) }
+    }
+
     /// One more newton from `since`, s, on.
     pub(super) fn of_force(since: f64, cylinder_mass: f64) -> Self {
         let (ball, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
-        Self { since, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
+        Self { since, idle: false, fresh: false, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
     }
 
     /// The start of `harvester` under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of
@@ -185,6 +193,8 @@ impl Tangent {
             shape: harvester.shape.change(d.stiffness_exponent, d.restitution),
         };
         Self {
+            idle: false,
+            fresh: false,
             since: harvester.time,
             push: (direction.force - force * heavier) / p.cylinder_mass,
             ball: [ball_position, d.ball_velocity],
@@ -222,9 +232,13 @@ impl Tangent {
 
 impl Harvester {
     /// Changes are those with the external force from now on.
+    #[inline]
     pub(super) fn forget_changes(&mut self) {
-        self.tangent = Tangent::of_force(self.time, self.parameters.cylinder_mass);
-        self.pulses.iter_mut().for_each(Pulses::forget_changes);
+        if !self.tangent.fresh {
+            self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, self.parameters.cylinder_mass) };
+            self.pulses.iter_mut().for_each(Pulses::forget_changes);
+        }
+        self.tangent.since = self.time;
     }
 
     /// Of `z_M` and `z_M'` at `time`, s.
@@ -251,29 +265,36 @@ impl Harvester {
     /// Time by which an impact at `time` on `side` at relative `speed` comes later.
     pub(super) fn delay(&self, time: f64, side: Side, speed: f64) -> f64 {
         let approach = self.cylinder_change(time)[0] - self.ball_change(time)[0];
+        self.delay_by(approach, side, speed)
+    }
+
+    /// The same when `z_M` - `z_m` at the time of the impact changes by `approach`, m.
+    fn delay_by(&self, approach: f64, side: Side, speed: f64) -> f64 {
         bounded((self.tangent.half_travel() - side.sign() * approach) / speed)
     }
 
     /// How an impact changes; the ball has not rebounded yet.
     pub(super) fn change_of(&self, hit: &Hit) -> HitChange {
-        let Hit { time, side, speed, peak, wall, acceleration } = *hit;
+        let Hit { side, speed, peak, excess_slope, .. } = *hit;
+        let CylinderState { time, velocity: wall, acceleration, .. } = hit.wall;
         let ball = self.ball_change(time);
         let [position, velocity] = self.cylinder_change(time);
         if grazes(side, speed, acceleration) {
             return HitChange { ball, wall: velocity, ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
-        let delay = self.delay(time, side, speed);
+        let delay = self.delay_by(position - ball[0], side, speed);
         let wall_change = velocity + acceleration * delay;
         let speed_change = sign * (wall_change - ball[1]);
         let rebound_change = self.rebound_change(speed, speed_change);
-        let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, self.tangent.membrane()));
+        let membrane = self.tangent.membrane();
+        let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
         let rebounded = wall + sign * restitution * speed;
         HitChange {
             pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
             wall: bounded(wall_change),
             ledger: self.ledger_change(hit, bounded(speed_change), bounded(wall_change)),
-            excess: self.membrane.excess_change(peak, peak_change, self.tangent.membrane()),
+            excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
             ball: [
                 position + (wall - rebounded) * delay - sign * self.tangent.half_travel(),
                 wall_change + sign * rebound_change,
@@ -322,7 +343,7 @@ impl Harvester {
 
     /// First-order changes of everything, per newton of the external force: that set by the last
     /// [`Harvester::set_external_force`], moved by a constant and held since then. Of a harvester made by
-    /// [`Harvester::along`], before that is called: per unit of its direction.
+    /// [`Harvester::along`], before that is called: per unit of its direction. Of any other harvester they are zero before.
     ///
     /// They are those of the side that the state is on: after an event at the present time. Events stay in their order, a
     /// ball at rest stays there. Grazing impacts ([`GRAZING_SPEED`]) count as none, so that all values are

@@ -85,7 +85,14 @@ impl Membrane {
 
     /// Change of `C_3` / `C_2` - 1 at `deflection`, m, when that changes by `deflection_change`, m.
     pub fn excess_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
-        2.0 * self.area_ratio(deflection) * self.area_change(deflection, deflection_change, change)
+        let [_, slope] = self.capacitance_excess_and_slope(deflection);
+        slope * deflection_change + self.excess_change_by_geometry(deflection, change)
+    }
+
+    /// Change of `C_3` / `C_2` - 1 at a given `deflection`, m.
+    pub fn excess_change_by_geometry(&self, deflection: f64, change: Option<&MembraneChange>) -> f64 {
+        let by_geometry = |change| 2.0 * self.area_ratio(deflection) * self.area_change_by_geometry(deflection, change);
+        change.map_or(0.0, by_geometry)
     }
 
     /// Change of the capacitance, F, at `deflection`, m, when that changes by `deflection_change`, m.

@@ -12,8 +12,8 @@
 //!
 //! # Safety
 //! All functions here have the contract of their C namesake: a component is NULL or comes from
-//! [`instantiate`](instantiate::instantiate) with the same `S` and was not freed; an array is NULL or holds as
-//! many values as the call says; a string is NULL or zero-terminated.
+//! [`instantiate`](instantiate::instantiate) with the same `S` and was not freed, and no other thread calls a function of
+//! it meanwhile; an array is NULL or holds as many values as the call says; a string is NULL or zero-terminated.
 #![allow(clippy::missing_safety_doc)] // The contract is the same for all and stands above.
 
 pub mod co_simulation;
@@ -56,9 +56,10 @@ impl Fmu {
     }
 }
 
-/// What a component points to: an instance and a lock. FMI 2.0 forbids concurrent calls, and calls from inside a
-/// logger callback; the lock makes them an error where they would be undefined behaviour.
-pub(crate) struct Handle<S> {
+/// What a component points to: an instance, and whether a call of it is under way. FMI 2.0 forbids calls from inside a
+/// logger callback and from two threads at once. The former are always refused. Calls from a second thread are usually
+/// refused; nothing guarantees it, and two that begin together are undefined behaviour.
+pub(crate) struct Handle<S: Slave> {
     busy: AtomicBool,
     instance: UnsafeCell<Instance<S>>,
 }
@@ -68,19 +69,23 @@ impl<S: Slave> Handle<S> {
         Self { busy: AtomicBool::new(false), instance: UnsafeCell::new(instance) }
     }
 
-    /// Runs `body` on the instance unless it is busy.
+    /// Runs `body`, which does not panic, on the instance unless it is busy.
+    #[inline]
     fn with(&self, body: impl FnOnce(&mut Instance<S>) -> fmi2Status) -> fmi2Status {
-        if self.busy.swap(true, Ordering::Acquire) {
+        // Not one atomic exchange, which would take as long as a step in which nothing happens.
+        if self.busy.load(Ordering::Acquire) {
             return fmi2Error;
         }
-        // SAFETY: `busy` was false and is now true, so this is the only reference.
+        self.busy.store(true, Ordering::Relaxed);
+        // SAFETY: by contract no two threads are here at once, and no call from inside another comes this far: this is the
+        // only reference.
         let status = body(unsafe { &mut *self.instance.get() });
         self.busy.store(false, Ordering::Release);
         status
     }
 }
 
-/// The guard around every function that acts on an instance.
+/// The way into every function that acts on an instance.
 unsafe fn enter<S: Slave>(
     component: fmi2Component,
     function: Function,
@@ -94,11 +99,11 @@ unsafe fn enter<S: Slave>(
     let Some(handle) = (unsafe { handle.as_ref() }) else {
         return fmi2Error;
     };
-    guard(fmi2Error, || handle.with(|i| i.run(function, call)))
+    handle.with(|i| i.run(function, call))
 }
 
 /// Keeps a panic from unwinding into C.
-fn guard<T>(otherwise: T, body: impl FnOnce() -> T) -> T {
+pub(crate) fn guard<T>(otherwise: T, body: impl FnOnce() -> T) -> T {
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
         let _ = crate::instance::panic_message(payload);
         otherwise

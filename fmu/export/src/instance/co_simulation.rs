@@ -25,11 +25,14 @@ impl LastStep {
     pub(super) const NONE: Self = Self { status: fmi2OK, successful_time: None, terminated: false };
 }
 
+/// Relative difference of two communication points that comes from rounding.
+const TIME_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// How far two communication points may differ and still be the same, s. Masters count time as `n * h`, as a sum
 /// or in integer nanoseconds; a difference that could be a step of its own is never accepted.
 pub(crate) fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
     let magnitude = a.abs().max(b.abs()).max(1.0);
-    let rounding = 16.0 * f64::EPSILON * a.abs().max(b.abs());
+    let rounding = TIME_ROUNDING * a.abs().max(b.abs());
     rounding.max((1e-9 * magnitude).min(1e-3 * step))
 }
 
@@ -37,18 +40,31 @@ impl<S: Slave> Instance<S> {
     /// `fmi2DoStep`
     pub(crate) fn do_step(&mut self, t: f64, h: f64) -> Call {
         self.check_step(t, h)?;
-        match self.core.model.do_step(t, h, &self.logger) {
+        let core = &mut *self.core;
+        match core.model.do_step(t, h, &self.logger) {
             Ok(()) => {
-                self.core.time = t + h;
                 let status = if self.logger.has_warned() { fmi2Warning } else { fmi2OK };
-                self.finish_step(status, t + h, false);
+                core.time = t + h;
+                core.last_step = LastStep { status, successful_time: Some(t + h), terminated: false };
                 Ok(())
             }
             Err(error) => Err(self.step_failed(t, error)),
         }
     }
 
+    /// A step that is as it should be, as nearly all are, is seen at a glance.
+    #[inline]
     fn check_step(&self, t: f64, h: f64) -> Call {
+        let (end, stop) = (t + h, self.core.experiment.and_then(|e| e.stop_time));
+        let latest = stop.map_or(f64::MAX, |stop| stop.min(f64::MAX));
+        if t < end && end <= latest && (t - self.core.time).abs() <= TIME_ROUNDING * t.abs() {
+            return Ok(());
+        }
+        self.check_step_closely(t, h)
+    }
+
+    #[cold]
+    fn check_step_closely(&self, t: f64, h: f64) -> Call {
         let refuse = |argument, value: f64, bound: String| {
             Err(CallError::BadArgument { argument, value: value.to_string(), bound })
         };
@@ -81,6 +97,7 @@ impl<S: Slave> Instance<S> {
         Err(CallError::BehindStopTime { from: t, to: t + h, stop, tolerance })
     }
 
+    #[cold]
     fn step_failed(&mut self, t: f64, error: SlaveError) -> CallError {
         let reached = error.last_successful_time().unwrap_or(t);
         let status = match error.severity() {
@@ -91,12 +108,9 @@ impl<S: Slave> Instance<S> {
             Severity::Error => fmi2Error,
             Severity::Fatal => fmi2Fatal,
         };
-        self.finish_step(status, reached, error.wants_to_terminate());
-        CallError::Slave(error)
-    }
-
-    const fn finish_step(&mut self, status: fmi2Status, reached: f64, terminated: bool) {
+        let terminated = error.wants_to_terminate();
         self.core.last_step = LastStep { status, successful_time: Some(reached), terminated };
+        CallError::Slave(error)
     }
 
     /// `fmi2SetRealInputDerivatives`, all or nothing as a Set. Only inputs have such derivatives, and where the call is

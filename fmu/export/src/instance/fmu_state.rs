@@ -1,5 +1,4 @@
-//! Saved FMU states. The importer holds a token, never a pointer to memory: a token that was not given out, or was
-//! freed, or belongs to another instance is recognised, and no token is ever given out twice.
+//! Saving, restoring and serialising FMU states.
 
 use super::co_simulation::LastStep;
 use super::{Call, Core, Instance};
@@ -7,53 +6,28 @@ use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::serialize::{StateError, StateReader, StateWriter, seal, unseal};
 use crate::slave::{Experiment, Slave};
-use core::sync::atomic::{AtomicUsize, Ordering};
-
-/// A token that no state in this process has had. Counting is the only thing that instances share; the address of
-/// the counter keeps the tokens of different FMUs in one process apart.
-fn fresh_token() -> usize {
-    static COUNTER: AtomicUsize = AtomicUsize::new(1);
-    const ODD: usize = usize::MAX / 13 * 8 + 1; // Golden ratio, so that near addresses end up far apart.
-    let base = (&raw const COUNTER).addr().wrapping_mul(ODD);
-    loop {
-        let token = base.wrapping_add(COUNTER.fetch_add(1, Ordering::Relaxed));
-        // NULL means "no state".
-        if token != 0 {
-            return token;
-        }
-    }
-}
 
 impl<S: Slave> Instance<S> {
     /// `fmi2GetFMUstate`: a new state if `token` is NULL, else that state is overwritten. Returns its token.
     pub(crate) fn save(&mut self, token: usize) -> Call<usize> {
-        if token == 0 {
-            return Ok(self.keep(self.core.clone()));
-        }
-        let slot = self.fmu_states.get_mut(&token);
-        *slot.ok_or(CallError::UnknownFmuState(token))? = self.core.clone();
-        Ok(token)
+        self.core.save(token)
     }
 
     /// `fmi2SetFMUstate`
     pub(crate) fn restore(&mut self, token: usize) -> Call {
-        self.core = self.saved(token)?.clone();
-        Ok(())
+        self.core.restore(token)
     }
 
     /// `fmi2FreeFMUstate`. NULL is ignored, as the standard has it.
     pub(crate) fn free_state(&mut self, token: usize) -> Call {
-        if token == 0 || self.fmu_states.remove(&token).is_some() {
-            return Ok(());
-        }
-        Err(CallError::UnknownFmuState(token))
+        if token == 0 { Ok(()) } else { self.core.free(token) }
     }
 
     /// `fmi2SerializedFMUstateSize` and `fmi2SerializeFMUstate`
     pub(crate) fn serialize(&self, token: usize) -> Call<Vec<u8>> {
         check_serializable::<S>()?;
         let mut out = StateWriter::new();
-        self.saved(token)?.write(&mut out);
+        self.core.saved(token)?.write(&mut out);
         Ok(seal(self.guid, &out.into_bytes()))
     }
 
@@ -66,28 +40,25 @@ impl<S: Slave> Instance<S> {
         if core.exchange != self.core.exchange {
             return Err(StateError::Invalid("it is of an instance of the other interface type".into()).into());
         }
-        if token == 0 {
-            return Ok(self.keep(core));
-        }
-        let slot = self.fmu_states.get_mut(&token);
-        *slot.ok_or(CallError::UnknownFmuState(token))? = core;
-        Ok(token)
-    }
-
-    fn keep(&mut self, core: Core<S>) -> usize {
-        let token = fresh_token();
-        self.fmu_states.insert(token, core);
-        token
-    }
-
-    fn saved(&self, token: usize) -> Call<&Core<S>> {
-        let saved = self.fmu_states.get(&token);
-        saved.ok_or(CallError::UnknownFmuState(token))
+        self.core.add(token, core)
     }
 }
 
 fn check_serializable<S: Slave>() -> Call {
     if S::INFO.can_serialize { Ok(()) } else { Err(CallError::Unsupported("serialised FMU states")) }
+}
+
+impl<S: Slave> Clone for Core<S> {
+    fn clone(&self) -> Self {
+        Self { model: self.model.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let Self { ref model, state, exchange, time, experiment, dirty, last_step } = *source;
+        self.model.clone_from(model);
+        (self.state, self.exchange, self.time) = (state, exchange, time);
+        (self.experiment, self.dirty, self.last_step) = (experiment, dirty, last_step);
+    }
 }
 
 impl<S: Slave> Core<S> {

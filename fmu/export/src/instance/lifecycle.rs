@@ -75,7 +75,8 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2Reset`: a fresh model. Saved FMU states and log settings stay.
     pub(crate) fn reset(&mut self) {
-        self.core = Core::new(self.core.exchange);
+        *self.core = Core::new(self.core.exchange);
+        self.logger.forget_given();
         self.strings.clear();
     }
 }

@@ -2,6 +2,7 @@
 //! call one function here; this module guards panics, keeps the call state and turns errors into statuses.
 
 mod co_simulation;
+mod cores;
 mod derivatives;
 mod fmu_state;
 mod lifecycle;
@@ -10,13 +11,14 @@ mod values;
 
 use crate::call_state::{CallState, Function, Interface, Legality};
 use crate::error::CallError;
+use crate::ffi::guard;
 use crate::guid::Guid;
 use crate::logger::Logger;
 use crate::slave::{Experiment, Slave};
 use co_simulation::LastStep;
 use core::any::Any;
+use cores::Cores;
 use fmi2_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
-use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -24,7 +26,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(crate) type Call<T = ()> = Result<T, CallError>;
 
 /// All that an FMU state holds: the model and what the exporter knows about it.
-#[derive(Clone)]
 pub(crate) struct Core<S> {
     model: S,
     state: CallState,
@@ -39,12 +40,10 @@ pub(crate) struct Core<S> {
 }
 
 /// An instance of a slave.
-pub(crate) struct Instance<S> {
-    core: Core<S>,
+pub(crate) struct Instance<S: Slave> {
+    core: Cores<S>,
     logger: Logger,
     guid: Guid,
-    /// FMU states that the importer holds, by the token that it holds them by.
-    fmu_states: BTreeMap<usize, Core<S>>,
     /// Results of the last `fmi2GetString`.
     strings: Vec<CString>,
 }
@@ -71,14 +70,14 @@ impl<S: Slave> Core<S> {
 impl<S: Slave> Instance<S> {
     /// A fresh instance.
     pub(crate) fn new(exchange: bool, logger: Logger, guid: Guid) -> Self {
-        Self { core: Core::new(exchange), logger, guid, fmu_states: BTreeMap::new(), strings: Vec::new() }
+        Self { core: Cores::new(Core::new(exchange)), logger, guid, strings: Vec::new() }
     }
 
     /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would
     /// end the process.
     pub(crate) fn free(self) {
-        let Self { core, logger, fmu_states, .. } = self;
-        for core in core::iter::once(core).chain(fmu_states.into_values()) {
+        let Self { core, logger, .. } = self;
+        for core in core.into_all() {
             if let Err(payload) = catch_unwind(AssertUnwindSafe(|| drop(core))) {
                 let error = CallError::Panic(panic_message(payload));
                 logger.status(fmi2Error, format_args!("{}: {error}", Function::FreeInstance.name()));
@@ -86,20 +85,27 @@ impl<S: Slave> Instance<S> {
         }
     }
 
-    /// Runs one C function: state check, the call itself behind a panic guard, then status, log and new state.
+    /// Runs one C function: state check and the call itself behind a panic guard, then status, log and new state.
+    #[inline]
     pub(crate) fn run(&mut self, function: Function, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
-        let result = self.check_state(function).and_then(|()| {
-            // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
-            // values are for debugging only and from which restoring a state or a reset replaces it.
-            catch_unwind(AssertUnwindSafe(|| {
+        // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
+        // values are for debugging only and from which restoring a state or a reset replaces it.
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            let result = self.check_state(function).and_then(|()| {
                 self.core.model.on_call(function);
                 call(self)
-            }))
-            .unwrap_or_else(|payload| Err(CallError::Panic(panic_message(payload))))
-        });
-        self.conclude(function, result)
+            });
+            result.map_err(Box::new) // so that there is little to hand on
+        }));
+        match result {
+            Ok(Ok(())) if self.logger.take_warned() => fmi2Warning,
+            Ok(Ok(())) => fmi2OK,
+            Ok(Err(error)) => self.fail(function, &error),
+            Err(payload) => self.fail(function, &CallError::Panic(panic_message(payload))),
+        }
     }
 
+    #[inline]
     fn check_state(&self, function: Function) -> Call {
         let state = self.core.state;
         let interface = if self.core.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
@@ -115,18 +121,19 @@ impl<S: Slave> Instance<S> {
     }
 
     /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued".
-    fn conclude(&mut self, function: Function, result: Call) -> fmi2Status {
-        let warned = self.logger.take_warned();
-        let Err(error) = result else {
-            return if warned { fmi2Warning } else { fmi2OK };
-        };
+    #[cold]
+    fn fail(&mut self, function: Function, error: &CallError) -> fmi2Status {
         let status = error.status();
-        match status {
-            fmi2Error => self.core.state = CallState::Error,
-            fmi2Fatal => self.core.state = CallState::Fatal,
-            _ => {}
-        }
-        self.logger.status(status, format_args!("{}: {error}", function.name()));
+        self.logger.take_warned();
+        guard((), || self.logger.status(status, format_args!("{}: {error}", function.name())));
+        let state = match status {
+            fmi2Error => CallState::Error,
+            fmi2Fatal => CallState::Fatal,
+            _ => return status,
+        };
+        // A saved state that is the present one and cannot be copied is lost; then nothing is to be copied any more.
+        guard((), || self.core.settle());
+        self.core.state = state;
         status
     }
 
@@ -140,7 +147,8 @@ impl<S: Slave> Instance<S> {
             self.core.model.update();
             self.core.dirty = false;
         } else if matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
-            self.core.model.place(self.core.time, None)?;
+            let time = self.core.time;
+            self.core.model.place(time, None)?;
             self.core.dirty = false;
         }
         Ok(())

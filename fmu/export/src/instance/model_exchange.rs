@@ -106,7 +106,8 @@ impl<S: Slave> Instance<S> {
         check_count("nx", states.len(), states_and_derivatives(S::variables()).count())?;
         check_states::<S>(states)?;
         self.core.dirty = false;
-        Ok(self.core.model.place(self.core.time, Some(states))?)
+        let time = self.core.time;
+        Ok(self.core.model.place(time, Some(states))?)
     }
 
     /// `fmi2GetContinuousStates`

@@ -30,7 +30,7 @@ impl Harvester {
     /// Changes of what an impact adds when its speed and the wall's velocity change by so much, m/s.
     pub(in crate::harvester) fn ledger_change(&self, hit: &Hit, speed_change: f64, wall_change: f64) -> LedgerChange {
         let (r, dr) = (self.parameters.restitution, self.tangent.restitution());
-        let (speed, wall) = ([hit.speed, speed_change], [hit.wall, wall_change]);
+        let (speed, wall) = ([hit.speed, speed_change], [hit.wall.velocity, wall_change]);
         let jump = hit.side.sign() * (1.0 + r);
         let jump_change = jump * speed_change + hit.side.sign() * dr * hit.speed;
         LedgerChange {

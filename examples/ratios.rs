@@ -1,0 +1,175 @@
+//! Prints the table of the README's section on speed from what the benchmarks measured last:
+//! `cargo bench && cargo run --release --example ratios`.
+//!
+//! Exit code 1 if a row is missing: a benchmark has not run, or ran so long before or after its baseline that the
+//! machine may have been another.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, SystemTime};
+
+use anyhow::{Context as _, ensure};
+use serde_json::Value;
+
+/// A benchmark: its file, Criterion's group, and the name in the group.
+type Measured = (&'static str, &'static str, &'static str);
+
+/// What is asked of a ratio.
+enum Asked {
+    /// Ours takes at most so many times the time of the baseline.
+    AtMost(f64),
+    /// Ours is at least so many times as fast.
+    Faster(f64),
+    /// Nothing.
+    Nothing,
+}
+
+struct Row {
+    what: &'static str,
+    ours: Measured,
+    baseline: Measured,
+    asked: Asked,
+}
+
+const BALL: &str = "bouncing ball in C";
+const STEP: &str = "doStep without impact";
+const STATE: &str = "get, set and free FMU state";
+const ROLLBACK: &str = "get FMU state, doStep, set, free";
+const CALLS: &str = "100 s of fig14 in calls";
+const MOTION: &str = "100 s";
+const NOISE: &str = "phase noise, 100 s";
+const ENSEMBLE: &str = "phase noise, 8 runs of 20 s";
+const CIRCUIT: &str = "10 s of fig14, shared node, series Zener";
+
+const ROWS: &[Row] = &[
+    Row {
+        what: "`fmi2DoStep`, 1 ms without an impact; a bouncing ball in C",
+        ours: ("calls", STEP, "harvester"),
+        baseline: ("calls", STEP, BALL),
+        asked: Asked::AtMost(1.5),
+    },
+    Row {
+        what: "`fmi2GetFMUstate`, `fmi2SetFMUstate`, `fmi2FreeFMUstate`; a bouncing ball in C",
+        ours: ("calls", STATE, "harvester"),
+        baseline: ("calls", STATE, BALL),
+        asked: Asked::AtMost(1.5),
+    },
+    Row {
+        what: "the same with a step in between, which is taken back; a bouncing ball in C",
+        ours: ("calls", ROLLBACK, "harvester"),
+        baseline: ("calls", ROLLBACK, BALL),
+        asked: Asked::Nothing,
+    },
+    Row {
+        what: "100 s of Fig. 14 in 100,000 calls of `fmi2DoStep`; the paper's Runge-Kutta at 1e-5 s",
+        ours: ("calls", CALLS, "doStep, 1 ms"),
+        baseline: ("calls", CALLS, "Runge-Kutta as the paper"),
+        asked: Asked::Faster(50.0),
+    },
+    Row {
+        what: "100 s of Fig. 14 in one go; the paper's Runge-Kutta at 1e-5 s",
+        ours: ("harvester", MOTION, "fig14, event-driven"),
+        baseline: ("harvester", MOTION, "fig14, Runge-Kutta as the paper"),
+        asked: Asked::Faster(2000.0),
+    },
+    Row {
+        what: "100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample",
+        ours: ("noise", NOISE, "in blocks"),
+        baseline: ("noise", NOISE, "C, Runge-Kutta"),
+        asked: Asked::Faster(10.0),
+    },
+    Row {
+        what: "the same; a plain program in C, closed form sample by sample",
+        ours: ("noise", NOISE, "in blocks"),
+        baseline: ("noise", NOISE, "C, closed form"),
+        asked: Asked::Nothing,
+    },
+    Row {
+        what: "8 runs of 20 s of Fig. 17 on two threads; on one",
+        ours: ("noise", ENSEMBLE, "threads: 2"),
+        baseline: ("noise", ENSEMBLE, "threads: 1"),
+        asked: Asked::Faster(1.8),
+    },
+    Row {
+        what: "circuit, 10 s of Fig. 14, ideal diodes; ngspice",
+        ours: ("circuit", CIRCUIT, "embedded, ideal diodes"),
+        baseline: ("circuit", CIRCUIT, "ngspice, batch"),
+        asked: Asked::Nothing,
+    },
+    Row {
+        what: "circuit, 10 s of Fig. 14, exponential diodes; ngspice",
+        ours: ("circuit", CIRCUIT, "embedded, exponential diodes"),
+        baseline: ("circuit", CIRCUIT, "ngspice, batch"),
+        asked: Asked::Nothing,
+    },
+];
+
+/// Longest time between two measurements that are compared.
+const APART: Duration = Duration::from_secs(3600);
+
+/// Median time of one iteration, s, and when it was measured.
+fn measured((bench, group, name): Measured) -> anyhow::Result<(f64, SystemTime)> {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let name = name.replace(':', "_"); // as Criterion names its folders
+    let path = target.join("criterion").join(group).join(name).join("new/estimates.json");
+    let text = std::fs::read_to_string(&path)
+        .with_context(|| format!("no {}; run cargo bench --bench {bench}", path.display()))?;
+    let modified = std::fs::metadata(&path).and_then(|data| data.modified());
+    let modified = modified.with_context(|| path.display().to_string())?;
+    let estimates: Value = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+    let median = estimates["median"]["point_estimate"].as_f64();
+    Ok((1e-9 * median.with_context(|| format!("{} has no median", path.display()))?, modified))
+}
+
+fn show(seconds: f64) -> String {
+    let (factor, unit) = match seconds {
+        s if s < 1e-6 => (1e9, "ns"),
+        s if s < 1e-3 => (1e6, "us"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let value = seconds * factor;
+    let digits = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{value:.digits$} {unit}")
+}
+
+fn faster(ratio: f64) -> String {
+    let digits = usize::from(ratio < 10.0) + usize::from(ratio < 100.0);
+    format!("{ratio:.digits$} times as fast")
+}
+
+fn row(row: &Row) -> anyhow::Result<String> {
+    let ((ours, at), (baseline, other)) = (measured(row.ours)?, measured(row.baseline)?);
+    let apart = at.duration_since(other).unwrap_or_else(|earlier| earlier.duration());
+    ensure!(
+        apart <= APART,
+        "{:?} was measured {} s apart from {:?}, which must be at most {} s; run cargo bench --bench {}",
+        row.ours.2,
+        apart.as_secs(),
+        row.baseline.2,
+        APART.as_secs(),
+        row.ours.0
+    );
+    let (ratio, asked) = match row.asked {
+        Asked::AtMost(bound) => (format!("{:.2} of its time", ours / baseline), format!("at most {bound}")),
+        Asked::Faster(bound) => (faster(baseline / ours), format!("at least {bound}")),
+        Asked::Nothing if ours > baseline => (format!("{:.2} of its time", ours / baseline), String::new()),
+        Asked::Nothing => (faster(baseline / ours), String::new()),
+    };
+    Ok(format!("| {} | {} | {} | {ratio} | {asked} |", row.what, show(ours), show(baseline)))
+}
+
+fn main() -> ExitCode {
+    let mut complete = true;
+    println!("| what; beside what | ours | baseline | ratio | asked |\n|---|---|---|---|---|");
+    for entry in ROWS {
+        match row(entry) {
+            Ok(line) => println!("{line}"),
+            Err(error) => {
+                complete = false;
+                eprintln!("no row \"{}\": {error:#}", entry.what);
+            }
+        }
+    }
+    if complete { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

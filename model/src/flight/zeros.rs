@@ -1,0 +1,127 @@
+//! Zeros of the derivatives of dz inside a window.
+
+use core::f64::consts::TAU;
+
+use super::Flight;
+use crate::elementary::fraction;
+
+/// A place of a flight: an end of a window or a zero of a derivative, and what the next lower derivative is there.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Knot {
+    /// Time since the start of the flight, s.
+    pub(super) tau: f64,
+    /// The lower derivative: dz, m, where the slope is zero.
+    pub(super) value: f64,
+    /// Sine and cosine of the angle.
+    pub(super) sine: [f64; 2],
+}
+
+/// Places in increasing order. A constant plus a harmonic function has two zeros in a period; by Rolle's theorem each lower
+/// derivative has at most one more than the one above.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Knots {
+    list: [Knot; 4],
+    len: usize,
+}
+
+impl Knots {
+    fn push(&mut self, knot: Knot) {
+        if self.len < self.list.len() {
+            self.list[self.len] = knot;
+            self.len += 1;
+        }
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = Knot> {
+        self.list[..self.len].iter().copied()
+    }
+}
+
+impl Flight {
+    /// The place at `tau`, s, where the angle has this sine and cosine, with derivative number `order`.
+    pub(super) fn knot(&self, order: usize, tau: f64, sine: [f64; 2]) -> Knot {
+        Knot { tau, value: self.derivatives(tau, sine)[order], sine }
+    }
+
+    /// Zeros of derivative number `order` strictly between `begin` and `end`.
+    pub(super) fn zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
+        let [.., c2, c3] = self.coefficients;
+        let constant = match order {
+            1 => c2 == 0.0 && c3 == 0.0,
+            2 => c3 == 0.0,
+            _ => true,
+        };
+        if constant { self.harmonic_zeros(order, begin, end) } else { self.zeros_between(order, begin, end) }
+    }
+
+    /// The zeros lie between those of the next higher derivative, where this one changes its sign.
+    fn zeros_between(&self, order: usize, begin: f64, end: f64) -> Knots {
+        let mut zeros = Knots::default();
+        let mut from = self.knot(order, begin, self.sine_at(begin));
+        let last = self.knot(order, end, self.sine_at(end));
+        for to in self.zeros(order + 1, begin, end).iter().chain(core::iter::once(last)) {
+            let sign = from.value.signum();
+            if sign != to.value.signum() {
+                let tau = bracketed_root(from.tau, to.tau, |tau| {
+                    let derivatives = self.derivatives(tau, self.sine_at(tau));
+                    (sign * derivatives[order], sign * derivatives[order + 1])
+                });
+                zeros.push(self.knot(order - 1, tau, self.sine_at(tau)));
+            }
+            from = to;
+        }
+        zeros
+    }
+
+    /// Zeros of a derivative whose polynomial part is constant: sine or cosine have a given value twice in a period.
+    fn harmonic_zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
+        let [_, c1, c2, c3] = self.coefficients;
+        let omega = self.omega();
+        let (level, is_cosine) = match order {
+            1 => (-c1 / (self.swing * omega), false),
+            2 => (-2.0 * c2 / (self.swing * omega * omega), true),
+            _ => (6.0 * c3 / (self.swing * omega * omega * omega), false),
+        };
+        let mut zeros = Knots::default();
+        if level.is_nan() || level.abs() > 1.0 {
+            return zeros; // the constant outweighs the harmonic part, or both are zero
+        }
+        let first = level.asin() * (1.0 / TAU);
+        let other = ((1.0 - level) * (1.0 + level)).sqrt();
+        // cos x is the sine of an angle that is ahead by a quarter of a turn.
+        let at_begin = self.turns_at(begin) + if is_cosine { 0.25 } else { 0.0 };
+        let mut knots = [(first, other), (0.5 - first, -other)].map(|(turns, other)| {
+            let tau = begin + fraction(turns - at_begin) * self.window_length();
+            self.knot(order - 1, tau, if is_cosine { [-other, level] } else { [level, other] })
+        });
+        if knots[1].tau < knots[0].tau {
+            knots.swap(0, 1);
+        }
+        knots.into_iter().filter(|knot| knot.tau > begin && knot.tau < end).for_each(|knot| zeros.push(knot));
+        zeros
+    }
+}
+
+/// Root of a monotone `function` (value and slope) that is positive at `low` and not at `high`: Newton's method, with
+/// bisection wherever it would leave the bracket.
+pub(crate) fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    const MAX_ITERATIONS: u32 = 200; // bisection alone needs at most some 110 to exhaust the digits of a double
+    let (mut low, mut high) = (low, high);
+    let mut x = 0.5 * (low + high);
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = function(x);
+        if value > 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let converged = (next - x).abs() <= f64::EPSILON * x.abs();
+        x = next;
+        if converged || high - low <= f64::EPSILON * high.abs() {
+            break;
+        }
+    }
+    x
+}

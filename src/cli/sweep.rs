@@ -1,0 +1,248 @@
+//! `videg sweep`: many runs over parameters and seeds; `videg sweep merge`: shards put together.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+use anyhow::Context as _;
+use clap::{Args, Subcommand};
+use serde::Serialize;
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use super::progress::RunBar;
+use super::simulate::file_list;
+use super::sweep_options::What;
+use super::{Verdict, format, output, packaging};
+use crate::fmi::Fmu;
+use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
+
+/// Arguments of the verb.
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+    #[command(flatten)]
+    what: What,
+    /// Run any FMU for FMI 2.0 co-simulation, in place of the harvester
+    #[arg(long, value_name = "FILE")]
+    fmu: Option<PathBuf>,
+    /// Run share i of n only, for `sweep merge` to put together
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    /// Runs that go on at once [default: one on each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Folder for the results; the same command with the same folder goes on where it ended
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
+    output: PathBuf,
+    /// Begin anew, whatever is in the folder
+    #[arg(long)]
+    fresh: bool,
+    /// Check the sweep and print how many points and runs it has; run and write nothing
+    #[arg(long)]
+    check: bool,
+    /// Print one JSON object on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Put shards together: the same bytes as an undivided sweep
+    Merge(Merge),
+}
+
+#[derive(Args)]
+struct Merge {
+    /// Folders with shards
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR")]
+    output: PathBuf,
+    /// Print one JSON object on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` says.
+#[derive(Serialize)]
+struct Output<'a> {
+    case: &'a str,
+    design: Design,
+    points: u64,
+    samples: u64,
+    /// Runs of the sweep, or of the shard.
+    runs: u64,
+    failed: u64,
+    /// Runs that were there from the beginning.
+    resumed_from: u64,
+    elapsed_s: f64,
+    rate_runs_per_s: f64,
+    shard: Option<String>,
+    files: &'a [PathBuf],
+}
+
+/// What `--check --json` says.
+#[derive(Serialize)]
+struct Counts<'a> {
+    case: &'a str,
+    design: Design,
+    points: u64,
+    samples: u64,
+    /// Runs of the whole sweep.
+    runs: u64,
+}
+
+/// What `--json` says of a merge.
+#[derive(Serialize)]
+struct Merged<'a> {
+    runs: u64,
+    failed: u64,
+    elapsed_s: f64,
+    files: &'a [PathBuf],
+}
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    match &arguments.verb {
+        Some(Verb::Merge(merge)) => put_together(merge),
+        None => carry_out(arguments),
+    }
+}
+
+fn put_together(merge: &Merge) -> anyhow::Result<Verdict> {
+    let started = Instant::now();
+    let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
+    let elapsed_s = started.elapsed().as_secs_f64();
+    if merge.json {
+        output::print(&serde_json::to_string_pretty(&Merged { runs, failed, elapsed_s, files: &files })?)?;
+    } else {
+        output::print(&format!("merged {runs} runs, {failed} of them failed\n\n{}", file_list(&files)))?;
+    }
+    Ok(verdict(runs, failed))
+}
+
+/// A sweep none of whose runs came to anything has failed.
+fn verdict(runs: u64, failed: u64) -> Verdict {
+    if runs > 0 && failed == runs { Verdict::Failed } else { Verdict::Passed }
+}
+
+fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
+    let started = Instant::now();
+    let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
+    let design = arguments.what.design.or(file.design).unwrap_or_default();
+    let fmu = arguments.fmu.as_deref().map(Fmu::open).transpose()?;
+    let own = sweep::harvester_description()?;
+    let description = fmu.as_ref().map_or(&own, Fmu::description);
+    let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
+    let sweep = Sweep::new(arguments.what.request(file, description, fingerprint)?)?;
+    if arguments.check {
+        return show_counts(arguments, &sweep, design);
+    }
+    let engine = match (fmu, BuiltIn::new(&sweep)) {
+        (Some(fmu), _) => Engine::Fmu(fmu),
+        (None, Some(built_in)) => Engine::BuiltIn(Box::new(built_in)),
+        // What the model itself does not offer goes through its FMU, with the same numbers.
+        (None, None) => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
+    };
+    let (stop, signal) = signals()?;
+    let report = follow(arguments, &sweep, &engine, &stop)?;
+    if report.is_complete() {
+        return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
+    }
+    let (done, runs) = (report.done, report.runs);
+    eprintln!("videg: interrupted after {done} of {runs} runs; the same command without --fresh goes on from there");
+    Ok(Verdict::Stopped(u8::try_from(signal.load(Ordering::Relaxed))?))
+}
+
+fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Verdict> {
+    let (points, samples, runs) = (sweep.points(), sweep.samples(), sweep.runs());
+    output::print(&if arguments.json {
+        serde_json::to_string_pretty(&Counts { case: sweep.name(), design, points, samples, runs })?
+    } else {
+        format!("sweep {}: {design} of {points} points, {samples} samples each: {runs} runs", sweep.name())
+    })?;
+    Ok(Verdict::Passed)
+}
+
+/// Runs the sweep, with progress.
+fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBool) -> Result<Report, SweepError> {
+    let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let job = Job {
+        folder: &arguments.output,
+        shard: arguments.shard,
+        jobs: arguments.jobs.map_or_else(cores, usize::from),
+        fresh: arguments.fresh,
+        stop,
+    };
+    let mut bar = RunBar::new(format!("sweep {}", sweep.name()));
+    let report = sweep::run(sweep, engine, &job, &mut bar);
+    bar.finish();
+    report
+}
+
+fn show(
+    arguments: &Arguments,
+    sweep: &Sweep,
+    design: Design,
+    report: &Report,
+    elapsed_s: f64,
+) -> anyhow::Result<Verdict> {
+    let result = Output {
+        case: sweep.name(),
+        design,
+        points: sweep.points(),
+        samples: sweep.samples(),
+        runs: report.runs,
+        failed: report.failed,
+        resumed_from: report.resumed_from,
+        elapsed_s,
+        rate_runs_per_s: (report.runs - report.resumed_from) as f64 / elapsed_s,
+        shard: arguments.shard.map(|shard| shard.to_string()),
+        files: &report.files,
+    };
+    if arguments.json {
+        output::print(&serde_json::to_string_pretty(&result)?)?;
+    } else {
+        output::print(&text(&result))?;
+    }
+    if report.failed > 0 {
+        let (failed, runs) = (report.failed, report.runs);
+        eprintln!("videg: warning: {failed} of {runs} runs failed; the column error says why");
+    }
+    // Whether all runs of the sweep failed is seen when the shards are merged.
+    Ok(if arguments.shard.is_some() { Verdict::Passed } else { verdict(report.runs, report.failed) })
+}
+
+fn text(result: &Output<'_>) -> String {
+    let Output { case, design, points, samples, runs, failed, resumed_from, elapsed_s, rate_runs_per_s, .. } = result;
+    let share = result.shard.as_ref().map_or_else(String::new, |shard| format!(", shard {shard}"));
+    let work = if resumed_from == runs {
+        "all of them were there already: nothing to do".to_owned()
+    } else {
+        let resumed = if *resumed_from > 0 { format!(", after {resumed_from} that were there") } else { String::new() };
+        let (rate, seconds) = (format::significant(*rate_runs_per_s, 3), format::significant(*elapsed_s, 3));
+        format!("{rate} runs/s, {seconds} s{resumed}")
+    };
+    format!(
+        "sweep {case}: {design} of {points} points, {samples} samples each{share}\n\
+         {runs} runs, {failed} of them failed; {work}\n\n{}",
+        file_list(result.files)
+    )
+}
+
+/// A flag that an interruption sets, and its number. The second one ends the process at once.
+fn signals() -> anyhow::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
+    let (stop, number) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+    for signal in [SIGINT, SIGTERM] {
+        let value = usize::try_from(signal).unwrap_or_default();
+        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))
+            .and_then(|_| signal_hook::flag::register_usize(signal, Arc::clone(&number), value))
+            .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
+            .with_context(|| format!("cannot wait for signal {signal}"))?;
+    }
+    Ok((stop, number))
+}

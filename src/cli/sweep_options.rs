@@ -1,0 +1,124 @@
+//! What `videg sweep` is asked for, from options and sweep file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::options::{Window, parse_window};
+use super::{output, settings};
+use crate::fmi::ModelDescription;
+use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
+use crate::sweep::{Design, Request, SweepFile, Times, Vary};
+
+/// What is swept. An option wins over the same key of the file.
+#[derive(Args)]
+pub struct What {
+    /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
+    #[arg(value_name = "FILE.toml")]
+    pub file: Option<PathBuf>,
+    /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
+    #[arg(long, value_name = "NAME")]
+    case: Option<String>,
+    /// Set a parameter or input in all runs; may be repeated
+    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
+    settings: Vec<String>,
+    /// Vary a parameter or input: name=from:to:count for a grid, name=from:to for the other designs, with log: before
+    /// from for equal ratios; name=a,b,c for any type; may be repeated
+    #[arg(long, value_name = "VARIABLE=VALUES")]
+    vary: Vec<String>,
+    /// How points are chosen [default: grid]
+    #[arg(long, value_enum, value_name = "DESIGN")]
+    pub design: Option<Design>,
+    /// Number of points of lhs and random; a grid has as many as it has
+    #[arg(long, value_name = "N")]
+    points: Option<u64>,
+    /// Runs of each point, each with other noise [default: 1]
+    #[arg(long, value_name = "N")]
+    samples: Option<u64>,
+    /// Seed of the design, and of the noise of the first run; each further run has the next [default: 1]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Give sample i the same seed in all points (common random numbers)
+    #[arg(long)]
+    common_seeds: bool,
+    /// The variable that takes the seed [default: excitation.seed]
+    #[arg(long, value_name = "VARIABLE")]
+    seed_variable: Option<String>,
+    /// End of a run, s [default: 100]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Communication step, s [default: from edge to edge of the window; of other FMUs their own, or 1/1000 of the run]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
+    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
+    window: Option<Window>,
+    /// Record a variable at the end of each run; may be repeated
+    #[arg(long, value_name = "VARIABLE")]
+    record: Vec<String>,
+}
+
+impl What {
+    /// The sweep of the model that `description` is of, with what `file` says and the `fingerprint` of an FMU that is
+    /// not our own.
+    pub fn request<'a>(
+        &self,
+        file: SweepFile,
+        description: &'a ModelDescription,
+        fingerprint: Option<String>,
+    ) -> anyhow::Result<Request<'a>> {
+        let is_harvester = description.variable("gain.voltage").is_ok();
+        let model = &description.model_name;
+        let has_case = self.case.is_some() || file.case.case.is_some();
+        anyhow::ensure!(is_harvester || !has_case, "--case: {model} is not the harvester, of which the cases are");
+        let step = self.step.or(file.case.step);
+        let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
+        let name = case.name.clone();
+        let scenario = self.scenario(case, description, is_harvester)?;
+        let own_step = || description.default_experiment.step_size.unwrap_or(scenario.until / 1000.0);
+        let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<_, _>>()?;
+        Ok(Request {
+            description,
+            fmu: fingerprint,
+            settings: if is_harvester { mechanical(description, &scenario)? } else { scenario.changes().to_vec() },
+            times: Times {
+                until: scenario.until,
+                step: if is_harvester { step } else { Some(step.unwrap_or_else(own_step)) },
+                window: scenario.window,
+            },
+            name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
+            vary: [vary, asked].concat(),
+            design: self.design.or(design).unwrap_or_default(),
+            points: self.points.or(points),
+            samples: self.samples.or(samples).unwrap_or(1),
+            seed: self.seed.or(seed).unwrap_or(1),
+            common_seeds: self.common_seeds || common_seeds.unwrap_or(false),
+            seed_variable: self.seed_variable.clone().or(seed_variable),
+            record: if self.record.is_empty() { record } else { self.record.clone() },
+        })
+    }
+
+    fn scenario(
+        &self,
+        file: CaseFile,
+        description: &ModelDescription,
+        is_harvester: bool,
+    ) -> Result<Scenario, ScenarioError> {
+        let own_end = || description.default_experiment.stop_time.filter(|_| !is_harvester);
+        let until = self.until.or(file.until).or_else(own_end);
+        let settings = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
+        let window = self.window.map(|Window(window)| window);
+        scenario::Request { case: self.case.clone(), file: Some(file), settings, until, step: self.step, window }
+            .resolve()
+    }
+}
+
+/// The settings of the harvester. Those of a circuit are left out with a warning.
+fn mechanical(description: &ModelDescription, scenario: &Scenario) -> anyhow::Result<Vec<Setting>> {
+    let (mechanical, electrical) = settings::split(description, scenario)?;
+    if !electrical.is_empty() {
+        let names: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
+        output::warn(&[format!("{} left out: sweep runs no circuit", names.join(", "))]);
+    }
+    Ok(mechanical)
+}

@@ -1,0 +1,124 @@
+//! The document `sweep.json`: everything that decides the results of a sweep.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use sha2::{Digest as _, Sha256};
+
+use super::column::Column;
+use super::times::Times;
+use super::{Design, Vary};
+use crate::scenario::Setting;
+
+/// The document `sweep.json`: the same bytes for the same sweep.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    pub videg: &'static str,
+    pub case: &'a str,
+    pub model: &'a str,
+    pub guid: &'a str,
+    /// SHA-256 of the archive, if the model is not the harvester of this project.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fmu: Option<&'a str>,
+    pub settings: Vec<Setting>,
+    #[serde(flatten)]
+    pub times: Times,
+    pub design: Design,
+    pub vary: &'a [Vary],
+    pub points: u64,
+    pub samples: u64,
+    pub runs: u64,
+    pub seed: u64,
+    pub common_seeds: bool,
+    pub seed_variable: Option<&'a str>,
+    pub columns: &'a [Column],
+    /// SHA-256 of the above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
+}
+
+/// What is needed of the document to put results together.
+#[derive(Debug, Deserialize)]
+pub(super) struct Kept {
+    pub videg: String,
+    pub runs: u64,
+    pub columns: Vec<Column>,
+}
+
+impl Document<'_> {
+    /// The document with its fingerprint, as it stands in the file.
+    pub fn sealed(mut self) -> String {
+        self.sha256 = Some(sha256(self.json()));
+        self.json() + "\n"
+    }
+
+    fn json(&self) -> String {
+        // Numbers, texts and lists of them: nothing that JSON cannot say.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+/// SHA-256 of `content`, in hexadecimal digits.
+pub(super) fn sha256(content: impl AsRef<[u8]>) -> String {
+    Sha256::digest(content).iter().fold(String::new(), |mut digits, byte| {
+        let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
+        digits.extend([digit(byte >> 4), digit(byte & 15)]);
+        digits
+    })
+}
+
+/// In what two documents differ, for an error message.
+pub(super) fn differences(there: &str, here: &str) -> String {
+    /// They follow from the rest.
+    const DERIVED: [&str; 4] = ["columns", "points", "runs", "sha256"];
+    let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
+    let (Some(there), Some(here)) = (read(there), read(here)) else {
+        return "what is there is no document of a sweep".to_owned();
+    };
+    let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
+    let (derived, differ): (Vec<&String>, Vec<_>) =
+        keys.filter(|key| there.get(*key) != here.get(*key)).partition(|key| DERIVED.contains(&key.as_str()));
+    let shown = if differ.is_empty() { derived } else { differ };
+    let all: Vec<_> = shown
+        .iter()
+        .map(|key| {
+            let (there, here) = (there.get(*key), here.get(*key));
+            format!("{key} is {}, not {}", without(there, here), without(here, there))
+        })
+        .collect();
+    all.join("; ")
+}
+
+/// A value in few words; of a list, what the other has not, if that is all in which they differ.
+fn without(value: Option<&Value>, other: Option<&Value>) -> String {
+    const LONGEST: usize = 200;
+    let text = match (value, other) {
+        (None, _) => "nothing".to_owned(),
+        (Some(Value::Array(items)), Some(Value::Array(others))) => {
+            // Lists that differ in order or repetition alone are shown whole.
+            let missing = |from: &[Value], item: &Value| !from.contains(item);
+            let alike =
+                !items.iter().any(|item| missing(others, item)) && !others.iter().any(|item| missing(items, item));
+            let own = items.iter().filter(|item| alike || missing(others, item)).map(Value::to_string);
+            format!("[{}]", own.collect::<Vec<_>>().join(", "))
+        }
+        (Some(value), _) => value.to_string(),
+    };
+    if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST).chain("...".chars()).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_name_what_only_one_has_and_lists_in_another_order_as_a_whole() {
+        for (there, here, expected) in [
+            (r#"{"window": [1, 2]}"#, r#"{"window": [1, 3]}"#, "window is [2], not [3]"),
+            (r#"{"vary": ["a", "b"]}"#, r#"{"vary": ["b", "a"]}"#, r#"vary is ["a", "b"], not ["b", "a"]"#),
+            (r#"{"seed": 1, "runs": 2}"#, r#"{"seed": 1, "runs": 3}"#, "runs is 2, not 3"),
+            ("{", "{}", "what is there is no document of a sweep"),
+        ] {
+            assert_eq!(differences(there, here), expected);
+        }
+    }
+}

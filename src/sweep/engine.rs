@@ -1,0 +1,184 @@
+//! What runs the runs: the model itself, or an FMU.
+
+use videg_model::{Harvester, ModelError, Parameters};
+
+use super::plan::{GAINS, Results, Run};
+use super::times::Driven;
+use super::{Sweep, SweepError};
+use crate::cosim::Gains;
+use crate::fmi::{FmiError, Fmu, Instance, Logging, Status, Value, Variable};
+
+/// What runs the runs.
+pub enum Engine {
+    /// The model behind the harvester FMU, without the FMU: the same numbers to the last bit.
+    BuiltIn(Box<BuiltIn>),
+    /// An FMU; a run is an instance.
+    Fmu(Fmu),
+}
+
+/// The model with the settings that all runs share.
+pub struct BuiltIn {
+    parameters: Parameters,
+    /// How the varied parameters are set, in their order, and the seed.
+    setters: Vec<Setter>,
+}
+
+#[derive(Clone, Copy)]
+enum Setter {
+    Quantity(fn(&mut Parameters, f64)),
+    Choice(fn(&mut Parameters, i32)),
+}
+
+impl Engine {
+    /// How many runs may go on at once.
+    pub(super) fn at_once(&self, jobs: usize) -> usize {
+        match self {
+            Self::Fmu(fmu) if fmu.description().co_simulation.can_be_instantiated_only_once_per_process => 1,
+            _ => jobs,
+        }
+    }
+
+    /// What `run` comes to; the inner error is why it failed.
+    ///
+    /// # Errors
+    /// If no run can go on.
+    pub(super) fn run(&self, sweep: &Sweep, run: &Run) -> Result<Result<Results, String>, SweepError> {
+        if let Err(error) = sweep.check(run) {
+            return Ok(Err(error.to_string()));
+        }
+        match self {
+            Self::BuiltIn(built_in) => Ok(built_in.run(sweep, run).map_err(|error| error.to_string())),
+            Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
+                Ok(results) => Ok(Ok(results)),
+                Err(error) if is_final(&error) => Err(error.into()),
+                Err(error) => Ok(Err(error.to_string())),
+            },
+        }
+    }
+}
+
+/// Whether no instance of the FMU can go on.
+fn is_final(error: &FmiError) -> bool {
+    matches!(error, FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. })
+}
+
+impl BuiltIn {
+    /// The model, if all that `sweep` sets are parameters and it records nothing.
+    pub fn new(sweep: &Sweep) -> Option<Self> {
+        if !sweep.record.is_empty() {
+            return None;
+        }
+        let mut parameters = Parameters::default();
+        for (variable, value) in &sweep.settings {
+            Setter::of(variable)?.set(&mut parameters, value);
+        }
+        let varied = sweep.points.axes().iter().map(|axis| &axis.variable);
+        let varied = varied.chain(sweep.seeds.as_ref().map(|seeds| &seeds.variable));
+        Some(Self { parameters, setters: varied.map(Setter::of).collect::<Option<_>>()? })
+    }
+
+    fn run(&self, sweep: &Sweep, run: &Run) -> Result<Results, ModelError> {
+        let mut parameters = self.parameters;
+        let seed = run.seed.map(Value::Integer);
+        for (setter, value) in self.setters.iter().zip(run.values.iter().chain(&seed)) {
+            setter.set(&mut parameters, value);
+        }
+        let mut harvester = Harvester::new(&parameters, 0.0)?;
+        let averages = sweep.times.drive(&mut harvester, sweep.times.window[1])?;
+        Ok(Results { averages, recorded: Vec::new() })
+    }
+}
+
+impl Setter {
+    fn of(variable: &Variable) -> Option<Self> {
+        let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == variable.name);
+        let choice = Parameters::CHOICES.iter().find(|choice| choice.name == variable.name);
+        quantity.map(|quantity| Self::Quantity(quantity.set)).or(choice.map(|choice| Self::Choice(choice.set)))
+    }
+
+    /// Sets a value of the variable's type.
+    fn set(self, parameters: &mut Parameters, value: &Value) {
+        match (self, value) {
+            (Self::Quantity(set), Value::Real(number)) => set(parameters, *number),
+            (Self::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
+                set(parameters, *number);
+            }
+            (Self::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
+            _ => {}
+        }
+    }
+}
+
+impl Driven for Harvester {
+    type Error = ModelError;
+
+    fn step(&mut self, time: f64, step: f64) -> Result<(), ModelError> {
+        self.advance(time + step)
+    }
+
+    fn gains(&self) -> Result<Gains, ModelError> {
+        let totals = self.totals();
+        let impacts = i32::try_from(totals.impacts).unwrap_or(i32::MAX);
+        Ok(Gains { voltage: totals.voltage_gain, energy: totals.energy, impacts })
+    }
+}
+
+fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
+    let mut instance = fmu.instantiate("sweep", Logging::default())?;
+    for (variable, value) in &sweep.settings {
+        instance.set_value(variable.value_reference, value)?;
+    }
+    for (axis, value) in sweep.points.axes().iter().zip(&run.values) {
+        instance.set_value(axis.variable.value_reference, value)?;
+    }
+    if let Some((seeds, seed)) = sweep.seeds.as_ref().zip(run.seed) {
+        instance.set_integer(&[seeds.variable.value_reference], &[seed])?;
+    }
+    instance.setup_experiment(0.0, None, None)?;
+    instance.enter_initialization_mode()?;
+    instance.exit_initialization_mode()?;
+    let gains = if sweep.averages { Some(GainReferences::of(fmu)?) } else { None };
+    let mut slave = Slave { instance, gains };
+    let end = if sweep.record.is_empty() { sweep.times.window[1] } else { sweep.times.until };
+    let averages = sweep.times.drive(&mut slave, end)?;
+    let recorded = sweep.record.iter().map(|variable| slave.instance.get_by_name(&variable.name));
+    let results =
+        Results { averages: averages.filter(|_| sweep.averages), recorded: recorded.collect::<Result<_, _>>()? };
+    slave.instance.terminate()?;
+    Ok(results)
+}
+
+struct Slave {
+    instance: Instance,
+    gains: Option<GainReferences>,
+}
+
+/// Value references of the sums.
+struct GainReferences {
+    sums: [u32; 2],
+    impacts: u32,
+}
+
+impl GainReferences {
+    fn of(fmu: &Fmu) -> Result<Self, FmiError> {
+        let reference = |name| fmu.description().variable(name).map(|variable| variable.value_reference);
+        let [voltage, energy, impacts] = GAINS;
+        Ok(Self { sums: [reference(voltage)?, reference(energy)?], impacts: reference(impacts)? })
+    }
+}
+
+impl Driven for Slave {
+    type Error = FmiError;
+
+    fn step(&mut self, time: f64, step: f64) -> Result<(), FmiError> {
+        self.instance.do_step(time, step)
+    }
+
+    fn gains(&self) -> Result<Gains, FmiError> {
+        let Some(GainReferences { sums, impacts }) = &self.gains else { return Ok(Gains::default()) };
+        let (mut values, mut count) = ([0.0; 2], [0]);
+        self.instance.get_real(sums, &mut values)?;
+        self.instance.get_integer(&[*impacts], &mut count)?;
+        Ok(Gains { voltage: values[0], energy: values[1], impacts: count[0] })
+    }
+}

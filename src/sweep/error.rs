@@ -1,0 +1,100 @@
+//! What keeps a sweep from being run, resumed or merged.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::fmi::FmiError;
+use crate::scenario::ScenarioError;
+
+/// Why a sweep could not be run, resumed or merged. Each message names the thing, its value and the bound.
+#[derive(Debug, Error)]
+pub enum SweepError {
+    /// The case, a setting or a time.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The FMU.
+    #[error(transparent)]
+    Fmi(#[from] FmiError),
+    /// An option, or the key of the sweep file of the same name, makes no sense.
+    #[error("--{option}{}{value}: {reason}", if value.is_empty() { "" } else { " " })]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// What was given.
+        value: String,
+        /// What is allowed.
+        reason: String,
+    },
+    /// The file system refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    File {
+        /// What was tried.
+        action: &'static str,
+        /// On which file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// Results could not be written; those before are kept.
+    #[error(
+        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command without --fresh goes \
+         on from there",
+        path.display()
+    )]
+    Full {
+        /// The file.
+        path: PathBuf,
+        /// The first run that is not in it.
+        next: u64,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// A file does not hold what it should.
+    #[error("{}: {reason}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Another process writes the same file.
+    #[error("{} is being written by another process: wait for it, or choose another --output", path.display())]
+    Locked {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Shards that do not make a whole.
+    #[error("cannot merge: {reason}")]
+    Merge {
+        /// What is missing, or there twice.
+        reason: String,
+    },
+    /// The Parquet file.
+    #[error("cannot write {}: {cause}", path.display())]
+    Parquet {
+        /// The file.
+        path: PathBuf,
+        /// What the writer said.
+        cause: parquet::errors::ParquetError,
+    },
+}
+
+impl SweepError {
+    /// An option whose value makes no sense.
+    pub(super) fn option(option: &'static str, value: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::Option { option, value: value.into(), reason: reason.into() }
+    }
+
+    /// For `map_err`: the file system refused to `action` on `path`.
+    pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |cause| Self::File { action, path, cause }
+    }
+
+    /// A file does not hold what it should.
+    pub(super) fn content(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Content { path: path.to_owned(), reason: reason.into() }
+    }
+}

@@ -1,0 +1,142 @@
+//! Sweep files: case files that also say what is varied.
+//!
+//! ```toml
+//! case = "fig14"
+//! until = 60.0
+//! design = "lhs"                 # or "grid" (default), "random"
+//! points = 1000                  # of lhs and random; a grid has as many as it has
+//! samples = 20                   # runs of each point, each with a seed of its own
+//! seed = 7
+//! common_seeds = true            # sample i has the same seed in all points
+//! seed_variable = "excitation.seed"
+//! record = ["cylinder.position"]
+//!
+//! [set]
+//! excitation.phaseNoise = 0.5
+//!
+//! [vary]
+//! membrane.restitution = { from = 0.2, to = 0.9 }
+//! membrane.stiffness = { from = 1e4, to = 1e6, scale = "log" }
+//! initial.outsideGap = ["project", "free"]
+//! ```
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::Table;
+
+use super::{Design, Vary};
+use crate::scenario::{CaseFile, ScenarioError};
+
+/// What a sweep file says.
+#[derive(Debug, Default)]
+pub struct SweepFile {
+    /// What a case file says, too.
+    pub case: CaseFile,
+    /// How points are chosen.
+    pub design: Option<Design>,
+    /// Number of points.
+    pub points: Option<u64>,
+    /// Runs of each point.
+    pub samples: Option<u64>,
+    /// Seed of design and samples.
+    pub seed: Option<u64>,
+    /// Sample i has the same seed in all points.
+    pub common_seeds: Option<bool>,
+    /// The variable that takes the seed.
+    pub seed_variable: Option<String>,
+    /// Variables to record at the end of each run.
+    pub record: Vec<String>,
+    /// Variables to vary.
+    pub vary: Vec<Vary>,
+}
+
+/// The keys that a case file does not have.
+#[derive(Deserialize)]
+struct Layout {
+    design: Option<Design>,
+    points: Option<u64>,
+    samples: Option<u64>,
+    seed: Option<u64>,
+    common_seeds: Option<bool>,
+    seed_variable: Option<String>,
+    #[serde(default)]
+    record: Vec<String>,
+    #[serde(default)]
+    vary: Table,
+}
+
+const KEYS: [&str; 8] = ["design", "points", "samples", "seed", "common_seeds", "seed_variable", "record", "vary"];
+
+impl SweepFile {
+    /// Reads the file at `path`. The sweep is called after it unless it says otherwise.
+    ///
+    /// # Errors
+    /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let shown = path.display().to_string();
+        let text =
+            std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
+        let mut file = Self::parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
+        let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        file.case.name = file.case.name.or_else(stem);
+        Ok(file)
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let said = |error: toml::de::Error| error.to_string().trim_end().to_owned();
+        let table: Table = toml::from_str(text).map_err(said)?;
+        let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
+        let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =
+            own.try_into().map_err(said)?;
+        Ok(Self {
+            case: CaseFile::from_table(case)?,
+            design,
+            points,
+            samples,
+            seed,
+            common_seeds,
+            seed_variable,
+            record,
+            vary: Vary::all_of(&vary)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_above_is_read() {
+        let source = include_str!("file.rs");
+        let example: Vec<_> = source.lines().map_while(|line| line.strip_prefix("//!")).collect();
+        let text = example.join("\n");
+        let file = SweepFile::parse(text.split("```toml").nth(1).unwrap().split("```").next().unwrap()).unwrap();
+        assert_eq!(
+            (file.design, file.points, file.samples, file.seed),
+            (Some(Design::Lhs), Some(1000), Some(20), Some(7))
+        );
+        assert_eq!((file.case.until, file.record), (Some(60.0), vec!["cylinder.position".to_owned()]));
+        let options =
+            ["membrane.restitution=0.2:0.9", "membrane.stiffness=log:1e4:1e6", "initial.outsideGap=project,free"];
+        assert_eq!(file.vary, options.map(|text| Vary::parse(text).unwrap()));
+        assert_eq!((file.common_seeds, file.seed_variable.as_deref()), (Some(true), Some("excitation.seed")));
+        assert_eq!(file.case.settings.len(), 1);
+    }
+
+    #[test]
+    fn what_a_sweep_file_cannot_say_is_an_error_that_names_it() {
+        for (text, named) in [
+            ("untill = 3", "untill"),
+            ("points = -1", "points"),
+            ("design = 'square'", "square"),
+            ("samples = 1.5", "samples"),
+            ("[vary]\na.b = 3", "vary.a.b"),
+            ("points = ", "line 1"),
+        ] {
+            let reason = SweepFile::parse(text).unwrap_err();
+            assert!(reason.contains(named), "{text}: {reason}");
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Whose a folder of results is: its document says of which sweep, and results of no other stand beside it.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::document::differences;
+use super::{Shard, SweepError};
+
+/// Name of the document in a folder of results.
+pub(super) const DOCUMENT: &str = "sweep.json";
+/// Name of the results of a whole sweep.
+pub(super) const RESULTS: &str = "sweep.csv";
+/// What to do about a folder of another sweep.
+const WAY_OUT: &str = "choose another --output, or --fresh to begin anew";
+
+/// Name under which a file is written before it is complete.
+pub(super) fn partial(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With
+/// `fresh` whatever was there goes. The file of the results while they are being written.
+///
+/// # Errors
+/// Results of another sweep; results that another process is writing; a refusal of the file system.
+pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<File, SweepError> {
+    check(folder, document, path, fresh)?;
+    let part = partial(path);
+    let file = lock(&part)?;
+    // Before the lock, another process may have been at it.
+    check(folder, document, path, fresh)?;
+    if fresh {
+        // Results go before the document that says whose they are: killed in between, none are taken for another's.
+        remove(path)?;
+        remove(&path.with_extension("parquet"))?;
+        file.set_len(0).map_err(SweepError::file("empty", &part))?;
+        if read_document(folder)?.is_some_and(|there| there != document) {
+            remove(&folder.join(DOCUMENT))?;
+        }
+    }
+    write_document(folder, document, path)?;
+    Ok(file)
+}
+
+/// That the folder holds this sweep or none; with `fresh`, that no other shard of another sweep would be orphaned.
+fn check(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<(), SweepError> {
+    let there = read_document(folder)?;
+    if there.as_deref() == Some(document) {
+        return Ok(());
+    }
+    let own = [path.to_owned(), partial(path)];
+    if fresh {
+        return match results(folder)?.into_iter().find(|other| !own.contains(other)) {
+            Some(other) => {
+                let reason = "results of another sweep; remove them, or choose another --output";
+                Err(SweepError::content(&other, reason))
+            }
+            None => Ok(()),
+        };
+    }
+    match there {
+        Some(there) => Err(foreign(folder, &there, document, WAY_OUT)),
+        None => match results(folder)?.first() {
+            Some(found) => {
+                let reason = format!("{DOCUMENT}, which says what sweep it belongs to, is not there; {WAY_OUT}");
+                Err(SweepError::content(found, reason))
+            }
+            None => Ok(()),
+        },
+    }
+}
+
+/// That the document in the folder is `document`, if there is one.
+pub(super) fn check_document(folder: &Path, document: &str) -> Result<(), SweepError> {
+    match read_document(folder)? {
+        Some(there) if there != document => Err(foreign(folder, &there, document, "choose another --output")),
+        _ => Ok(()),
+    }
+}
+
+fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError {
+    let reason = format!("it belongs to another sweep ({}); {way_out}", differences(there, here));
+    SweepError::content(&folder.join(DOCUMENT), reason)
+}
+
+/// The document in the folder, if there is one.
+fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
+    let path = folder.join(DOCUMENT);
+    match std::fs::read_to_string(&path) {
+        Ok(there) => Ok(Some(there)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(SweepError::file("read", &path)(error)),
+    }
+}
+
+/// Files of results in the folder. An empty one that is being written holds none: its document comes first.
+fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
+    let entries = std::fs::read_dir(folder).map_err(SweepError::file("read", folder))?;
+    let is_result = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let whole = name.strip_suffix(".part");
+        let is_named = |name: &str| name == RESULTS || Shard::of_file_name(name).is_some();
+        is_named(whole.unwrap_or(&name)) && (whole.is_none() || path.metadata().is_ok_and(|file| file.len() > 0))
+    };
+    Ok(entries.flatten().map(|entry| entry.path()).filter(is_result).collect())
+}
+
+/// Writes the document beside `results`, which the caller has locked, unless it is there.
+///
+/// # Errors
+/// If another one is there by now; a refusal of the file system.
+pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> Result<(), SweepError> {
+    let path = folder.join(DOCUMENT);
+    if read_document(folder)?.is_none() {
+        // Under a name of its own first, so that a reader never sees half of it.
+        let part = results.with_extension("json.part");
+        write_synced(&part, document.as_bytes()).map_err(SweepError::file("write", &part))?;
+        match std::fs::hard_link(&part, &path) {
+            // Some file systems have no hard links, and a rename replaces what another process wrote just now: it is
+            // compared again once the results are complete.
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists && !path.exists() => {
+                std::fs::rename(&part, &path).map_err(SweepError::file("write", &path))?;
+            }
+            _ => remove(&part)?,
+        }
+    }
+    check_document(folder, document)
+}
+
+fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(content)?;
+    file.sync_all()
+}
+
+/// Opens `part`, which no other process has open to write.
+pub(super) fn lock(part: &Path) -> Result<File, SweepError> {
+    loop {
+        let mut options = OpenOptions::new();
+        let file = options.read(true).write(true).create(true).truncate(false).open(part);
+        let file = file.map_err(SweepError::file("open", part))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(SweepError::Locked { path: part.to_owned() }),
+            // Some file systems of clusters have no locks: there, who starts two of a shard mixes them up.
+            Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
+            Err(TryLockError::Error(cause)) => return Err(SweepError::file("lock", part)(cause)),
+        }
+        // Who had it locked before may have given it its last name in between.
+        if is_at(&file, part).map_err(SweepError::file("lock", part))? {
+            return Ok(file);
+        }
+    }
+}
+
+#[cfg(unix)]
+fn has_no_locks(cause: &io::Error) -> bool {
+    let code = Some(rustix::io::Errno::NOLCK.raw_os_error());
+    cause.kind() == io::ErrorKind::Unsupported || cause.raw_os_error() == code
+}
+
+#[cfg(not(unix))]
+fn has_no_locks(cause: &io::Error) -> bool {
+    cause.kind() == io::ErrorKind::Unsupported
+}
+
+/// Whether `file` is what stands at `path`.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt as _;
+    let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
+    let own = identity(file.metadata()?);
+    match path.metadata() {
+        Ok(there) => Ok(identity(there) == own),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether `file` is what stands at `path`: here, an open file cannot be renamed.
+#[cfg(not(unix))]
+#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
+fn is_at(_file: &File, _path: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+/// Removes a file, which need not be there.
+pub(super) fn remove(path: &Path) -> Result<(), SweepError> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(SweepError::file("remove", path)(error)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    const ONE: &str = "{\"seed\": 1}\n";
+    const OTHER: &str = "{\"seed\": 2}\n";
+
+    fn claimed(folder: &Path, document: &str, fresh: bool) -> Result<File, String> {
+        claim(folder, document, &folder.join(RESULTS), fresh).map_err(|error| error.to_string())
+    }
+
+    fn document(folder: &Path) -> String {
+        fs::read_to_string(folder.join(DOCUMENT)).unwrap()
+    }
+
+    #[test]
+    fn what_cannot_be_removed_stays_with_its_document() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(DOCUMENT), ONE).unwrap();
+        fs::create_dir(folder.path().join(RESULTS)).unwrap();
+        assert!(claimed(folder.path(), OTHER, true).unwrap_err().contains("cannot remove"));
+        assert_eq!(document(folder.path()), ONE);
+    }
+
+    #[test]
+    fn results_that_another_process_writes_keep_their_document() {
+        let folder = tempfile::tempdir().unwrap();
+        let at_work = claimed(folder.path(), ONE, false).unwrap();
+        let message = claimed(folder.path(), OTHER, true).unwrap_err();
+        assert!(message.contains("sweep.csv.part is being written by another process"), "{message}");
+        assert_eq!(document(folder.path()), ONE);
+        drop(at_work);
+        claimed(folder.path(), OTHER, true).unwrap();
+        assert_eq!(document(folder.path()), OTHER);
+    }
+
+    #[test]
+    fn an_empty_file_holds_no_results_of_another_sweep() {
+        let folder = tempfile::tempdir().unwrap();
+        let part = folder.path().join("sweep.csv.part");
+        fs::write(&part, "").unwrap();
+        claimed(folder.path(), ONE, false).unwrap();
+        fs::remove_file(folder.path().join(DOCUMENT)).unwrap();
+        fs::write(&part, "run,").unwrap();
+        let message = claimed(folder.path(), ONE, false).unwrap_err();
+        assert!(
+            message.contains("sweep.csv.part: sweep.json, which says what sweep it belongs to, is not"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn of_two_sweeps_that_begin_at_once_one_has_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let [one, other] = ["sweep.1-of-2.csv", "sweep.2-of-2.csv"].map(|name| folder.path().join(name));
+        write_document(folder.path(), ONE, &one).unwrap();
+        let message = write_document(folder.path(), OTHER, &other).unwrap_err().to_string();
+        assert!(message.contains("it belongs to another sweep (seed is 1, not 2)"), "{message}");
+        write_document(folder.path(), ONE, &other).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_got_its_last_name_is_not_the_one_that_is_locked() {
+        let folder = tempfile::tempdir().unwrap();
+        let [part, whole] = ["sweep.csv.part", RESULTS].map(|name| folder.path().join(name));
+        let file = lock(&part).unwrap();
+        assert!(is_at(&file, &part).unwrap());
+        fs::rename(&part, &whole).unwrap();
+        assert!(!is_at(&file, &part).unwrap());
+        fs::write(&part, "").unwrap();
+        assert!(!is_at(&file, &part).unwrap());
+        assert!(has_no_locks(&io::Error::from(rustix::io::Errno::NOLCK)));
+    }
+}

@@ -1,0 +1,62 @@
+//! Sweeps: many runs of the harvester, or of any FMU, over its parameters, on all cores and on many machines.
+//!
+//! A [`Sweep`] is everything that decides the results, resolved from a [`Request`]: points of a [`Design`] over what is
+//! varied, each with a number of samples. A run follows from its number alone, whoever computes it, so that a sweep can
+//! be interrupted and resumed ([`run()`]), divided ([`Shard`]) and put together again ([`merge()`]) with the same
+//! bytes. Results go to a CSV file as they come, in order; memory does not grow with them. docs/sweep.md describes the
+//! files.
+
+mod axis;
+mod column;
+mod design;
+mod document;
+mod engine;
+mod error;
+mod file;
+mod folder;
+mod lines;
+mod merge;
+mod plan;
+mod random;
+mod record;
+mod run;
+mod seeds;
+mod shard;
+mod table;
+mod times;
+mod vary;
+
+pub use column::{Column, Type};
+pub use design::Design;
+pub use engine::{BuiltIn, Engine};
+pub use error::SweepError;
+pub use file::SweepFile;
+pub use merge::merge;
+pub use plan::{Request, Sweep};
+pub use run::{Job, Report, Watch, run};
+pub use seeds::SEED_VARIABLE;
+pub use shard::Shard;
+pub use times::Times;
+pub use vary::{Range, Scale, Spread, Vary};
+
+use std::path::Path;
+
+use crate::fmi::{FmiError, ModelDescription};
+
+/// What the harvester FMU says of itself; the model behind it has the same parameters.
+///
+/// # Errors
+/// None: it is part of this program.
+pub fn harvester_description() -> Result<ModelDescription, FmiError> {
+    let document = include_bytes!("../../modelDescription/VibroImpactHarvester.xml");
+    ModelDescription::parse(document, "modelDescription/VibroImpactHarvester.xml")
+}
+
+/// SHA-256 of a file, in hexadecimal digits.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn fingerprint(path: &Path) -> Result<String, SweepError> {
+    let content = std::fs::read(path).map_err(SweepError::file("read", path))?;
+    Ok(document::sha256(content))
+}

@@ -1,0 +1,277 @@
+//! The sweep, resolved: everything that decides its results.
+
+use std::collections::HashSet;
+
+use super::axis::Axis;
+use super::column::{self, Column, Type};
+use super::design::{MAX_RUNS, Points};
+use super::document::Document;
+use super::seeds::{self, Asked, Seeds};
+use super::times::Times;
+use super::{Design, SweepError, Vary};
+use crate::cosim::Averages;
+use crate::fmi::{FmiError, Kind, ModelDescription, Value, ValueError, Variable};
+use crate::scenario::Setting;
+
+/// Variables from which averages follow, and their types.
+pub(super) const GAINS: [&str; 3] = ["gain.voltage", "gain.energyEq13", "impact.count"];
+
+/// What is to be swept.
+pub struct Request<'a> {
+    /// How the sweep is called.
+    pub name: String,
+    /// The model.
+    pub description: &'a ModelDescription,
+    /// SHA-256 of the FMU, if the model is not the harvester of this project.
+    pub fmu: Option<String>,
+    /// Variables that are the same in all runs; the last of a name wins.
+    pub settings: Vec<Setting>,
+    /// Times of a run.
+    pub times: Times,
+    /// Variables that are not; the last of a name wins.
+    pub vary: Vec<Vary>,
+    /// How points are chosen.
+    pub design: Design,
+    /// How many points a design that draws has.
+    pub points: Option<u64>,
+    /// Runs of each point.
+    pub samples: u64,
+    /// Seed of the design and of the first run.
+    pub seed: u64,
+    /// Sample i has the same seed in all points.
+    pub common_seeds: bool,
+    /// The variable that takes the seed, if it is not the harvester's.
+    pub seed_variable: Option<String>,
+    /// Variables to record at the end of each run.
+    pub record: Vec<String>,
+}
+
+/// A sweep, checked.
+pub struct Sweep {
+    name: String,
+    /// Variables that are the same in all runs.
+    pub(super) settings: Vec<(Variable, Value)>,
+    /// Times of a run.
+    pub(super) times: Times,
+    pub(super) points: Points,
+    samples: u64,
+    pub(super) seeds: Option<Seeds>,
+    /// Variables read at the end of each run.
+    pub(super) record: Vec<Variable>,
+    /// Whether averages are made.
+    pub(super) averages: bool,
+    columns: Vec<Column>,
+    document: String,
+}
+
+/// What one run is given.
+pub(super) struct Run {
+    pub number: u64,
+    pub point: u64,
+    pub sample: u64,
+    pub values: Vec<Value>,
+    pub seed: Option<i32>,
+}
+
+/// What one run comes to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Results {
+    pub averages: Option<Averages>,
+    pub recorded: Vec<Value>,
+}
+
+impl Sweep {
+    /// Resolves a request.
+    ///
+    /// # Errors
+    /// Whatever in it makes no sense for all of its runs.
+    pub fn new(request: Request<'_>) -> Result<Self, SweepError> {
+        let Request { description, design, seed, .. } = request;
+        let vary = last_of_each(&request.vary, |vary| &vary.name);
+        let settings = settings(&request, &vary)?;
+        let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
+        let points = Points::new(design, axes, request.points)?;
+        let seeds = seeds(&request, &settings, &vary)?;
+        let runs = count_runs(points.count(), request.samples, seeds.as_ref())?;
+        let record = request.record.iter().map(|name| description.variable(name).cloned());
+        let record = record.collect::<Result<Vec<_>, _>>()?;
+        let averages = has_gains(description);
+        if record.is_empty() && !averages {
+            let reason = format!("{} has no {}, so say what to record", description.model_name, GAINS[0]);
+            return Err(SweepError::option("record", "", reason));
+        }
+        let columns = columns(points.axes(), seeds.as_ref(), averages, &record)?;
+        let document = Document {
+            videg: env!("CARGO_PKG_VERSION"),
+            case: &request.name,
+            model: &description.model_name,
+            guid: &description.guid,
+            fmu: request.fmu.as_deref(),
+            settings: settings.iter().map(as_setting).collect(),
+            times: request.times,
+            design,
+            vary: &vary,
+            points: points.count(),
+            samples: request.samples,
+            runs,
+            seed,
+            common_seeds: request.common_seeds,
+            seed_variable: seeds.as_ref().map(|seeds| seeds.variable.name.as_str()),
+            columns: &columns,
+            sha256: None,
+        };
+        let (document, samples) = (document.sealed(), request.samples);
+        let (name, times) = (request.name, request.times);
+        Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
+    }
+
+    /// How it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> u64 {
+        self.points.count()
+    }
+
+    /// Runs of each point.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Number of runs.
+    pub fn runs(&self) -> u64 {
+        self.points.count() * self.samples
+    }
+
+    /// The document `sweep.json`.
+    pub fn document(&self) -> &str {
+        &self.document
+    }
+
+    /// Columns of the results.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// What run number `number` is given.
+    pub(super) fn run(&self, number: u64) -> Run {
+        let (point, sample) = (number / self.samples, number % self.samples);
+        let seed = self.seeds.as_ref().map(|seeds| seeds.of(point, sample));
+        Run { number, point, sample, values: self.points.values(point), seed }
+    }
+
+    /// The first value of `run` that is out of its bounds.
+    pub(super) fn check(&self, run: &Run) -> Result<(), ValueError> {
+        self.points.axes().iter().zip(&run.values).try_for_each(|(axis, value)| value.check(&axis.variable))
+    }
+
+    /// The line of the results that belongs to `run`; an error is why it failed.
+    pub(super) fn line(&self, run: &Run, outcome: &Result<Results, String>) -> Vec<u8> {
+        let mut cells: Vec<String> = [run.number, run.point, run.sample].map(|number| number.to_string()).into();
+        cells.extend(run.values.iter().map(column::cell));
+        cells.extend(run.seed.map(|seed| seed.to_string()));
+        if let Ok(Results { averages, recorded }) = outcome {
+            cells.extend(averages.iter().flat_map(|averages| {
+                let Averages { voltage_gain, power, impacts } = averages;
+                [column::real(*voltage_gain), column::real(*power), impacts.to_string()]
+            }));
+            cells.extend(recorded.iter().map(column::cell));
+        }
+        cells.resize(self.columns.len() - 1, String::new());
+        cells.push(outcome.as_ref().err().map_or_else(String::new, |reason| column::one_line(reason)));
+        column::line(cells.iter().map(String::as_str))
+    }
+}
+
+/// Items without those whose name comes again: the last one stands, in the place of the first.
+fn last_of_each<T: Clone>(items: &[T], name: impl Fn(&T) -> &str) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for item in items {
+        match kept.iter_mut().find(|other| name(other) == name(item)) {
+            Some(other) => *other = item.clone(),
+            None => kept.push(item.clone()),
+        }
+    }
+    kept
+}
+
+/// What is the same in all runs.
+fn settings(request: &Request<'_>, vary: &[Vary]) -> Result<Vec<(Variable, Value)>, SweepError> {
+    let settings = last_of_each(&request.settings, |setting| &setting.name);
+    let is_varied = |setting: &&Setting| vary.iter().any(|vary| vary.name == setting.name);
+    settings.iter().filter(|setting| !is_varied(setting)).map(|setting| typed(request.description, setting)).collect()
+}
+
+/// Who gives seeds: the samples, or the user.
+fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -> Result<Option<Seeds>, SweepError> {
+    let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
+    let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
+    let asked = Asked {
+        samples: request.samples,
+        seed: request.seed,
+        common: request.common_seeds,
+        variable: request.seed_variable.as_deref(),
+        given: &given,
+    };
+    Seeds::new(request.description, &asked)
+}
+
+fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {
+    let variable = description.variable(&setting.name)?;
+    if !variable.is_settable() {
+        let reason = format!("it is a {}, which cannot be set", variable.causality.as_str());
+        return Err(SweepError::option("set", &setting.name, reason));
+    }
+    let value = Value::parse(description, variable, &setting.value).map_err(FmiError::from)?;
+    Ok((variable.clone(), value))
+}
+
+/// As it stands in the document: however it was written, the same value gives the same text.
+fn as_setting((variable, value): &(Variable, Value)) -> Setting {
+    Setting { name: variable.name.clone(), value: column::cell(value) }
+}
+
+fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {
+    let most = if seeds.is_some_and(|seeds| !seeds.common) { seeds::MOST } else { MAX_RUNS };
+    if points > most {
+        let reason = format!("{points} points have no seeds of their own: at most {most}, or --common-seeds");
+        return Err(SweepError::option("points", points.to_string(), reason));
+    }
+    let runs = points.checked_mul(samples).filter(|runs| (1..=most).contains(runs));
+    let bound = || format!("with {points} points it must lie from 1 to {}", most / points);
+    runs.ok_or_else(|| SweepError::option("samples", samples.to_string(), bound()))
+}
+
+fn has_gains(description: &ModelDescription) -> bool {
+    let kinds = GAINS.map(|name| description.variable(name).map(|variable| &variable.kind));
+    matches!(kinds, [Ok(Kind::Real { .. }), Ok(Kind::Real { .. }), Ok(Kind::Integer { .. })])
+}
+
+fn columns(
+    axes: &[Axis],
+    seeds: Option<&Seeds>,
+    averages: bool,
+    record: &[Variable],
+) -> Result<Vec<Column>, SweepError> {
+    let mut columns: Vec<_> = ["run", "point", "sample"].map(|name| Column::always(name, Type::Integer)).into();
+    columns.extend(axes.iter().map(|axis| Column::always(&axis.variable.name, Type::of(&axis.variable))));
+    columns.extend(seeds.map(|seeds| Column::always(&seeds.variable.name, Type::Integer)));
+    if averages {
+        columns.push(Column::optional("average_voltage_gain", Type::Real));
+        columns.push(Column::optional("average_power_eq13", Type::Real));
+        columns.push(Column::optional("impacts", Type::Integer));
+    }
+    columns.extend(record.iter().map(|variable| Column::optional(&variable.name, Type::of(variable))));
+    columns.push(Column::optional("error", Type::Text));
+    let mut names = HashSet::new();
+    match columns.iter().find(|column| !names.insert(column.name.as_str())) {
+        Some(twice) => {
+            let is_recorded = record.iter().any(|variable| variable.name == twice.name);
+            let option = if is_recorded { "record" } else { "vary" };
+            Err(SweepError::option(option, &twice.name, "the results have a column of that name already"))
+        }
+        None => Ok(columns),
+    }
+}

@@ -1,0 +1,162 @@
+//! The file of results while it is being written: locked, in order, and such that a killed sweep can go on.
+
+use std::fs::File;
+use std::io::{self, BufReader, Seek as _, SeekFrom, Write as _};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::folder::{self, RESULTS};
+use super::lines::{self, Extent};
+use super::{Shard, Sweep, SweepError, column};
+
+/// How often results are forced to the disk: what a power cut may cost.
+const SYNC_EVERY: Duration = Duration::from_secs(10);
+
+/// What is there of a sweep, or of a shard of it.
+pub(super) enum Found {
+    /// Everything.
+    Complete {
+        /// Runs that failed.
+        failed: u64,
+    },
+    /// Results up to some run.
+    Unfinished(Record),
+}
+
+/// Results that are being written.
+pub(super) struct Record {
+    file: File,
+    part: PathBuf,
+    path: PathBuf,
+    /// First run that is not in it.
+    pub next: u64,
+    /// Runs in it that failed.
+    pub failed: u64,
+    /// Its last line, if it has any.
+    pub last: Vec<u8>,
+    synced: Instant,
+}
+
+/// The file of the results of `shard`, or of the whole.
+pub(super) fn results_path(folder: &Path, shard: Option<Shard>) -> PathBuf {
+    folder.join(shard.map_or_else(|| RESULTS.to_owned(), Shard::file_name))
+}
+
+/// The runs that `shard`, or the whole, consists of.
+pub(super) fn range(sweep: &Sweep, shard: Option<Shard>) -> Range<u64> {
+    shard.map_or(0..sweep.runs(), |shard| shard.range(sweep.runs()))
+}
+
+impl Record {
+    /// Opens the results of `shard` of `sweep` in `folder`; with `fresh` whatever was there goes.
+    ///
+    /// # Errors
+    /// Results of another sweep; results that another process is writing; a refusal of the file system.
+    pub fn open(folder: &Path, sweep: &Sweep, shard: Option<Shard>, fresh: bool) -> Result<Found, SweepError> {
+        std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
+        let path = results_path(folder, shard);
+        let file = folder::claim(folder, sweep.document(), &path, fresh)?;
+        let part = folder::partial(&path);
+        let range = range(sweep, shard);
+        let heading = column::line(sweep.columns().iter().map(|column| column.name.as_str()));
+        if let Some(extent) = complete(&path, &heading, &range)? {
+            folder::remove(&part)?;
+            return Ok(Found::Complete { failed: extent.failed });
+        }
+        let extent = extent(&file, &part, &heading, &range)?;
+        let mut record = Self {
+            file,
+            part,
+            path,
+            next: range.start + extent.lines,
+            failed: extent.failed,
+            last: extent.last,
+            synced: Instant::now(),
+        };
+        record.go_on_after(extent.bytes)?;
+        if extent.bytes == 0 {
+            record.write(&heading)?;
+        }
+        Ok(Found::Unfinished(record))
+    }
+
+    fn go_on_after(&mut self, bytes: u64) -> Result<(), SweepError> {
+        let cut = self.file.set_len(bytes).and_then(|()| self.file.seek(SeekFrom::Start(bytes)));
+        cut.map(|_| ()).map_err(SweepError::file("cut", &self.part))
+    }
+
+    /// The file while it is being written.
+    pub fn part(&self) -> &Path {
+        &self.part
+    }
+
+    /// Adds the lines of the runs that are due.
+    ///
+    /// # Errors
+    /// If they cannot be written; those before stay.
+    pub fn append(&mut self, lines: &[Vec<u8>]) -> Result<(), SweepError> {
+        if lines.is_empty() {
+            return Ok(());
+        }
+        self.write(&lines.concat())?;
+        self.next += lines.len() as u64;
+        self.failed += lines.iter().filter(|line| lines::has_failed(line)).count() as u64;
+        if self.synced.elapsed() >= SYNC_EVERY {
+            self.file.sync_data().map_err(|cause| self.full(cause))?;
+            self.synced = Instant::now();
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), SweepError> {
+        self.file.write_all(bytes).map_err(|cause| self.full(cause))
+    }
+
+    fn full(&self, cause: io::Error) -> SweepError {
+        SweepError::Full { path: self.part.clone(), next: self.next, cause }
+    }
+
+    /// Forces what is there to the disk.
+    ///
+    /// # Errors
+    /// If the disk refuses.
+    pub fn sync(&self) -> Result<(), SweepError> {
+        self.file.sync_all().map_err(|cause| self.full(cause))
+    }
+
+    /// Gives the complete results of the sweep of `document` their name.
+    ///
+    /// # Errors
+    /// If by now the folder is that of another sweep, or the file system refuses.
+    pub fn finish(self, document: &str) -> Result<(), SweepError> {
+        self.sync()?;
+        folder::write_document(self.path.parent().unwrap_or(Path::new("")), document, &self.path)?;
+        std::fs::rename(&self.part, &self.path).map_err(SweepError::file("rename", &self.part))
+    }
+}
+
+/// How far the results at `path` are complete; none if there are none.
+fn complete(path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(SweepError::file("open", path)(error)),
+    };
+    let extent = extent(&file, path, heading, range)?;
+    let length = file.metadata().map_err(SweepError::file("read", path))?.len();
+    match extent.check_whole(length, range) {
+        Ok(()) => Ok(Some(extent)),
+        Err(reason) => {
+            let reason = format!("it was changed after it was complete: {reason}; --fresh begins anew");
+            Err(SweepError::content(path, reason))
+        }
+    }
+}
+
+fn extent(file: &File, path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Extent, SweepError> {
+    let (mut from, most) = (BufReader::new(file), range.end - range.start);
+    from.rewind()
+        .and_then(|()| lines::follow(from, heading, range.start, most, |_| Ok(())))
+        .map_err(SweepError::file("read", path))
+}

@@ -1,0 +1,82 @@
+"""The scripts beyond one machine, run as a user runs them."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import harness
+
+VIDEG = Path(os.environ.get("CARGO_TARGET_DIR", harness.ROOT / "target")) / "release" / "videg"
+
+SWEEP = ["--vary", "membrane.restitution=0.3:0.9:40", "--vary", "excitation.amplitude=0.4:0.6:10", "--samples", "4"]
+"""What is swept: 1600 runs, a few seconds of one core."""
+
+RESULTS = ["sweep.csv", "sweep.parquet", "sweep.json"]
+
+
+@pytest.fixture
+def start() -> Callable[..., subprocess.Popen]:
+    """Starts a script of scale/ with arguments; what is left of it ends with the test."""
+    processes = []
+
+    def begin(script: str, *arguments: object, **environment: str) -> subprocess.Popen:
+        path = harness.ROOT / "scale" / script
+        command = [sys.executable, path] if path.suffix == ".py" else [path]
+        processes.append(
+            subprocess.Popen(
+                [*command, *map(str, arguments)],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                env=os.environ | {"VIDEG": str(VIDEG)} | environment,
+            )
+        )
+        return processes[-1]
+
+    yield begin
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def run(start) -> Callable[..., subprocess.CompletedProcess]:
+    """Runs a script to its end."""
+
+    def complete(script: str, *arguments: object, **environment: str) -> subprocess.CompletedProcess:
+        return end(start(script, *arguments, **environment))
+
+    return complete
+
+
+def end(process: subprocess.Popen) -> subprocess.CompletedProcess:
+    """Waits for a script, which must not hang."""
+    out, err = process.communicate(timeout=120)
+    return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+
+def wait_for(condition: Callable[[], object]) -> object:
+    """What `condition` says as soon as it says something."""
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        if found := condition():
+            return found
+        time.sleep(0.02)
+    raise AssertionError("it never came to that")
+
+
+@pytest.fixture(scope="session")
+def undivided(tmp_path_factory) -> Path:
+    """The folder of the sweep that one process runs."""
+    folder = tmp_path_factory.mktemp("undivided")
+    subprocess.run([VIDEG, "sweep", *SWEEP, "--output", folder], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+def same_bytes(folder: Path, expected: Path) -> bool:
+    return all((folder / name).read_bytes() == (expected / name).read_bytes() for name in RESULTS)
