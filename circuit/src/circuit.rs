@@ -32,7 +32,7 @@ impl Circuit {
     /// A circuit with both membranes charged to `U_in`; `capacitance` is left, right (F).
     ///
     /// # Errors
-    /// A parameter or capacitance out of bounds, by name.
+    /// A parameter or capacitance out of bounds, by name; a stored energy that is no finite number.
     pub fn new(parameters: Parameters, capacitance: [f64; 2]) -> Result<Self, Error> {
         Self::with_voltages(parameters, capacitance, [parameters.supply_voltage; 2])
     }
@@ -44,7 +44,7 @@ impl Circuit {
     /// resistance at all has no other limit.
     ///
     /// # Errors
-    /// A parameter, capacitance or voltage out of bounds, by name.
+    /// A parameter, capacitance or voltage out of bounds, by name; a stored energy that is no finite number.
     pub fn with_voltages(parameters: Parameters, capacitance: [f64; 2], voltage: [f64; 2]) -> Result<Self, Error> {
         parameters.validate()?;
         check_capacitances(capacitance)?;
@@ -62,6 +62,8 @@ impl Circuit {
         };
         let mut circuit = Self { parameters, state: State { charge, capacitance, ..State::default() } };
         circuit.start(voltage);
+        // Bounds apart, the energy of a farad at 1e200 V is no number.
+        circuit.state.validate()?;
         Ok(circuit)
     }
 

@@ -46,6 +46,13 @@ fn a_supply_or_load_out_of_range_is_named() {
 }
 
 #[test]
+fn a_stored_energy_beyond_all_numbers_is_refused() {
+    let parameters = Parameters { supply_voltage: 1e200, zener_voltage: 1e200, ..Parameters::default() };
+    let found = Circuit::new(parameters, [1.0, 1.0]).unwrap_err().to_string();
+    assert_eq!(found, "stored energy at the start = inf J is not a finite number");
+}
+
+#[test]
 fn every_diode_parameter_is_checked() {
     type Set = fn(&mut DiodeParameters, f64);
     let fields: [(&str, &str, Set); 7] = [

@@ -69,7 +69,11 @@ impl CaseFile {
         Ok(file)
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
+    /// Reads the text of a case file.
+    ///
+    /// # Errors
+    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
+    pub fn parse(text: &str) -> Result<Self, String> {
         Self::of(toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?)
     }
 

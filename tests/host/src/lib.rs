@@ -18,7 +18,7 @@ pub use functions::{Exchange, Functions};
 pub use instance::Instance;
 pub use log::{LOGS, Line, Log};
 pub use random::Random;
-pub use session::{Census, run};
+pub use session::{Census, run, run_tape};
 
 use std::ffi::CString;
 

@@ -1,15 +1,46 @@
 //! Random arguments, the same on every platform.
 
-/// `SplitMix64` (Steele, Lea, Flood 2014).
-pub struct Random(pub u64);
+/// Where choices come from.
+enum Source {
+    /// `SplitMix64` (Steele, Lea, Flood 2014).
+    Generator(u64),
+    /// Bytes that somebody else chose, such as a fuzzer; zeros once they are used up.
+    Tape(std::vec::IntoIter<u8>),
+}
+
+/// Choices, one after the other.
+pub struct Random(Source);
 
 impl Random {
-    /// The next 64 bits.
+    /// Choices that follow from a number.
+    pub fn seeded(seed: u64) -> Self {
+        Self(Source::Generator(seed))
+    }
+
+    /// Choices that are read from bytes, two each.
+    pub fn from_tape(bytes: &[u8]) -> Self {
+        Self(Source::Tape(bytes.to_vec().into_iter()))
+    }
+
+    /// False once a tape has been read to its end.
+    pub fn goes_on(&self) -> bool {
+        !matches!(&self.0, Source::Tape(bytes) if bytes.len() == 0)
+    }
+
+    /// The next choice: 64 bits of the generator, 16 of a tape.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        match &mut self.0 {
+            Source::Generator(state) => {
+                *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+                let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+                z ^ (z >> 31)
+            }
+            Source::Tape(bytes) => {
+                let mut byte = || u64::from(bytes.next().unwrap_or_default());
+                byte() | byte() << 8
+            }
+        }
     }
 
     /// A number below `bound`.

@@ -27,16 +27,30 @@ pub struct Census {
 pub fn run(fmu: &Fmu, seeds: core::ops::Range<u64>) -> Result<Census, String> {
     let mut census = Census::default();
     for seed in seeds {
-        sequence(fmu, &mut Random(seed), &mut census).map_err(|what| format!("seed {seed}: {what}"))?;
+        let mut random = Random::seeded(seed);
+        let length = random.below(LENGTH);
+        sequence(fmu, &mut random, length, &mut census).map_err(|what| format!("seed {seed}: {what}"))?;
     }
     Ok(census)
 }
 
-fn sequence(fmu: &Fmu, random: &mut Random, census: &mut Census) -> Result<(), String> {
+/// Runs the sequence that `bytes` tell, as a fuzzer chooses them.
+///
+/// # Errors
+/// The first answer that is not what the standard says.
+pub fn run_tape(fmu: &Fmu, bytes: &[u8]) -> Result<(), String> {
+    sequence(fmu, &mut Random::from_tape(bytes), bytes.len(), &mut Census::default())
+}
+
+/// At most `length` calls.
+fn sequence(fmu: &Fmu, random: &mut Random, length: usize, census: &mut Census) -> Result<(), String> {
     let other = if fmu.functions.exchange.is_some() { Interface::ModelExchange } else { Interface::CoSimulation };
     let mut instances = [Instance::new(fmu, Interface::CoSimulation)?, Instance::new(fmu, other)?];
     let mut blobs = Vec::new();
-    for _ in 0..random.below(LENGTH) {
+    for _ in 0..length {
+        if !random.goes_on() {
+            break;
+        }
         let number = random.below(instances.len());
         match random.below(100) {
             0 => instances[number] = Instance::new(fmu, instances[number].interface)?,
