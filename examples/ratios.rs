@@ -73,6 +73,12 @@ const ROWS: &[Row] = &[
         asked: Asked::Faster(2000.0),
     },
     Row {
+        what: "the same; the paper's Runge-Kutta stage by stage, as in textbooks",
+        ours: ("harvester", MOTION, "fig14, event-driven"),
+        baseline: ("harvester", MOTION, "fig14, Runge-Kutta stage by stage"),
+        asked: Asked::Nothing,
+    },
+    Row {
         what: "100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample",
         ours: ("noise", NOISE, "in blocks"),
         baseline: ("noise", NOISE, "C, Runge-Kutta"),
