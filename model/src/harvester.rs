@@ -3,6 +3,7 @@
 mod contact;
 mod copy;
 mod course;
+mod dues;
 mod energy;
 mod events;
 mod exchange;
@@ -17,6 +18,7 @@ pub use self::snapshot::Snapshot;
 pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
 
 use self::course::hold_at;
+use self::dues::Dues;
 use self::energy::Ledger;
 use self::events::{Event, Search};
 use self::tangent::Tangent;
@@ -211,15 +213,29 @@ impl Harvester {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
         self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing foreseen
-        while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
-            let turn = self.turn_at(event);
-            self.process(event)?;
-            let (impact, peak) = (self.impact_of(event), turn.or_else(|| self.peak_after(event)));
-            impact.map(Occurrence::Impact).iter().chain(&peak.map(Occurrence::Peak)).for_each(&mut show);
-        }
+        let mut dues = Dues::NONE;
+        let passed = self.pass_events(time, &mut dues, &mut show);
+        self.settle_dues(&mut dues);
+        passed?;
         self.follow_noise(time);
         self.time = time;
         self.look_ahead();
+        Ok(())
+    }
+
+    /// Does what events up to `time`, s, do, but for the credit of impacts in `dues`.
+    fn pass_events(
+        &mut self,
+        time: f64,
+        dues: &mut Dues,
+        show: &mut impl FnMut(&Occurrence),
+    ) -> Result<(), ModelError> {
+        while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
+            let turn = self.turn_at(event);
+            self.process(event, dues)?;
+            let (impact, peak) = (self.impact_of(event), turn.or_else(|| self.peak_after(event)));
+            impact.map(Occurrence::Impact).iter().chain(&peak.map(Occurrence::Peak)).for_each(&mut *show);
+        }
         Ok(())
     }
 

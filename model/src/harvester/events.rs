@@ -1,7 +1,8 @@
 //! The events of the motion: what comes next, and what it does.
 
 use super::course::{Boundary, Place};
-use super::tangent::{Hit, HitChange};
+use super::dues::Dues;
+use super::tangent::Hit;
 use super::{Ball, Harvester, phase};
 use crate::cylinder::{CylinderState, Drive};
 use crate::error::ModelError;
@@ -226,7 +227,7 @@ impl Harvester {
         self.search.window = window + 1;
     }
 
-    pub(super) fn process(&mut self, event: Event) -> Result<(), ModelError> {
+    pub(super) fn process(&mut self, event: Event, dues: &mut Dues) -> Result<(), ModelError> {
         self.tangent.fresh = false;
         if let Some(place) = self.search.ahead {
             self.enter(place);
@@ -235,7 +236,7 @@ impl Harvester {
             Event::Impact { time, side } => {
                 self.spend(time)?;
                 match self.parameters.contact_law {
-                    ContactLaw::Impulsive => self.impact(time, side),
+                    ContactLaw::Impulsive => self.impact(time, side, dues),
                     ContactLaw::Compliant => self.touch(time, side),
                 }
             }
@@ -272,23 +273,17 @@ impl Harvester {
     }
 
     /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
-    pub(super) fn impact(&mut self, time: f64, side: Side) {
+    pub(super) fn impact(&mut self, time: f64, side: Side, dues: &mut Dues) {
         let wall = self.cylinder.at(time);
         let speed = (side.sign() * (wall.velocity - self.ball.velocity)).max(0.0);
-        let peak = self.membrane.deflection(speed);
-        let (excess, change) = if self.tangent.idle {
-            (self.membrane.capacitance_excess(peak), HitChange::default())
-        } else {
-            let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
-            (excess, self.change_of(&Hit { side, speed, peak, excess_slope, wall }))
-        };
-        self.pulses[side.index()].push(&self.shape, Pulse { start: time, speed, peak, change: change.pulse });
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
-        self.credit(excess);
-        if !self.tangent.idle {
-            self.take_over(&change, excess);
-        }
+        let wall_change = if self.tangent.idle {
+            self.owe(dues, time, side, speed);
+            0.0
+        } else {
+            self.credit_with_changes(speed, side, &wall)
+        };
         self.book_impact(side, wall.velocity, speed);
         let rebound = self.parameters.restitution * speed;
         let dz = side.sign() * self.half_travel();
@@ -297,16 +292,29 @@ impl Harvester {
         self.new_flight(&wall, dz, velocity);
         match self.end_of_bounces(side, rebound, &wall) {
             Some(Tail::Summed) => {
+                self.settle_dues(dues);
                 let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
                 self.credit(excess);
                 if !self.tangent.idle {
                     self.take_over_tail(speed, excess);
                 }
-                self.settle(side, &wall, change.wall);
+                self.settle(side, &wall, wall_change);
             }
-            Some(Tail::Unresolved) => self.settle(side, &wall, change.wall),
+            Some(Tail::Unresolved) => self.settle(side, &wall, wall_change),
             None => {}
         }
+    }
+
+    /// Credits an impact on this `wall`, and carries the changes that somebody asks for over it. Returns the change of
+    /// the wall's velocity, m/s.
+    fn credit_with_changes(&mut self, speed: f64, side: Side, wall: &CylinderState) -> f64 {
+        let peak = self.membrane.deflection(speed);
+        let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
+        let change = self.change_of(&Hit { side, speed, peak, excess_slope, wall: *wall });
+        self.pulses[side.index()].push(&self.shape, Pulse { start: wall.time, speed, peak, change: change.pulse });
+        self.credit(excess);
+        self.take_over(&change, excess);
+        change.wall
     }
 
     /// Ends a chattering sequence on this `wall`, whose velocity changes by `wall_change`, m/s.

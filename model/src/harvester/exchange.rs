@@ -4,6 +4,7 @@
 //! ball. It watches [`Harvester::event_indicators`] for a change of sign and calls [`Harvester::handle_events`] there,
 //! which does what an event does in [`Harvester::advance`]. The two ways of running must not be mixed in one harvester.
 
+use super::dues::Dues;
 use super::events::Search;
 use super::{Ball, Harvester, finite};
 use crate::cylinder::{CylinderMotion, Drive};
@@ -122,7 +123,9 @@ impl Harvester {
             return Ok(gap < 0.0);
         }
         self.spend(self.time)?;
-        self.impact(self.time, side);
+        let mut dues = Dues::NONE;
+        self.impact(self.time, side, &mut dues);
+        self.settle_dues(&mut dues);
         if self.ball.resting.is_none() {
             self.clear(side);
         }
