@@ -19,7 +19,7 @@ impl Random {
 
     /// Choices that are read from bytes, two each.
     pub fn from_tape(bytes: &[u8]) -> Self {
-        Self(Source::Tape(bytes.to_vec().into_iter()))
+        Self(Source::Tape(Vec::from(bytes).into_iter()))
     }
 
     /// False once a tape has been read to its end.
