@@ -169,7 +169,13 @@
   function show(figure, chart) {
     const Plotly = library(), box = figure.querySelector(".chart");
     const { traces, layout } = draw(chart, Math.floor(box.clientWidth));
-    const options = { displaylogo: false, doubleClick: "reset", modeBarButtonsToRemove: ["lasso2d", "select2d"] };
+    // Half a second as desktops have it: on a slow machine a large chart takes longer to answer than the library waits for.
+    const options = {
+        displaylogo: false,
+        doubleClick: "reset",
+        doubleClickDelay: 500,
+        modeBarButtonsToRemove: ["lasso2d", "select2d"],
+    };
     return Plotly.react(box, traces, layout, options);
   }
 

@@ -4,6 +4,7 @@ import json
 import re
 
 import pytest
+from playwright.sync_api import TimeoutError
 
 WIDTHS = [375, 1440]
 SCHEMES = ["light", "dark"]
@@ -32,6 +33,17 @@ def keys_of(chart):
 def look_closer(figure):
     figure.get_by_role("button", name="Look closer").click()
     figure.locator(".chart .main-svg").first.wait_for(state="visible")
+
+
+def double_click_until(page, place, condition, argument):
+    """Double-clicks, again if the two clicks came too far apart: a busy machine may draw between them."""
+    for _ in range(10):
+        page.mouse.dblclick(*place)
+        try:
+            return page.wait_for_function(condition, arg=argument, timeout=3000)
+        except TimeoutError:
+            pass
+    pytest.fail(f"ten double clicks did not bring about {condition}")
 
 
 def chart_of(figure):
@@ -96,9 +108,10 @@ def test_dragging_zooms_linked_panels_together_and_a_double_click_resets(visit):
                                arg=[chart.element_handle(), name[1], before[name[1]][0]])
         after = chart.evaluate(RANGES)
         assert after[name[0]] == pytest.approx(after[name[1]])
-        page.mouse.dblclick(box["x"] + 0.5 * box["width"], middle)
-        page.wait_for_function("([box, key, old]) => Math.abs(box._fullLayout[key].range[0] - old) < 1e-6",
-                               arg=[chart.element_handle(), name[0], before[name[0]][0]])
+        double_click_until(
+            page, (box["x"] + 0.5 * box["width"], middle),
+            "([box, key, old]) => Math.abs(box._fullLayout[key].range[0] - old) < 1e-6",
+            [chart.element_handle(), name[0], before[name[0]][0]])
 
 
 def test_a_chart_follows_the_window_and_the_scheme(visit):
