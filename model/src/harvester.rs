@@ -256,6 +256,10 @@ impl Harvester {
 
     #[inline]
     fn push(&mut self, force: f64, rate: f64) {
+        // Nothing pushes, as before: two quotients less for each step of a caller that sets its inputs anew.
+        if [force, rate, self.cylinder.drive.external, self.cylinder.drive.external_rate] == [0.0; 4] {
+            return;
+        }
         let (mass, drive) = (self.parameters.cylinder_mass, &self.cylinder.drive);
         let (external, external_rate) = (force / mass, rate / mass);
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);

@@ -54,18 +54,29 @@ struct Layout {
     set: Table,
 }
 
+/// What `parse` makes of the text of the file at `path`, and the name of that file without its ending.
+///
+/// # Errors
+/// An unreadable file; what `parse` finds wrong.
+pub(crate) fn read_file<T>(
+    path: &Path,
+    parse: impl FnOnce(&str) -> Result<T, String>,
+) -> Result<(T, Option<String>), ScenarioError> {
+    let shown = path.display().to_string();
+    let text =
+        std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
+    let content = parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
+    Ok((content, path.file_stem().map(|stem| stem.to_string_lossy().into_owned())))
+}
+
 impl CaseFile {
     /// Reads the file at `path`. The run is called after it unless it says otherwise.
     ///
     /// # Errors
     /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let shown = path.display().to_string();
-        let text =
-            std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
-        let mut file = Self::parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
-        let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        file.name = file.name.or_else(stem);
+        let (mut file, stem) = read_file(path, Self::parse)?;
+        file.name = file.name.or(stem);
         Ok(file)
     }
 

@@ -3,6 +3,7 @@
 mod file;
 mod preset;
 
+pub(crate) use file::read_file;
 pub use file::{CaseFile, value_text};
 
 use serde::Serialize;

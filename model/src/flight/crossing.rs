@@ -1,8 +1,8 @@
 //! Where dz crosses a membrane.
 //!
 //! One sine and cosine give all derivatives. So the gap is taken as its Taylor series about a place near the crossing, whose
-//! root costs no more sines; there the next series is taken, until the step is so short that nothing is missing. The first
-//! place is one where sine and cosine are known beforehand.
+//! root costs no more sines; there the next series is taken, until one more step from its root, with the gap to all digits,
+//! is the last. The first place is one where sine and cosine are known beforehand.
 
 use super::zeros::Knot;
 use super::{Flight, Side};
