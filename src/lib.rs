@@ -9,6 +9,7 @@
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
+//! - [`whole`] writes files that appear whole or not at all;
 //! - [`cli`] is the command-line tool.
 
 pub mod cli;
@@ -21,3 +22,4 @@ pub mod paper;
 pub mod report;
 pub mod scenario;
 pub mod sweep;
+pub mod whole;

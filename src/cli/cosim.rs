@@ -19,6 +19,7 @@ use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
 use crate::report::Drawing;
 use crate::scenario::Scenario;
+use crate::whole;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -150,16 +151,19 @@ pub fn couple(
     let circuits = circuits(backend, &scenario, &settings, ratios, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let master = Master::new(harvester, circuits, &scenario, coupling)?;
-    let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
+    let mut recorder = CsvRecorder::create(csv, true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
     let outcome = master.run(&mut [&mut recorder, &mut trace, &mut bar]);
     bar.finish();
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            recorder.leave()?;
+            return Err(anyhow!("{error}; the time series up to there is in {}", whole::partial(csv).display()));
+        }
+    };
     recorder.finish()?;
-    // What is there when a subsystem gives up stays.
-    let outcome = outcome
-        .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
-    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
     warnings.extend(voltage_warning);
     warnings.extend(coupling_warning(&coupling));

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use clap::Args;
 use serde::Serialize;
 
@@ -116,7 +115,7 @@ pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mech
     let (mechanical, electrical) = settings::split(fmu.description(), scenario)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
     let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
-    let mut recorder = CsvRecorder::create(&output::partial(csv), false)?;
+    let mut recorder = CsvRecorder::create(csv, false)?;
     let detail = picture::DETAIL.min(scenario.until);
     let mut trace = Trace::new(scenario.until, detail);
     let mut contacts = Contacts::new(scenario.until - detail);
@@ -129,7 +128,6 @@ pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mech
     }
     bar.finish();
     recorder.finish()?;
-    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     Ok(Mechanics { summary, trace, contacts, warnings })
 }
 

@@ -142,11 +142,13 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     if arguments.check {
         return show_counts(arguments, &sweep, design);
     }
-    let engine = match (fmu, BuiltIn::new(&sweep)) {
-        (Some(fmu), _) => Engine::Fmu(fmu),
-        (None, Some(built_in)) => Engine::BuiltIn(Box::new(built_in)),
+    let engine = match fmu {
+        Some(fmu) => Engine::Fmu(fmu),
         // What the model itself does not offer goes through its FMU, with the same numbers.
-        (None, None) => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
+        None => match BuiltIn::new(&sweep)? {
+            Some(built_in) => Engine::BuiltIn(Box::new(built_in)),
+            None => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
+        },
     };
     let (stop, signal) = signals()?;
     let report = follow(arguments, &sweep, &engine, &stop)?;
