@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
@@ -38,11 +39,13 @@ enum Task {
     },
     /// Load an FMU and run it for some steps: does it keep the promises of its model description?
     Check {
-        /// The FMU; its code is run in this process
+        /// The FMU; its code is run
         file: PathBuf,
         /// Print one JSON object on stdout instead of the list
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        isolation: IsolationOptions,
     },
     /// Describe an FMU: platforms, capabilities, variables. Nothing of it is unpacked or run
     Info {
@@ -58,7 +61,7 @@ enum Task {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
         Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
-        Task::Check { file, json } => return fmu_check::run(file, *json),
+        Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)

@@ -14,6 +14,7 @@ mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
+mod isolation;
 mod options;
 mod output;
 mod packaging;
@@ -66,6 +67,9 @@ enum Verb {
     /// Run the shared library of ngspice for another process
     #[command(name = crate::ngspice::live::WORKER_VERB, hide = true)]
     NgspiceWorker,
+    /// Run an instance of an FMU for another process
+    #[command(name = crate::fmi::isolated::WORKER_VERB, hide = true)]
+    FmuWorker,
 }
 
 /// Whether everything that was checked holds.
@@ -93,7 +97,8 @@ pub fn main() -> ExitCode {
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Ssp(arguments) => ssp::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),
-        Verb::NgspiceWorker => worker::run(),
+        Verb::NgspiceWorker => worker::run_ngspice(),
+        Verb::FmuWorker => worker::run_fmu(),
     };
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,
