@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
+use super::message::plain;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
@@ -135,7 +136,7 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
     if json {
         output::print(&serde_json::to_string_pretty(&info)?)?;
     } else {
-        output::print(&text(&info))?;
+        output::print(&plain(&text(&info)))?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
+use super::message::one_line;
 use super::{Verdict, output};
 use crate::fmi::{FmiError, Fmu, Instance, Kind, Logging};
 
@@ -60,7 +61,7 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
         for check in &checks {
             let (mark, detail) = (if check.passed { "ok    " } else { "FAILED" }, &check.detail);
             let colon = if detail.is_empty() { "" } else { ": " };
-            output::print(&format!("{mark}  {}{colon}{detail}", check.name))?;
+            output::print(&one_line(&format!("{mark}  {}{colon}{detail}", check.name)))?;
         }
     }
     match end {
@@ -174,8 +175,6 @@ fn rollback(instance: &mut Instance) -> Result<String, Trouble> {
     let second = values(instance, &references)?;
     match first.iter().zip(&second).position(|(a, b)| a.to_bits() != b.to_bits()) {
         None => Ok(String::new()),
-        Some(index) => {
-            Err(Trouble::Failed(format!("{} = {} and then {}", names[index], first[index], second[index])))
-        }
+        Some(index) => Err(Trouble::Failed(format!("{} = {} and then {}", names[index], first[index], second[index]))),
     }
 }

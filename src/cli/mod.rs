@@ -15,6 +15,7 @@ mod fmu;
 mod fmu_check;
 mod format;
 mod isolation;
+mod message;
 mod options;
 mod output;
 mod packaging;
@@ -108,7 +109,7 @@ pub fn main() -> ExitCode {
         // A reader that has seen enough (`videg ... | head`) is no failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("videg: {error:#}");
+            eprintln!("videg: {}", message::one_line(&format!("{error:#}")));
             ExitCode::from(2)
         }
     }
@@ -123,7 +124,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
-    let message = message.join(" ");
+    let message = message::one_line(&message.join(" "));
     eprintln!("videg: {} (see --help)", message.trim_start_matches("error: "));
     ExitCode::from(2)
 }

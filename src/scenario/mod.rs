@@ -3,7 +3,7 @@
 mod file;
 mod preset;
 
-pub use file::{CaseFile, value_text};
+pub use file::{CaseFile, read_text, toml_error, value_text};
 
 use serde::Serialize;
 use thiserror::Error;

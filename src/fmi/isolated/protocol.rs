@@ -40,33 +40,97 @@ pub(super) enum Plain {
 /// Each further message to the worker: a call. States go by numbers from 1 on; 0 is none.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
-    Instantiate { name: CString, guid: CString, resources: CString, debug: bool },
+    Instantiate {
+        name: CString,
+        guid: CString,
+        resources: CString,
+        debug: bool,
+    },
     Free,
     /// Unloads the library.
     Unload,
-    SetDebugLogging { on: i32, categories: Vec<CString> },
-    SetupExperiment { tolerance: Option<f64>, start: f64, stop: Option<f64> },
+    SetDebugLogging {
+        on: i32,
+        categories: Vec<CString>,
+    },
+    SetupExperiment {
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    },
     Plain(Plain),
-    DoStep { time: f64, step: f64, keeps_no_state: i32 },
-    GetReal { references: Vec<u32> },
-    GetInteger { references: Vec<u32> },
-    GetBoolean { references: Vec<u32> },
-    GetString { references: Vec<u32> },
-    SetReal { references: Vec<u32>, values: Vec<f64> },
-    SetInteger { references: Vec<u32>, values: Vec<i32> },
-    SetBoolean { references: Vec<u32>, values: Vec<i32> },
-    SetString { references: Vec<u32>, values: Vec<CString> },
-    SetInputDerivatives { references: Vec<u32>, orders: Vec<i32>, values: Vec<f64> },
-    GetOutputDerivatives { references: Vec<u32>, orders: Vec<i32> },
-    DirectionalDerivative { unknowns: Vec<u32>, knowns: Vec<u32>, seed: Vec<f64> },
-    GetState { state: u64 },
-    SetState { state: u64 },
-    FreeState { state: u64 },
-    StateSize { state: u64 },
-    SerializeState { state: u64, size: u64 },
-    DeserializeState { bytes: Vec<u8> },
-    RealStatus { kind: i32 },
-    BooleanStatus { kind: i32 },
+    DoStep {
+        time: f64,
+        step: f64,
+        keeps_no_state: i32,
+    },
+    GetReal {
+        references: Vec<u32>,
+    },
+    GetInteger {
+        references: Vec<u32>,
+    },
+    GetBoolean {
+        references: Vec<u32>,
+    },
+    GetString {
+        references: Vec<u32>,
+    },
+    SetReal {
+        references: Vec<u32>,
+        values: Vec<f64>,
+    },
+    SetInteger {
+        references: Vec<u32>,
+        values: Vec<i32>,
+    },
+    SetBoolean {
+        references: Vec<u32>,
+        values: Vec<i32>,
+    },
+    SetString {
+        references: Vec<u32>,
+        values: Vec<CString>,
+    },
+    SetInputDerivatives {
+        references: Vec<u32>,
+        orders: Vec<i32>,
+        values: Vec<f64>,
+    },
+    GetOutputDerivatives {
+        references: Vec<u32>,
+        orders: Vec<i32>,
+    },
+    DirectionalDerivative {
+        unknowns: Vec<u32>,
+        knowns: Vec<u32>,
+        seed: Vec<f64>,
+    },
+    GetState {
+        state: u64,
+    },
+    SetState {
+        state: u64,
+    },
+    FreeState {
+        state: u64,
+    },
+    StateSize {
+        state: u64,
+    },
+    SerializeState {
+        state: u64,
+        size: u64,
+    },
+    DeserializeState {
+        bytes: Vec<u8>,
+    },
+    RealStatus {
+        kind: i32,
+    },
+    BooleanStatus {
+        kind: i32,
+    },
 }
 
 /// Each message from the worker.

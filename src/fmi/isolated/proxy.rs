@@ -266,7 +266,8 @@ unsafe extern "C" fn get_real_output_derivatives(
 ) -> fmi2Status {
     let name = "fmi2GetRealOutputDerivatives";
     // SAFETY: as above.
-    let (remote, references, orders, values) = unsafe { (of(c), copied(vr, n), copied(orders, n), of_length(values, n)) };
+    let (remote, references, orders, values) =
+        unsafe { (of(c), copied(vr, n), copied(orders, n), of_length(values, n)) };
     let answer = remote.call(name, &Request::GetOutputDerivatives { references, orders });
     remote.fill(name, answer, values)
 }

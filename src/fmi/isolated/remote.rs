@@ -119,7 +119,12 @@ impl Remote {
     }
 
     /// Puts what a call gave where the caller wants it.
-    pub fn fill<T: Number>(&mut self, function: &str, (status, given): (fmi2Status, Given), into: &mut [T]) -> fmi2Status {
+    pub fn fill<T: Number>(
+        &mut self,
+        function: &str,
+        (status, given): (fmi2Status, Given),
+        into: &mut [T],
+    ) -> fmi2Status {
         if status != fmi2OK && status != fmi2Warning {
             return status;
         }

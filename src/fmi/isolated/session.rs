@@ -30,7 +30,15 @@ impl Session {
     pub fn new(functions: Functions, environment: Arc<Environment>) -> Self {
         let callbacks = Box::new(environment.callbacks());
         let (component, states) = (ptr::null_mut(), HashMap::new());
-        Self { functions, component, _environment: environment, callbacks, name: CString::default(), states, last_state: 0 }
+        Self {
+            functions,
+            component,
+            _environment: environment,
+            callbacks,
+            name: CString::default(),
+            states,
+            last_state: 0,
+        }
     }
 
     /// Carries out a call. Without an instance, and with a state that there is not, it is an error.
@@ -132,9 +140,9 @@ impl Session {
                 Request::GetBoolean { references: vr } => {
                     given(0, vr.len(), Given::Integers, |to| (f.get_boolean)(c, vr.as_ptr(), vr.len(), to))
                 }
-                Request::GetString { references: vr } => given(ptr::null(), vr.len(), texts, |to| {
-                    (f.get_string)(c, vr.as_ptr(), vr.len(), to)
-                }),
+                Request::GetString { references: vr } => {
+                    given(ptr::null(), vr.len(), texts, |to| (f.get_string)(c, vr.as_ptr(), vr.len(), to))
+                }
                 Request::GetOutputDerivatives { references: vr, orders } => given(0.0, vr.len(), Given::Reals, |to| {
                     (f.get_real_output_derivatives)(c, vr.as_ptr(), vr.len(), orders.as_ptr(), to)
                 }),
@@ -169,7 +177,8 @@ impl Session {
                 }
                 Request::DeserializeState { bytes } => {
                     let mut pointer = ptr::null_mut();
-                    let status = (f.deserialize_state)(c, bytes.as_ptr().cast::<c_char>(), bytes.len(), &raw mut pointer);
+                    let status =
+                        (f.deserialize_state)(c, bytes.as_ptr().cast::<c_char>(), bytes.len(), &raw mut pointer);
                     (status, self.keep(0, pointer))
                 }
                 Request::SetState { state } => {
@@ -213,7 +222,12 @@ impl Session {
 }
 
 /// Has `call` fill an array of this length.
-fn given<T: Clone>(start: T, length: usize, of: fn(Vec<T>) -> Given, call: impl FnOnce(*mut T) -> fmi2Status) -> Answer {
+fn given<T: Clone>(
+    start: T,
+    length: usize,
+    of: fn(Vec<T>) -> Given,
+    call: impl FnOnce(*mut T) -> fmi2Status,
+) -> Answer {
     let mut values = vec![start; length];
     let status = call(values.as_mut_ptr());
     if status == fmi2OK || status == fmi2Warning { (status, of(values)) } else { (status, Given::Nothing) }
