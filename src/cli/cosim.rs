@@ -7,10 +7,11 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, names};
 
+use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
-use super::{Verdict, cosim_report, electrical, output, packaging, picture, settings};
+use super::{Verdict, cosim_report, electrical, output, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, EnergyBalance, FmuCircuit,
     HarvesterFmu, Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
@@ -36,6 +37,8 @@ pub struct Arguments {
     /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     adaptive: Option<f64>,
+    #[command(flatten)]
+    isolation: IsolationOptions,
 }
 
 /// The method of the master, as it is asked for.
@@ -119,10 +122,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let scenario = options.scenario()?;
     let coupling = Coupling { method: arguments.master.into(), tolerance: arguments.adaptive };
     coupling.check()?;
-    let fmu = packaging::open("VibroImpactHarvester")?;
+    let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let finished = couple(arguments.circuit, coupling, &fmu, scenario, &csv)?;
+    let finished = couple((arguments.circuit, &arguments.isolation), coupling, &fmu, scenario, &csv)?;
     let files = write_files(&folder, &csv, &finished)?;
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -135,9 +138,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-/// Runs the co-simulation and writes the time series to `csv`.
+/// Runs the co-simulation with a circuit, which as an FMU may be isolated, and writes the time series to `csv`.
 pub fn couple(
-    backend: Backend,
+    backend: (Backend, &IsolationOptions),
     coupling: Coupling,
     fmu: &Fmu,
     scenario: Scenario,
@@ -203,7 +206,7 @@ fn coupling_warning(coupling: &CouplingSummary) -> Option<String> {
 /// The circuit asked for, and three to compare it with: the same with an ideal switch, and two that gain, with isolated
 /// membranes and the voltage of release that gains most: a switch, and a storage in place of the load.
 fn circuits(
-    backend: Backend,
+    (backend, isolation): (Backend, &IsolationOptions),
     scenario: &Scenario,
     settings: &Settings,
     ratios: electrical::Ratios,
@@ -219,7 +222,7 @@ fn circuits(
             Box::new(NgspiceCircuit::new(&label(settings), &program, &elements, capacitance, &run)?)
         }
         Backend::Fmu => {
-            let fmu = packaging::open("HarvestingCircuit")?;
+            let fmu = isolation.open_own("HarvestingCircuit")?;
             let all = electrical::every_setting(settings);
             Box::new(FmuCircuit::new(&label(settings), &fmu, &all, capacitance, scenario.until)?)
         }

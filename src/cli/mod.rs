@@ -14,6 +14,8 @@ mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
+mod isolation;
+mod message;
 mod options;
 mod output;
 mod packaging;
@@ -66,6 +68,9 @@ enum Verb {
     /// Run the shared library of ngspice for another process
     #[command(name = crate::ngspice::live::WORKER_VERB, hide = true)]
     NgspiceWorker,
+    /// Run an instance of an FMU for another process
+    #[command(name = crate::fmi::isolated::WORKER_VERB, hide = true)]
+    FmuWorker,
 }
 
 /// Whether everything that was checked holds.
@@ -93,7 +98,8 @@ pub fn main() -> ExitCode {
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Ssp(arguments) => ssp::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),
-        Verb::NgspiceWorker => worker::run(),
+        Verb::NgspiceWorker => worker::run_ngspice(),
+        Verb::FmuWorker => worker::run_fmu(),
     };
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,
@@ -103,7 +109,7 @@ pub fn main() -> ExitCode {
         // A reader that has seen enough (`videg ... | head`) is no failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("videg: {error:#}");
+            eprintln!("videg: {}", message::one_line(&format!("{error:#}")));
             ExitCode::from(2)
         }
     }
@@ -118,7 +124,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
-    let message = message.join(" ");
+    let message = message::one_line(&message.join(" "));
     eprintln!("videg: {} (see --help)", message.trim_start_matches("error: "));
     ExitCode::from(2)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
+use super::message::one_line;
 use crate::scenario::Scenario;
 use crate::whole;
 
@@ -40,6 +41,6 @@ pub fn command_line() -> String {
 /// Shows warnings on stderr, one line each.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("videg: warning: {warning}");
+        eprintln!("videg: warning: {}", one_line(warning));
     }
 }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate_contacts::Contacts;
 use super::simulate_law::{self, Law};
-use super::{Verdict, format, output, packaging, picture, settings, simulate_both};
+use super::{Verdict, format, output, picture, settings, simulate_both};
 use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
 use crate::fmi::Fmu;
 use crate::report::{self, Column, Report, Section};
@@ -24,6 +25,8 @@ pub struct Arguments {
     /// compare [default: impulsive]
     #[arg(long, value_enum)]
     law: Option<Law>,
+    #[command(flatten)]
+    isolation: IsolationOptions,
 }
 
 /// What `--json` says of every run: what was run, and the mechanics.
@@ -90,10 +93,10 @@ pub struct Mechanics {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
     let scenario = simulate_law::scenario(arguments.law, options)?;
+    let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     if arguments.law == Some(Law::Both) {
-        return simulate_both::run(options, &scenario);
+        return simulate_both::run(options, &fmu, &scenario);
     }
-    let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
     let Mechanics { summary: mechanics, trace, warnings, .. } = follow(&fmu, &scenario, &csv)?;

@@ -22,6 +22,16 @@ pub(super) fn workspace() -> Option<PathBuf> {
         .or_else(|| around(here.as_deref()))
 }
 
+/// Where the library of an FMU may lie that goes with this program: not in some source tree around the working folder.
+pub(super) fn own_libraries(fmu: &FmuPackage) -> Vec<PathBuf> {
+    let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let program = std::env::current_exe().ok();
+    let around = program.as_deref().and_then(|path| path.ancestors().find(|folder| is_workspace(folder)));
+    let workspace = around.or_else(|| is_workspace(compiled).then_some(compiled));
+    let name = Platform::HOST.cargo_name(fmu.identifier);
+    folders(workspace, None).iter().map(|folder| folder.join(&name)).collect()
+}
+
 fn is_workspace(folder: &Path) -> bool {
     FMUS.iter().all(|fmu| folder.join(fmu.folder).join("Cargo.toml").is_file()) && folder.join("Cargo.toml").is_file()
 }

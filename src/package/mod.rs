@@ -98,6 +98,14 @@ impl Default for Options {
     }
 }
 
+/// Whether `library` has the bytes of the library of the FMU `identifier` that goes with this program: that beside it, or
+/// that of the source tree that it is of.
+pub fn is_own(identifier: &str, library: &Path) -> bool {
+    let Some(fmu) = FMUS.iter().find(|fmu| fmu.identifier == identifier) else { return false };
+    let Ok(bytes) = std::fs::read(library) else { return false };
+    locate::own_libraries(fmu).iter().any(|own| std::fs::read(own).is_ok_and(|own| own == bytes))
+}
+
 /// Where FMUs are written by default, for a source tree.
 fn default_output(workspace: Option<&Path>) -> PathBuf {
     workspace.unwrap_or_else(|| Path::new(".")).join("target").join("fmu")

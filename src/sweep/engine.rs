@@ -40,7 +40,8 @@ impl Engine {
     /// How many runs may go on at once.
     pub(super) fn at_once(&self, jobs: usize) -> usize {
         match self {
-            Self::Fmu(fmu) if fmu.description().co_simulation.can_be_instantiated_only_once_per_process => 1,
+            // Isolated instances have a process each.
+            Self::Fmu(fmu) if !fmu.is_isolated() && is_single(fmu) => 1,
             _ => jobs,
         }
     }
@@ -60,16 +61,24 @@ impl Engine {
             }
             Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
                 Ok(results) => Ok(Ok(results)),
-                Err(error) if is_final(&error) => Err(error.into()),
+                Err(error) if is_final(&error, fmu) => Err(error.into()),
                 Err(error) => Ok(Err(error.to_string())),
             },
         }
     }
 }
 
-/// Whether no instance of the FMU can go on.
-fn is_final(error: &FmiError) -> bool {
-    matches!(error, FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. })
+fn is_single(fmu: &Fmu) -> bool {
+    fmu.description().co_simulation.can_be_instantiated_only_once_per_process
+}
+
+/// Whether no instance of the FMU can go on. What becomes of an isolated one concerns no other.
+fn is_final(error: &FmiError, fmu: &Fmu) -> bool {
+    match error {
+        FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. } => !fmu.is_isolated(),
+        FmiError::Worker { .. } => true,
+        _ => false,
+    }
 }
 
 impl BuiltIn {
@@ -175,6 +184,7 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
     let results =
         Results { averages: averages.filter(|_| sweep.averages), recorded: recorded.collect::<Result<_, _>>()? };
     slave.instance.terminate()?;
+    slave.instance.free()?;
     Ok(results)
 }
 

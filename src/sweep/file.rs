@@ -26,7 +26,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::{Design, Vary};
-use crate::scenario::{CaseFile, ScenarioError, read_file};
+use crate::scenario::{CaseFile, ScenarioError, read_file, toml_error};
 
 /// What a sweep file says.
 #[derive(Debug, Default)]
@@ -80,7 +80,7 @@ impl SweepFile {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let said = |error: toml::de::Error| error.to_string().trim_end().to_owned();
+        let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(text).map_err(said)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
         let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =
