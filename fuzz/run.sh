@@ -44,10 +44,11 @@ fuzz() {
         [[ ! -d fuzz/$kind/$target ]] || folders+=("fuzz/$kind/$target")
     done
     echo "--- $target: $seconds s"
-    local TIMEFORMAT='%U %S'
+    local TIMEFORMAT='%R %U %S' real
     { time cargo +nightly fuzz run "$target" "${folders[@]}" -- -max_total_time="$seconds" -timeout=10 \
         -rss_limit_mb=2048 -print_final_stats=1 >"$scratch/log" 2>&1 || code=$?; } 2>"$scratch/time"
-    cpu=$(awk '{ printf "%.0f", $1 + $2 }' "$scratch/time")
+    real=$(awk '{ printf "%.0f", $1 }' "$scratch/time")
+    cpu=$(awk '{ printf "%.0f", $2 + $3 }' "$scratch/time")
     local executions
     executions=$(last 'stat::number_of_executed_units:')
     if [[ -z $executions ]]; then
@@ -55,8 +56,7 @@ fuzz() {
         echo "$target did not run" >&2
         exit 2
     fi
-    echo "$(date --utc +%F),$(git rev-parse --short=10 HEAD),$target,$(last 'runs in'),$cpu,${executions:-0},$(
-        last 'cov:'),$(last 'ft:'),$((code != 0))" >>"$record"
+    echo "$(date --utc +%F),$(git rev-parse --short=10 HEAD),$target,$real,$cpu,$executions,$(last 'cov:'),$(last 'ft:'),$((code != 0))" >>"$record"
     tail -1 "$record"
     if [[ $code -ne 0 ]]; then
         grep --invert-match '^#' "$scratch/log" | tail -60 >&2
