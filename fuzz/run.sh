@@ -20,56 +20,56 @@ if [[ ${1:-} =~ ^[0-9]+$ ]]; then
     shift
 fi
 
-scratch=$(mktemp --directory)
+# In memory, where there is such a place: some targets write files.
+place=/dev/shm
+[[ -d $place && -w $place ]] || place=${TMPDIR:-/tmp}
+scratch=$(mktemp --directory --tmpdir="$place" videg-fuzz-XXXXXX)
 trap 'rm -rf "$scratch"' EXIT
-# Files of the targets themselves: in memory, where there is such a place.
-if [[ -d /dev/shm && -w /dev/shm ]]; then
-    TMPDIR=$(mktemp --directory --tmpdir=/dev/shm videg-fuzz-XXXXXX)
-    export TMPDIR
-    trap 'rm -rf "$scratch" "$TMPDIR"' EXIT
-fi
+export TMPDIR=$scratch/files ASAN_OPTIONS=detect_leaks=1:detect_odr_violation=0
+
+# The programs, where no later build changes them.
+build() {
+    local started=$SECONDS
+    cargo +nightly fuzz build >"$scratch/build" 2>&1 || { cat "$scratch/build" >&2 && exit 2; }
+    mkdir -p "$scratch/files"
+    for target in "$@"; do
+        cp "fuzz/target/$(rustc +nightly --print host-tuple)/release/$target" "$scratch/$target"
+    done
+    echo "built in $((SECONDS - started)) s"
+}
 
 # The last number behind a word in what libFuzzer printed.
 last() {
     local found
-    found=$(grep --only-matching --extended-regexp "$1 [0-9]+" "$scratch/log" | tail -1)
+    found=$(grep --only-matching --extended-regexp "$1 +[0-9]+" "$scratch/log" | tail -1)
     echo "${found##* }"
 }
 
-# Runs a target; 1 if it found something.
+# Runs a target and adds its line; fails if it found something.
 fuzz() {
-    local target=$1 code=0 cpu folders=("fuzz/corpus/$1")
-    mkdir -p "fuzz/corpus/$target"
+    local target=$1 code=0 real user system executions TIMEFORMAT='%0R %0U %0S'
+    local folders=("fuzz/corpus/$target") artifacts=fuzz/artifacts/$target/
+    mkdir -p "${folders[0]}" "$artifacts"
     for kind in seeds regressions; do
         [[ ! -d fuzz/$kind/$target ]] || folders+=("fuzz/$kind/$target")
     done
-    echo "--- $target: $seconds s"
-    local TIMEFORMAT='%R %U %S' real
-    { time cargo +nightly fuzz run "$target" "${folders[@]}" -- -max_total_time="$seconds" -timeout=10 \
-        -rss_limit_mb=2048 -print_final_stats=1 >"$scratch/log" 2>&1 || code=$?; } 2>"$scratch/time"
-    real=$(awk '{ printf "%.0f", $1 }' "$scratch/time")
-    cpu=$(awk '{ printf "%.0f", $2 + $3 }' "$scratch/time")
-    local executions
+    { time "$scratch/$target" "${folders[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+        -print_final_stats=1 -artifact_prefix="$artifacts" >"$scratch/log" 2>&1 || code=$?; } 2>"$scratch/time"
+    read -r real user system <"$scratch/time"
     executions=$(last 'stat::number_of_executed_units:')
-    if [[ -z $executions ]]; then
-        tail -30 "$scratch/log" >&2
-        echo "$target did not run" >&2
-        exit 2
-    fi
-    echo "$(date --utc +%F),$(git rev-parse --short=10 HEAD),$target,$real,$cpu,$executions,$(last 'cov:'),$(last 'ft:'),$((code != 0))" >>"$record"
-    tail -1 "$record"
     if [[ $code -ne 0 ]]; then
-        grep --invert-match '^#' "$scratch/log" | tail -60 >&2
-        return 1
+        grep --invert-match '^#[0-9]' "$scratch/log" | tail -60 >&2
+        [[ -n $executions ]] || exit 2 # it did not even run
     fi
+    echo "$(date --utc +%F),$commit,$target,$real,$((user + system)),$executions,$(last cov:),$(last ft:),$((code != 0))" |
+        tee --append "$record"
+    return "$((code != 0))"
 }
 
 mapfile -t all < <(cargo +nightly fuzz list)
 [[ $# -gt 0 ]] || set -- "${all[@]}"
-echo "building"
-started=$SECONDS
-cargo +nightly fuzz build >"$scratch/build" 2>&1 || { cat "$scratch/build" >&2 && exit 2; }
-echo "built in $((SECONDS - started)) s"
+commit=$(git rev-parse --short=10 HEAD)
+build "$@"
 [[ -s $record ]] || echo date,commit,target,seconds,cpu_seconds,executions,edges,features,findings >"$record"
 failed=()
 for target in "$@"; do
