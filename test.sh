@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy scale conformance browser)
+readonly STAGES=(setup lint unit valgrind fmpy fuzz scale conformance browser)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -15,8 +15,9 @@ readonly REQUIREMENTS=(
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: one takes long to build what it runs, the other installs Wine and cross compilers.
-readonly EXTRA_STAGES=(conformance-slow portability)
+# Not among those that run by default: one takes long to build what it runs, one installs Wine and cross compilers, one
+# needs a nightly compiler.
+readonly EXTRA_STAGES=(conformance-slow portability sanitizers)
 
 usage() {
     cat <<'EOF'
@@ -27,7 +28,8 @@ Runs the stages named, or all of them in this order:
   lint         cargo fmt, clippy and rustdoc, with warnings as errors
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
-  fmpy         FMPy simulates the FMUs and agrees with the command line
+  fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
+  fuzz         each fuzz target for 20 s, where there is a nightly compiler; kept inputs run in the stage unit anyway
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
@@ -38,6 +40,7 @@ Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
+  sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF
@@ -186,6 +189,22 @@ stage_fmpy() {
     need_python
     build_fmus
     run "$VENV/bin/python" -m pytest tests/fmpy
+    run "$VENV/bin/python" tests/valgrind/fmpy_run.py
+}
+
+has_nightly() {
+    cargo +nightly --version >/dev/null 2>&1
+}
+
+# A record of its own: the one in git is of long runs.
+stage_fuzz() {
+    if ! has_nightly; then
+        echo "no nightly compiler: nothing is fuzzed, kept inputs are replayed in the stage unit"
+        return
+    fi
+    PATH="$PWD/target/tools/bin:$PATH" has_command cargo-fuzz ||
+        run cargo install --quiet --locked --root target/tools cargo-fuzz --version 0.13.2
+    run env RECORD=/dev/null fuzz/run.sh 20
 }
 
 stage_scale() {
@@ -216,6 +235,11 @@ stage_conformance-slow() {
 stage_portability() {
     run tests/linux-glibc/run.sh
     run tests/windows/run.sh
+}
+
+stage_sanitizers() {
+    has_nightly || fail "no nightly compiler, which sanitizers need (rustup toolchain install nightly)"
+    run tests/sanitizers/run.sh
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -11,14 +11,22 @@
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`whole`] writes files that appear whole or not at all;
 //! - [`cli`] is the command-line tool.
+//!
+//! Without the feature `tool`, which is on by default, there are [`fmi`], [`scenario`], [`cosim`], [`ngspice`] and
+//! [`sweep`] alone.
 
+#[cfg(feature = "tool")]
 pub mod cli;
 pub mod cosim;
+#[cfg(feature = "tool")]
 pub mod crosscheck;
 pub mod fmi;
 pub mod ngspice;
+#[cfg(feature = "tool")]
 pub mod package;
+#[cfg(feature = "tool")]
 pub mod paper;
+#[cfg(feature = "tool")]
 pub mod report;
 pub mod scenario;
 pub mod sweep;

@@ -79,7 +79,11 @@ impl SweepFile {
         Ok(file)
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
+    /// Reads the text of a sweep file.
+    ///
+    /// # Errors
+    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
+    pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(text).map_err(said)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
