@@ -5,6 +5,7 @@
 #   linux-x86_64     needs no C library newer than 2.17; needs cargo-zigbuild and zig (release/zig.sh installs them)
 #   windows-x86_64   needs no runtime library to be installed; on Windows
 #   macos-universal  one file for Intel and Apple silicon; on a Mac
+#   host             for this machine and its C library: to try a release out
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -18,7 +19,7 @@ built=${CARGO_TARGET_DIR:-target}
 
 # build SUBCOMMAND TARGET: Cargo's subcommand, for its name of the target.
 build() {
-    cargo "$1" --release --locked --target "$2" -p videg --bin videg --features embedded-fmus
+    cargo "$1" --release --locked ${2:+--target "$2"} -p videg --bin videg --features embedded-fmus
 }
 
 case $1 in
@@ -39,6 +40,11 @@ case $1 in
         build build x86_64-apple-darwin
         build build aarch64-apple-darwin
         lipo -create -output "$folder/videg" "$built"/{x86_64,aarch64}-apple-darwin/release/videg
+        ;;
+    host)
+        export VIDEG_FMUS
+        build build ""
+        cp "$built/release/videg" "$folder/"
         ;;
     *) fail "no program is called \"$1\"; there are linux-x86_64, windows-x86_64 and macos-universal" ;;
 esac

@@ -175,3 +175,31 @@ def test_every_licence_of_what_is_linked_is_in_the_notices(tree: Path) -> None:
     # Nothing that only tests or builds use.
     for other in ("- proptest ", "- criterion ", "- serde_derive "):
         assert other not in text, other
+
+
+def interface(tree: Path, task: str) -> subprocess.CompletedProcess:
+    return subprocess.run(["python3", tree / "release/interface.py", task], capture_output=True, text=True)
+
+
+def test_a_variable_that_was_released_changes_only_with_the_version(tree: Path) -> None:
+    (tree / "release/interface.txt").unlink(missing_ok=True)
+    assert "nothing released yet" in interface(tree, "check").stdout
+    interface(tree, "record")
+    assert interface(tree, "check").returncode == 0
+    description = tree / "modelDescription/HarvestingCircuit.xml"
+    replace(description, 'name="load.resistance"', 'name="load.ohms"')
+    found = interface(tree, "check")
+    assert found.returncode == 1 and "  HarvestingCircuit load.resistance " in found.stderr, found.stderr
+    replace(tree / "Cargo.toml", 'version = "0.1.0"', 'version = "0.1.1"')
+    assert interface(tree, "check").returncode == 1
+    replace(tree / "Cargo.toml", 'version = "0.1.1"', 'version = "0.2.0"')
+    assert interface(tree, "check").returncode == 0
+
+
+def test_a_new_variable_breaks_nothing(tree: Path) -> None:
+    interface(tree, "record")
+    record = tree / "release/interface.txt"
+    lines = record.read_text().splitlines(keepends=True)
+    assert any(line.startswith("VibroImpactHarvester left.capacitance ") for line in lines)
+    record.write_text("".join(line for line in lines if " left.capacitance " not in line))
+    assert interface(tree, "check").returncode == 0
