@@ -11,13 +11,14 @@ readonly REQUIREMENTS=(
     scale/requirements.txt
     tests/requirements-conformance.txt
     tests/requirements-browser.txt
+    tests/requirements-release.txt
 )
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: one takes long to build what it runs, one installs Wine and cross compilers, one
-# needs a nightly compiler.
-readonly EXTRA_STAGES=(conformance-slow portability sanitizers)
+# Not among those that run by default: they take long to build what they run, install Wine and cross compilers, or need a
+# nightly compiler.
+readonly EXTRA_STAGES=(conformance-slow portability sanitizers release coverage)
 
 usage() {
     cat <<'EOF'
@@ -25,7 +26,7 @@ Usage: ./test.sh [STAGE...]
 
 Runs the stages named, or all of them in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
-  lint         cargo fmt, clippy and rustdoc, with warnings as errors
+  lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
@@ -41,6 +42,9 @@ Only when named:
                conformance with fmi-sim, too, which takes ten minutes to build
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
+  release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
+               licences of the dependencies; installs mingw and builds cargo-deny
+  coverage     lines of model, circuit and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF
@@ -165,6 +169,23 @@ stage_lint() {
         skip "cargo clippy is not installed"
     fi
     run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+    run release/version.sh check
+    run python3 release/interface.py check
+    lint_workflows
+}
+
+lint_workflows() {
+    if has_command shellcheck; then
+        run shellcheck release/*.sh tests/release/run.sh tests/coverage/run.sh
+    else
+        skip "shellcheck is not installed"
+    fi
+    if [[ -x $VENV/bin/zizmor ]]; then
+        run "$VENV/bin/check-jsonschema" --builtin-schema vendor.github-workflows .github/workflows/*.yml
+        run "$VENV/bin/zizmor" --quiet --offline .github/workflows
+    else
+        skip "check-jsonschema and zizmor are not in $VENV"
+    fi
 }
 
 stage_unit() {
@@ -240,6 +261,17 @@ stage_portability() {
 stage_sanitizers() {
     has_nightly || fail "no nightly compiler, which sanitizers need (rustup toolchain install nightly)"
     run tests/sanitizers/run.sh
+}
+
+stage_release() {
+    need_python
+    run "$VENV/bin/python" -m pytest tests/release
+    run release/deny.sh
+    run tests/release/run.sh
+}
+
+stage_coverage() {
+    run tests/coverage/run.sh
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::io::{self, Cursor, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, System, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 
 use super::error::{PackageError, Result};
 
@@ -25,6 +26,31 @@ enum Source {
 }
 
 impl Entries {
+    /// Reads an archive that this program wrote. Not for what comes from outside: nothing bounds what is unpacked.
+    ///
+    /// # Errors
+    /// When it is broken.
+    pub(super) fn read(archive: &[u8]) -> std::result::Result<Self, ZipError> {
+        let mut zip = ZipArchive::new(Cursor::new(archive))?;
+        let mut entries = Self::default();
+        for index in 0..zip.len() {
+            let mut entry = zip.by_index(index)?;
+            let name = entry.name()?.into_owned();
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes)?;
+            entries.add_bytes(&name, bytes);
+        }
+        Ok(entries)
+    }
+
+    /// The bytes of an entry that holds bytes.
+    pub(super) fn bytes(&self, name: &str) -> Option<&[u8]> {
+        match self.files.get(name) {
+            Some(Source::Bytes(bytes)) => Some(bytes),
+            _ => None,
+        }
+    }
+
     /// Adds a file under a name with forward slashes.
     pub fn add_file(&mut self, name: &str, file: &Path) {
         self.files.insert(name.to_owned(), Source::File(file.to_path_buf()));
