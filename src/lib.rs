@@ -11,6 +11,8 @@
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`cli`] is the command-line tool.
 
+#[cfg(doctest)]
+mod book;
 pub mod cli;
 pub mod cosim;
 pub mod crosscheck;
