@@ -13,8 +13,8 @@ pub enum Mark {
     NotRun {
         /// Why.
         reason: String,
-        /// Only lines with this part are left out.
-        part: Option<String>,
+        /// Only lines with one of these are left out, if there are any.
+        parts: Vec<String>,
     },
 }
 
@@ -45,7 +45,7 @@ impl Block {
     /// Why all of it does not run.
     pub fn not_run(&self) -> Option<&str> {
         match &self.mark {
-            Some(Mark::NotRun { reason, part: None }) => Some(reason),
+            Some(Mark::NotRun { reason, parts }) if parts.is_empty() => Some(reason),
             _ => None,
         }
     }
@@ -53,7 +53,7 @@ impl Block {
     /// Why a `line` of it does not run.
     pub fn line_not_run(&self, line: &str) -> Option<&str> {
         match &self.mark {
-            Some(Mark::NotRun { reason, part: Some(part) }) if line.contains(part.as_str()) => Some(reason),
+            Some(Mark::NotRun { reason, parts }) if parts.iter().any(|part| line.contains(part)) => Some(reason),
             _ => self.not_run(),
         }
     }
@@ -95,14 +95,14 @@ fn parse_mark(comment: &str) -> Option<Mark> {
     if let Some(name) = inner.strip_prefix("file:") {
         return Some(Mark::File(name.trim().to_owned()));
     }
-    let (part, reason) = inner.strip_prefix("not run")?.split_once(": ")?;
-    let part = part.trim().trim_matches('"');
-    Some(Mark::NotRun { reason: reason.trim().to_owned(), part: (!part.is_empty()).then(|| part.to_owned()) })
+    let (parts, reason) = inner.strip_prefix("not run")?.split_once(": ")?;
+    let parts = parts.split('"').skip(1).step_by(2).map(str::to_owned).collect();
+    Some(Mark::NotRun { reason: reason.trim().to_owned(), parts })
 }
 
 #[test]
 fn blocks_are_found_with_the_comments_before_them() {
-    let page = "<!-- file: a.c -->\n```c\nint x;\n```\n\ntext\n\n<!-- not run \"win64\": no Wine -->\n\n```sh\na\n\nb win64\n```\n\n\
+    let page = "<!-- file: a.c -->\n```c\nint x;\n```\n\ntext\n\n<!-- not run \"win64\" \"mac\": no Wine -->\n\n```sh\na\n\nb win64\n```\n\n\
                 <!-- file: lost -->\nwords\n\n```python\n```\n";
     let found = blocks(page);
     let languages: Vec<_> = found.iter().map(|block| (block.language.as_str(), block.line)).collect();

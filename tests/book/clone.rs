@@ -35,9 +35,13 @@ impl Clone {
             }
         }
         for (name, text) in files {
-            std::fs::write(folder.path().join(name), text).unwrap();
+            let file = folder.path().join(name);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, text).unwrap();
         }
         symlink(env!("CARGO_BIN_EXE_videg"), programs.path().join("videg")).unwrap();
+        // Equal figures, equal bytes.
+        std::fs::write(programs.path().join("matplotlibrc"), "svg.hashsalt: videg\n").unwrap();
         let cargo = programs.path().join("cargo");
         std::fs::write(&cargo, CARGO).unwrap();
         std::fs::set_permissions(&cargo, std::fs::Permissions::from_mode(0o755)).unwrap();
@@ -58,7 +62,8 @@ impl Clone {
         command.current_dir(self.path()).stdin(Stdio::null()).env("PATH", std::env::join_paths(places).unwrap());
         command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or("cargo".into()));
         // What a reader has: a terminal of this width, and no variables of `cargo test`.
-        command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg");
+        command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg").env("FIGURES", "figures");
+        command.env("MATPLOTLIBRC", self.programs.path()).env("SOURCE_DATE_EPOCH", "0");
         command.env_remove("RUSTFLAGS").env_remove("UPDATE_BOOK");
         command
     }
@@ -68,7 +73,7 @@ impl Clone {
         let output = self.command("bash").args(["-c", &format!("exec 2>&1\n{line}")]).output().unwrap();
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         let here = self.path().to_string_lossy().into_owned();
-        let printed = printed.replace(&here, ".").replace(&*root().to_string_lossy(), ".");
+        let printed = printed.replace(&here, "...").replace(&*root().to_string_lossy(), "...");
         (output.status.success(), printed)
     }
 }

@@ -17,6 +17,15 @@ fn targets(page: &str) -> Vec<String> {
     events.filter_map(target).collect()
 }
 
+/// File names of the pictures of a page that lie beside it.
+pub fn pictures(page: &str) -> Vec<String> {
+    let picture = |event| match event {
+        Event::Start(Tag::Image { dest_url, .. }) if !dest_url.contains('/') => Some(dest_url.to_string()),
+        _ => None,
+    };
+    Parser::new(page).filter_map(picture).collect()
+}
+
 /// Names of the headings of a page in links, as mdBook and code hosts make them.
 fn anchors(page: &str) -> Vec<String> {
     let (mut found, mut heading): (Vec<String>, Option<String>) = (Vec::new(), None);

@@ -1,6 +1,6 @@
 //! Changes of the sources that a page proposes.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -10,7 +10,7 @@ use crate::root;
 const PACKAGES: [(&str, &str); 3] =
     [("model/", "videg-model"), ("circuit/", "videg-circuit"), ("fmu/harvester/", "videg-fmu-harvester")];
 
-/// Applies `diff` to a copy of the sources and runs the unit tests of the packages that it changes.
+/// Applies `diff` to a copy of the sources and compiles the packages that it changes, or runs the test that it adds to one.
 pub fn applies_and_passes(diff: &str) -> Result<(), String> {
     // Always the same folder, so that Cargo knows what it has compiled before.
     let folder = root().join("target/book/source");
@@ -20,10 +20,11 @@ pub fn applies_and_passes(diff: &str) -> Result<(), String> {
     let mut apply = Command::new("git");
     apply.arg("apply").arg(&file).env("GIT_CEILING_DIRECTORIES", root().join("target/book"));
     run(apply.current_dir(&folder))?;
-    for package in packages(diff) {
-        let mut test = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-        test.args(["test", "--quiet", "--offline", "--lib", "--package", package]).current_dir(&folder);
-        run(test.env("CARGO_TARGET_DIR", root().join("target")))?;
+    for (package, test) in packages(diff) {
+        let mut check = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+        let task = test.map_or(vec!["check"], |test| vec!["test", "--test", test]);
+        check.args(task).args(["--quiet", "--offline", "--package", package]).current_dir(&folder);
+        run(check.env("CARGO_TARGET_DIR", root().join("target")))?;
     }
     Ok(())
 }
@@ -34,10 +35,16 @@ fn run(command: &mut Command) -> Result<(), String> {
     output.status.success().then_some(()).ok_or_else(|| format!("{command:?}\n{}", String::from_utf8_lossy(&printed)))
 }
 
-fn packages(diff: &str) -> BTreeSet<&'static str> {
-    let files = diff.lines().filter_map(|line| line.strip_prefix("+++ b/"));
-    let of = |file: &str| PACKAGES.iter().find(|(folder, _)| file.starts_with(folder)).map(|(_, package)| *package);
-    files.filter_map(of).collect()
+/// The packages that `diff` changes, each with the test that it adds to it.
+fn packages(diff: &str) -> BTreeMap<&'static str, Option<&str>> {
+    let mut found = BTreeMap::new();
+    for file in diff.lines().filter_map(|line| line.strip_prefix("+++ b/")) {
+        let Some((folder, package)) = PACKAGES.iter().find(|(folder, _)| file.starts_with(folder)) else { continue };
+        let test = file.strip_prefix(folder).and_then(|file| file.strip_prefix("tests/")?.strip_suffix(".rs"));
+        let known = found.entry(*package).or_insert(None);
+        *known = test.or(*known);
+    }
+    found
 }
 
 /// What Cargo needs of the source tree. Files that are there already and equal keep their time.

@@ -95,7 +95,7 @@ fn the_page_of_cases_is_that_of_the_model() {
     );
     let clone = Clone::new(std::iter::empty());
     for case in Case::ALL {
-        let (done, printed) = clone.shell(&format!("videg simulate --case {} --json", case.name));
+        let (done, printed) = clone.shell(&format!("videg simulate --case {} --json 2>/dev/null", case.name));
         let result: serde_json::Value = serde_json::from_str(&printed).unwrap_or_else(|_| panic!("{done}: {printed}"));
         let (paper, ours) = match (case.paper_voltage_gain, case.paper_power) {
             (Some(gain), _) => (format!("{gain} V/s"), format!("{:.0} V/s", result["average_voltage_gain"].as_f64().unwrap())),

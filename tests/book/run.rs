@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::ops::Range;
+use std::path::Path;
 
 use clap::Command;
 
@@ -11,10 +12,13 @@ use crate::clone::Clone;
 use crate::compare::agree;
 use crate::console::{self, Step};
 use crate::interpreter::Interpreter;
-use crate::{has_ngspice, patch, python, root, updating};
+use crate::{has_ngspice, links, patch, python, root, updating};
 
 /// Languages whose blocks are files for commands of the chapter.
 const FILES: [&str; 6] = ["c", "spice", "toml", "json", "xml", "csv"];
+
+/// Where chapters with Rust in them become documentation tests.
+const DOCUMENTATION_TESTS: [&str; 2] = ["src/book.rs", "fmu/export/src/lib.rs"];
 
 /// A page while its blocks run.
 struct Session<'a> {
@@ -146,6 +150,9 @@ impl<'a> Session<'a> {
         if python().is_none() {
             return self.leave_out(block, "block", "./test.sh setup has not run");
         }
+        if block.text.contains("\"ngspice\"") && !has_ngspice() {
+            return self.leave_out(block, "block", "ngspice is not there");
+        }
         let (done, printed) = self.interpreter.get_or_insert_with(|| Interpreter::start(&self.clone)).run(&block.text);
         let shown = output.map_or("", |output| output.text.as_str());
         if !done {
@@ -160,9 +167,10 @@ impl<'a> Session<'a> {
     }
 
     fn rust(&mut self, block: &Block) {
-        let listed = std::fs::read_to_string(root().join("src/book.rs")).unwrap();
-        if !listed.contains(&format!("\"/{}\"", self.chapter.path.display())) {
-            self.fail(block, "src/book.rs does not list the chapter, so the block is not compiled");
+        let chapter = format!("/{}\"", self.chapter.path.display());
+        let lists = |file: &&str| std::fs::read_to_string(root().join(file)).unwrap().contains(&chapter);
+        if !DOCUMENTATION_TESTS.iter().any(|file| lists(&file)) {
+            self.fail(block, &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"));
         }
     }
 
@@ -188,18 +196,28 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Writes what was printed into the page.
+    /// Writes what was printed into the page, and the pictures that its blocks drew beside it.
     fn update(&self) {
+        let folder = self.chapter.path.parent().unwrap_or(Path::new(""));
+        for name in links::pictures(&self.chapter.text) {
+            let drawn = self.clone.path().join("figures").join(&name);
+            if drawn.exists() {
+                std::fs::copy(drawn, root().join(folder).join(&name)).unwrap();
+            }
+        }
         let mut text = self.chapter.text.clone();
         for (range, new) in self.changes.iter().rev() {
             text.replace_range(range.clone(), new);
         }
-        std::fs::write(root().join(&self.chapter.path), text).unwrap();
+        if text != self.chapter.text {
+            std::fs::write(root().join(&self.chapter.path), text).unwrap();
+        }
     }
 }
 
 /// `VIDEG_PAGE=docs/theory` runs only the pages whose path contains that.
 #[test]
+#[ignore = "runs all commands of the book, some minutes: ./test.sh book"]
 fn every_block_of_every_page_runs_and_prints_what_is_shown() {
     let only = std::env::var("VIDEG_PAGE").unwrap_or_default();
     let (mut failures, mut left_out) = (String::new(), String::new());
@@ -208,7 +226,7 @@ fn every_block_of_every_page_runs_and_prints_what_is_shown() {
         session.run();
         session.failures.iter().for_each(|failure| writeln!(failures, "{failure}\n").unwrap());
         session.left_out.iter().for_each(|what| writeln!(left_out, "  {what}").unwrap());
-        if updating() && !session.changes.is_empty() {
+        if updating() {
             session.update();
         }
     }
