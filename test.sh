@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy fuzz scale conformance browser)
+readonly STAGES=(setup lint unit valgrind fmpy fuzz scale conformance browser book)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -36,6 +36,8 @@ Runs the stages named, or all of them in this order:
                on how masters converge and circuits agree
   browser      reports in headless Chromium: drawn, without errors or requests, on a phone and a desktop, on paper;
                screenshots go to target/screenshots
+  book         every code block of the book and the README runs and prints what is shown there; mdBook builds
+               target/book/html, which headless Chromium looks at
 
 Only when named:
   conformance-slow
@@ -246,6 +248,15 @@ stage_browser() {
     need_python
     run cargo build --release --example figures
     run "$VENV/bin/python" -m pytest tests/browser
+}
+
+# mdBook is built from source once and then kept in target/tools.
+stage_book() {
+    need_python
+    run cargo test --test book -- --include-ignored
+    run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
+    run target/tools/bin/mdbook build
+    run "$VENV/bin/python" -m pytest tests/book
 }
 
 stage_conformance-slow() {

@@ -15,6 +15,8 @@
 //! Without the feature `tool`, which is on by default, there are [`fmi`], [`scenario`], [`cosim`], [`ngspice`] and
 //! [`sweep`] alone.
 
+#[cfg(doctest)]
+mod book;
 #[cfg(feature = "tool")]
 pub mod cli;
 pub mod cosim;

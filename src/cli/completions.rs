@@ -1,9 +1,9 @@
 //! `videg completions`: what a shell needs to complete the command line.
 
-use clap::{Args, CommandFactory as _};
+use clap::Args;
 use clap_complete::Shell;
 
-use super::{Cli, Verdict};
+use super::{Verdict, command};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -15,7 +15,7 @@ pub struct Arguments {
 /// Prints the completions.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "videg", &mut script);
+    clap_complete::generate(arguments.shell, &mut command(), "videg", &mut script);
     std::io::Write::write_all(&mut std::io::stdout(), &script)?;
     Ok(Verdict::Passed)
 }

@@ -37,7 +37,7 @@ mod worker;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 /// Vibro-impact dielectric elastomer generator: co-simulate the harvester FMU with a harvesting circuit.
 #[derive(Parser)]
@@ -81,6 +81,11 @@ pub(crate) enum Verdict {
     Failed,
     /// Ended early and in order by a signal of this number.
     Stopped(u8),
+}
+
+/// The command line as it is parsed: every verb with its options and their help.
+pub fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Runs the tool with the arguments of the process.

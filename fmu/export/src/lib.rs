@@ -71,6 +71,11 @@
 //! `fmi2GetDirectionalDerivative` unless the model offers it.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
+/// The chapter of the book about this crate: what it shows compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/howto/fmu.md")]
+mod book {}
+
 mod access;
 mod call_state;
 mod error;

@@ -1,0 +1,77 @@
+//! Commands of `console` and `sh` blocks.
+
+/// Commands that do not run here, and why: what they do belongs to other stages or takes long.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("cargo bench", "a benchmark"),
+    ("cargo run --release --example", "shows what benchmarks measured last"),
+    ("cargo test", "the tests themselves"),
+    ("cargo +nightly", "needs a nightly compiler"),
+    ("./test.sh", "the tests themselves"),
+    ("UPDATE_", "writes what the tests compare with"),
+];
+
+/// A command of a transcript, and what the page shows behind it.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Step {
+    /// The command, with its continuation lines.
+    pub command: String,
+    /// What it prints.
+    pub shown: String,
+}
+
+/// The commands of a `console` block.
+pub fn steps(text: &str) -> Vec<Step> {
+    let mut steps: Vec<Step> = Vec::new();
+    let mut continued = false;
+    for line in text.lines() {
+        match (line.strip_prefix("$ "), steps.last_mut()) {
+            (_, Some(step)) if continued => step.command += &format!("\n{line}"),
+            (Some(command), _) => steps.push(Step { command: command.to_owned(), shown: String::new() }),
+            (None, Some(step)) => step.shown += &format!("{line}\n"),
+            (None, None) => panic!("a console block begins with \"$ \", not with {line:?}"),
+        }
+        continued = line.ends_with('\\');
+    }
+    steps
+}
+
+/// The block that these are the commands of.
+pub fn transcript(steps: &[Step]) -> String {
+    steps.iter().map(|step| format!("$ {}\n{}", step.command, step.shown)).collect()
+}
+
+/// The commands of a `sh` block, one a line, without comments.
+pub fn commands(text: &str) -> Vec<String> {
+    let joined = text.replace("\\\n", " ");
+    let bare = joined.lines().map(|line| line.split_once(" # ").map_or(line, |(command, _)| command).trim());
+    bare.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect()
+}
+
+/// Why a command runs elsewhere, if it does.
+pub fn elsewhere(command: &str) -> Option<&'static str> {
+    ELSEWHERE.iter().find(|(prefix, _)| command.starts_with(prefix)).map(|(_, reason)| *reason)
+}
+
+/// The arguments of the tool in a command that is a call of it.
+pub fn arguments(command: &str) -> Option<Vec<&str>> {
+    let rest = command.strip_prefix("videg ").or(command.strip_prefix("cargo run --release -- "))?;
+    let end = rest.find([';', '|', '&', '>']).unwrap_or(rest.len());
+    Some(rest[..end].split_whitespace().collect())
+}
+
+#[test]
+fn a_transcript_is_commands_and_what_they_print() {
+    let text = "$ videg cosim \\\n    --json\n{\n}\n$ echo a\na\n";
+    let found = steps(text);
+    assert_eq!(found[0], Step { command: "videg cosim \\\n    --json".to_owned(), shown: "{\n}\n".to_owned() });
+    assert_eq!((found.len(), transcript(&found).as_str()), (2, text));
+}
+
+#[test]
+fn commands_stand_without_comments_and_on_one_line() {
+    let text = "videg ssp    # the package\n\n# words\nvideg cosim \\\n  --json\n";
+    assert_eq!(commands(text), ["videg ssp", "videg cosim    --json"]);
+    assert_eq!(arguments("videg sweep a.toml && videg x"), Some(vec!["sweep", "a.toml"]));
+    assert_eq!(arguments("cargo run --release -- cosim"), Some(vec!["cosim"]));
+    assert_eq!((arguments("cargo bench"), elsewhere("cargo bench --bench x")), (None, Some("a benchmark")));
+}

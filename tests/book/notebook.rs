@@ -1,0 +1,63 @@
+//! Tutorials as scripts with cells (`# %%`), which editors and Jupyter open as notebooks: they follow from the chapters.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::block::Block;
+use crate::chapter::Chapter;
+use crate::console;
+use crate::generated::keep;
+
+/// Chapters and their scripts.
+const SCRIPTS: [(&str, &str); 2] = [
+    ("docs/tutorial/fmpy.md", "examples/fmpy_tutorial.py"),
+    ("docs/tutorial/ngspice.md", "examples/ngspice_coupling.py"),
+];
+
+#[test]
+fn the_scripts_are_the_tutorials() {
+    for (page, script) in SCRIPTS {
+        keep(script, &cells(&Chapter::read(Path::new(page))));
+    }
+}
+
+/// The page as a script: text as cells of Markdown, code as cells of code. What code prints is left to those who run it.
+fn cells(chapter: &Chapter) -> String {
+    let page = chapter.path.display();
+    let mut script = format!("# Made from {page} by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.\n");
+    let mut at = 0;
+    for block in &chapter.blocks {
+        let fence = chapter.text[..block.range.start].rfind("```").unwrap();
+        words(&mut script, &chapter.text[at..fence]);
+        at = block.range.end + chapter.text[block.range.end..].find('\n').unwrap();
+        if let Some(code) = code(block) {
+            write!(script, "\n# %%\n{code}").unwrap();
+        }
+    }
+    words(&mut script, &chapter.text[at..]);
+    script
+}
+
+fn words(script: &mut String, text: &str) {
+    let lines = text.lines().filter(|line| !line.starts_with("<!--") && !line.starts_with("!["));
+    let text = lines.collect::<Vec<_>>().join("\n");
+    if !text.trim().is_empty() {
+        script.push_str("\n# %% [markdown]\n");
+        text.trim().lines().for_each(|line| writeln!(script, "{}", format!("# {line}").trim_end()).unwrap());
+    }
+}
+
+/// Python as it is, commands as calls of a shell, files as they are written.
+fn code(block: &Block) -> Option<String> {
+    match (block.language.as_str(), block.file()) {
+        ("python", _) => Some(block.text.clone()),
+        ("console", _) => {
+            let runs = console::steps(&block.text).into_iter().map(|step| {
+                format!("subprocess.run({:?}, shell=True, check=True)\n", step.command)
+            });
+            Some(format!("import subprocess\n\n{}", runs.collect::<String>()))
+        }
+        (_, Some(name)) => Some(format!("from pathlib import Path\n\nPath({name:?}).write_text(r\"\"\"{}\"\"\")\n", block.text)),
+        _ => None,
+    }
+}

@@ -1,0 +1,70 @@
+//! Changes of the sources that a page proposes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::root;
+
+/// Packages by the folder of their sources.
+const PACKAGES: [(&str, &str); 3] =
+    [("model/", "videg-model"), ("circuit/", "videg-circuit"), ("fmu/harvester/", "videg-fmu-harvester")];
+
+/// Applies `diff` to a copy of the sources and compiles the packages that it changes, or runs the test that it adds to one.
+pub fn applies_and_passes(diff: &str) -> Result<(), String> {
+    // Always the same folder, so that Cargo knows what it has compiled before.
+    let folder = root().join("target/book/source");
+    copy_sources(&folder).map_err(|error| format!("cannot copy the sources: {error}"))?;
+    let file = root().join("target/book/change.diff");
+    std::fs::write(&file, diff).map_err(|error| error.to_string())?;
+    let mut apply = Command::new("git");
+    apply.arg("apply").arg(&file).env("GIT_CEILING_DIRECTORIES", root().join("target/book"));
+    run(apply.current_dir(&folder))?;
+    for (package, test) in packages(diff) {
+        let mut check = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+        let task = test.map_or(vec!["check"], |test| vec!["test", "--test", test]);
+        check.args(task).args(["--quiet", "--offline", "--package", package]).current_dir(&folder);
+        run(check.env("CARGO_TARGET_DIR", root().join("target")))?;
+    }
+    Ok(())
+}
+
+fn run(command: &mut Command) -> Result<(), String> {
+    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    let printed = [&output.stdout[..], &output.stderr[..]].concat();
+    output.status.success().then_some(()).ok_or_else(|| format!("{command:?}\n{}", String::from_utf8_lossy(&printed)))
+}
+
+/// The packages that `diff` changes, each with the test that it adds to it.
+fn packages(diff: &str) -> BTreeMap<&'static str, Option<&str>> {
+    let mut found = BTreeMap::new();
+    for file in diff.lines().filter_map(|line| line.strip_prefix("+++ b/")) {
+        let Some((folder, package)) = PACKAGES.iter().find(|(folder, _)| file.starts_with(folder)) else { continue };
+        let test = file.strip_prefix(folder).and_then(|file| file.strip_prefix("tests/")?.strip_suffix(".rs"));
+        let known = found.entry(*package).or_insert(None);
+        *known = test.or(*known);
+    }
+    found
+}
+
+/// What Cargo needs of the source tree. Files that are there already and equal keep their time.
+fn copy_sources(to: &Path) -> std::io::Result<()> {
+    for name in ["Cargo.toml", "Cargo.lock", "README.md", "model", "circuit", "fmu", "src", "tests", "benches", "examples", "docs"] {
+        copy(&root().join(name), &to.join(name))?;
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    if !from.is_dir() {
+        let (content, there) = (std::fs::read(from)?, std::fs::read(to).ok());
+        return if there.as_ref() == Some(&content) { Ok(()) } else { std::fs::write(to, content) };
+    }
+    std::fs::create_dir_all(to)?;
+    let names: Vec<PathBuf> = std::fs::read_dir(from)?.map(|entry| Ok(entry?.file_name().into())).collect::<Result<_, std::io::Error>>()?;
+    for gone in std::fs::read_dir(to)?.filter_map(Result::ok).filter(|entry| !names.contains(&entry.file_name().into())) {
+        let path = gone.path();
+        if path.is_dir() { std::fs::remove_dir_all(path)? } else { std::fs::remove_file(path)? }
+    }
+    names.iter().filter(|name| name.as_os_str() != "target").try_for_each(|name| copy(&from.join(name), &to.join(name)))
+}

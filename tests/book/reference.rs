@@ -1,0 +1,112 @@
+//! Reference pages that follow from the code: verbs, variables, cases.
+
+use std::fmt::Write as _;
+
+use videg::fmi::{Causality, Kind, ModelDescription, Variable};
+use videg::package::FMUS;
+use videg_model::{Case, Parameters};
+
+use crate::clone::Clone;
+use crate::generated::keep;
+use crate::root;
+
+const MADE: &str = "<!-- Made by `UPDATE_BOOK=1 cargo test --test book`; do not edit. -->\n";
+
+/// Says what every verb takes, in the words of its help.
+#[test]
+fn the_page_of_verbs_is_their_help() {
+    let mut page = format!("# Verbs and options\n\n{MADE}");
+    describe(&mut page, &videg::cli::command(), "videg", &Clone::new(std::iter::empty()));
+    keep("docs/reference/verbs.md", &page);
+}
+
+fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clone) {
+    let (done, help) = clone.shell(&format!("{path} --help"));
+    assert!(done, "{path}: {help}");
+    writeln!(page, "\n## {path}\n\n```console\n$ {path} --help\n{}\n```", help.trim_end()).unwrap();
+    for verb in command.get_subcommands().filter(|verb| !verb.is_hide_set() && verb.get_name() != "help") {
+        describe(page, verb, &format!("{path} {}", verb.get_name()), clone);
+    }
+}
+
+/// Lists every variable with all that its description says.
+#[test]
+fn the_page_of_variables_is_that_of_the_model_descriptions() {
+    let mut page = format!(
+        "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes a \
+         name or a number.\n"
+    );
+    for fmu in FMUS {
+        let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
+        let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), fmu.identifier).unwrap();
+        writeln!(page, "\n## {}\n\n{}.", description.model_name, description.description.as_deref().unwrap()).unwrap();
+        for (causality, heading) in [
+            (Causality::Parameter, "parameters"),
+            (Causality::CalculatedParameter, "calculated parameters"),
+            (Causality::Input, "inputs"),
+            (Causality::Output, "outputs"),
+        ] {
+            let variables: Vec<_> = description.variables.iter().filter(|it| it.causality == causality).collect();
+            if variables.is_empty() {
+                continue;
+            }
+            writeln!(page, "\n### {}: {heading}\n\n| variable | unit | start | bounds | meaning |\n|---|---|---|---|---|", description.model_name).unwrap();
+            variables.iter().for_each(|variable| row(&mut page, &description, variable));
+        }
+    }
+    keep("docs/reference/variables.md", &page);
+}
+
+fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value}"));
+    let (start, bounds) = match &variable.kind {
+        Kind::Real { start, min, max, .. } => (number(*start), [number(*min), number(*max)]),
+        Kind::Integer { start, min, max } => {
+            (number(start.map(f64::from)), [number(min.map(f64::from)), number(max.map(f64::from))])
+        }
+        Kind::Boolean { start } => (start.map_or_else(String::new, |start| start.to_string()), Default::default()),
+        Kind::String { start } => (start.clone().unwrap_or_default(), Default::default()),
+        Kind::Enumeration { start } => {
+            let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
+            let name = items.iter().find(|item| Some(item.value) == *start).map(|item| item.name.clone());
+            let all: Vec<_> = items.iter().map(|item| item.name.as_str()).collect();
+            (name.unwrap_or_default(), [all.join(", "), String::new()])
+        }
+    };
+    let bounds = match bounds {
+        [min, max] if max.is_empty() => min,
+        [min, max] => format!("{min} to {max}"),
+    };
+    let unit = match variable.kind {
+        Kind::Real { .. } => variable.unit().unwrap_or("1").to_owned(),
+        ref other => other.name().to_lowercase(),
+    };
+    let about = variable.description.as_deref().unwrap().replace('|', "\\|");
+    writeln!(page, "| `{}` | {unit} | {start} | {bounds} | {about} |", variable.name).unwrap();
+}
+
+/// Lists the cases of the paper with what they set.
+#[test]
+fn the_page_of_cases_is_that_of_the_model() {
+    let mut page = format!(
+        "# Cases\n\n{MADE}\nA case of the paper is a set of parameters; `--case NAME` starts from it, and so does `case = \
+         \"NAME\"` in a case file. What a case does not set has its start value. The [case file](files.md#case-files) says how \
+         to make others.\n\n| case | what it shows | paper | videg | sets |\n|---|---|---|---|---|\n"
+    );
+    let clone = Clone::new(std::iter::empty());
+    for case in Case::ALL {
+        let (done, printed) = clone.shell(&format!("videg simulate --case {} --json 2>/dev/null", case.name));
+        let result: serde_json::Value = serde_json::from_str(&printed).unwrap_or_else(|_| panic!("{done}: {printed}"));
+        let (paper, ours) = match (case.paper_voltage_gain, case.paper_power) {
+            (Some(gain), _) => (format!("{gain} V/s"), format!("{:.0} V/s", result["average_voltage_gain"].as_f64().unwrap())),
+            (_, Some(power)) => (format!("{power} W"), format!("{:.4} W", result["average_power_eq13"].as_f64().unwrap())),
+            _ => ("no impact".to_owned(), format!("{} impacts", result["impacts"])),
+        };
+        let parameters = (case.parameters)();
+        let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
+        let sets: Vec<_> = changed.map(|quantity| format!("`{}={}`", quantity.name, (quantity.get)(&parameters))).collect();
+        writeln!(page, "| `{}` | {} | {paper} | {ours} | {} |", case.name, case.description, sets.join("<br>")).unwrap();
+    }
+    page.push_str("\nThe chaotic ones, `fig11` to `fig13`, agree with the paper in the mean over nearby starts, not one by one.\n");
+    keep("docs/reference/cases.md", &page);
+}

@@ -1,0 +1,63 @@
+"""What a reader of the built book sees, in a phone's and a desktop's window, in light and dark, without a network."""
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).resolve().parents[2]
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+BOOK = ROOT / "target" / "book" / "html"
+SCREENSHOTS = TARGET / "screenshots"
+PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print.html", "toc.html", "404.html"))
+
+OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+FLAT = "[...document.querySelectorAll('main math')].filter(math => math.getBoundingClientRect().height < 4).length"
+BROKEN = "[...document.images].filter(image => image.naturalWidth === 0).map(image => image.src)"
+LATEX = re.compile(r"\$\$|\\(?:t?frac|sqrt|text|left|quad|begin|Delta|omega)\b")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    chromium = shutil.which("chromium")
+    assert chromium, "chromium is not on the PATH; run ./test.sh setup first"
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+def test_every_chapter_became_a_page():
+    summary = (ROOT / "docs" / "SUMMARY.md").read_text()
+    chapters = [BOOK / name.replace(".md", ".html") for name in re.findall(r"\]\((.+?\.md)\)", summary)]
+    assert chapters and [page for page in chapters if not page.is_file()] == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [375, 1280])
+def test_every_page_fits_has_its_equations_and_asks_for_nothing(browser, width, scheme):
+    faults = []
+    context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
+    page = context.new_page()
+    page.on("pageerror", lambda error: faults.append(f"{page.url}: {error}"))
+    page.on("request", lambda request: request.url.startswith(("file:", "data:")) or faults.append(request.url))
+    for path in PAGES:
+        page.goto(path.as_uri())
+        name = path.relative_to(BOOK).with_suffix("")
+        words = page.locator("main").evaluate(
+            "main => { const copy = main.cloneNode(true); copy.querySelectorAll('code').forEach(code => code.remove()); "
+            "return copy.textContent }"
+        )
+        if found := LATEX.search(words):
+            faults.append(f"{name}: {found[0]} is left of an equation")
+        for what, wrong in (("wide", page.evaluate(OVERFLOW)), ("flat equations", page.evaluate(FLAT))):
+            if wrong > 0:
+                faults.append(f"{name} at {width}: {what}: {wrong}")
+        faults += [f"{name}: {image} is not drawn" for image in page.evaluate(BROKEN)]
+        page.screenshot(path=SCREENSHOTS / f"book-{str(name).replace('/', '-')}-{width}-{scheme}.png")
+    context.close()
+    assert faults == []

@@ -1,0 +1,28 @@
+"""The tutorials as scripts, as a reader runs them: in the root of the source tree, with the tool on the PATH and no screen."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import harness
+
+
+@pytest.mark.parametrize(
+    "script, figures",
+    [("fmpy_tutorial", ["capacitance.svg", "energy.svg"]), ("ngspice_coupling", ["storage.svg"])],
+)
+def test_a_tutorial_runs_and_draws_its_figures(fmus, tmp_path, script, figures):
+    if script == "ngspice_coupling" and not shutil.which("ngspice"):
+        assert "CI" not in os.environ, "ngspice is not there"
+        pytest.skip("ngspice is not there")
+    places = [os.path.dirname(sys.executable), str(harness.ROOT / "target" / "release"), os.environ["PATH"]]
+    environment = {**os.environ, "PATH": os.pathsep.join(places), "MPLBACKEND": "Agg", "FIGURES": str(tmp_path)}
+    script = harness.ROOT / "examples" / f"{script}.py"
+    run = subprocess.run([sys.executable, script], cwd=harness.ROOT, env=environment, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(figures)
+    for figure in figures:
+        assert "<path" in (tmp_path / figure).read_text(), f"{figure} is empty"
