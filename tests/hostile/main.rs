@@ -42,7 +42,8 @@ fn every_hostile_input_comes_to_what_the_page_says() {
         failures += usize::from(told.is_err());
         told.map_or_else(|_| String::new(), |told| page::row(input, &told))
     };
-    let sections = all().into_iter().map(|(kind, inputs)| page::section(kind, inputs.iter().map(&mut row).collect()));
+    let sections =
+        all().into_iter().map(|(kind, inputs)| page::section(kind, &inputs.iter().map(&mut row).collect::<Vec<_>>()));
     let sections: Vec<_> = sections.collect();
     assert_eq!(failures, 0, "inputs that come to something else");
     page::check(&sections);
