@@ -125,7 +125,7 @@ fn closing_every_pipe_is_told() {
 fn messages_on_the_pipe_that_are_none_are_told() {
     let write = "STEP=for (int i = 3; i < 64; ++i) write(i, \"\\xff\\xff\\xff\\xff garbage\", 12); pause();";
     let text = end_in_step(&[write]);
-    assert!(text.contains("it sent a message of 4294967295 bytes is announced, allowed are"), "{text}");
+    assert!(text.contains("(what it sent: a message of 4294967295 bytes is announced, allowed are"), "{text}");
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn ill_formed_messages_are_kept_bounded_and_in_order() {
     instance.setup_experiment(0.0, None, None).unwrap();
     instance.do_step(0.0, 1.0).unwrap();
     let found: Vec<_> = receiver.try_iter().map(|record| record.message).collect();
-    assert_eq!(found, ["".to_owned(), String::new(), "\u{fffd}\u{fffd}".to_owned(), "x".repeat(4096)]);
+    assert_eq!(found, [String::new(), String::new(), "\u{fffd}\u{fffd}".to_owned(), "x".repeat(4096)]);
     assert_eq!(instance.messages().iter().map(|record| record.message.clone()).collect::<Vec<_>>(), found);
 }
 
@@ -244,7 +244,7 @@ fn workers(host: u32) -> Vec<String> {
 fn a_co_simulation_whose_worker_is_killed_keeps_the_series_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
     let host = Command::new(env!("CARGO_BIN_EXE_videg"))
-        .args(["cosim", "--isolate", "--until", "100000", "--output", "out"])
+        .args(["cosim", "--isolate", "--until", "300", "--output", "out"])
         .current_dir(folder.path())
         .stderr(std::process::Stdio::piped())
         .spawn()

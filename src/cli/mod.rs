@@ -56,7 +56,7 @@ enum Verb {
     /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
     Simulate(simulate::Arguments),
     /// Run many times over parameters and seeds, on all cores; resumes what was interrupted, merges what was divided
-    Sweep(sweep::Arguments),
+    Sweep(Box<sweep::Arguments>),
     /// Reproduce the tables and figures of the paper, as data, pictures and one report
     Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs

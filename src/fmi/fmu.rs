@@ -44,7 +44,7 @@ pub(super) enum Code {
     /// In this process.
     Here(#[allow(dead_code, reason = "kept until it is dropped")] Library),
     /// In others.
-    Isolated(Pool),
+    Isolated(Box<Pool>),
     /// Nowhere: it is part of this program, or must not be touched any more.
     None,
 }
@@ -102,18 +102,17 @@ impl Fmu {
         std::fs::create_dir_all(&resources).map_err(FmiError::io("create", &resources))?;
         let (guid, resources) =
             (c_string("guid", &description.guid)?, c_string("resource location", &file_uri(&resources))?);
-        let (code, functions) = match decide(identifier, &folder.path().join(&entry)) {
-            Some(isolation) => {
-                (Code::Isolated(Pool::new(isolation, path, folder.path(), &entry)?), isolated::FUNCTIONS)
-            }
-            None => {
-                let (library, functions) = library::load(&folder.path().join(&entry), &path.join(&entry))?;
-                (Code::Here(library), functions)
-            }
+        let library = folder.path().join(&entry);
+        let (code, functions) = if let Some(isolation) = decide(identifier, &library) {
+            let pool = Pool::new(isolation, path, folder.path(), &entry)?;
+            (Code::Isolated(Box::new(pool)), isolated::FUNCTIONS)
+        } else {
+            let (library, functions) = library::load(&library, &path.join(&entry))?;
+            (Code::Here(library), functions)
         };
-        let fatal = AtomicBool::new(false);
-        let (path, _folder) = (path.into(), Some(folder));
-        Ok(Self { loaded: Arc::new(Loaded { path, description, functions, guid, resources, fatal, code, _folder }) })
+        let (path, fatal) = (path.into(), AtomicBool::new(false));
+        let loaded = Loaded { path, description, functions, guid, resources, fatal, code, _folder: Some(folder) };
+        Ok(Self { loaded: Arc::new(loaded) })
     }
 
     /// An FMU whose functions live in this program.

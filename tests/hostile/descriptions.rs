@@ -18,7 +18,7 @@ const FILE: &str = "?><!DOCTYPE x [<!ENTITY a SYSTEM \"file:///etc/passwd\">]>";
 
 /// All of them.
 pub fn inputs() -> Vec<Input> {
-    let attributes: String = (0..300_000).map(|k| format!(" a{k}=''")).collect();
+    let attributes = (0..300_000).fold(String::new(), |all, k| all + &format!(" a{k}=''"));
     let deep = format!("<fmiModelDescription fmiVersion=\"2.0\">{}", "<a>".repeat(100_000));
     let identifier = |name: &str| with("modelIdentifier=\"Toy\"", &format!("modelIdentifier=\"{name}\""));
     vec![

@@ -1,6 +1,6 @@
 //! What comes in through the library, not the command line: serialised states, and raw files that ngspice should have left.
 
-use videg::fmi::{Fmu, Instance, Logging};
+use videg::fmi::{Fmu, FmuState, Instance, Logging};
 use videg::ngspice::RawReader;
 use videg::package::{Options, build_all};
 
@@ -8,8 +8,8 @@ use super::stage::{Given, Input};
 
 const DESERIALIZE: &str = "Instance::deserialize_state";
 
-/// A harvester after one step, and its state as bytes.
-fn saved() -> (Instance, Vec<u8>) {
+/// A harvester after one step, its state, and that as bytes.
+fn saved() -> (Instance, FmuState, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let options = Options { output: Some(folder.path().to_owned()), ..Options::default() };
     let fmu = Fmu::open(&build_all(&options).unwrap()[0]).unwrap();
@@ -18,19 +18,22 @@ fn saved() -> (Instance, Vec<u8>) {
     instance.enter_initialization_mode().unwrap();
     instance.exit_initialization_mode().unwrap();
     instance.do_step(0.0, 0.3).unwrap();
-    let bytes = instance.serialize_state(&instance.save_state().unwrap()).unwrap();
-    (instance, bytes)
+    let state = instance.save_state().unwrap();
+    let bytes = instance.serialize_state(&state).unwrap();
+    (instance, state, bytes)
 }
 
 /// What the harvester says to a state that was changed.
 fn state(change: impl FnOnce(&mut Vec<u8>)) -> String {
-    let (mut instance, mut bytes) = saved();
+    let (mut instance, state, mut bytes) = saved();
     change(&mut bytes);
     let told = match instance.deserialize_state(&bytes) {
         Ok(_) => panic!("a changed state was taken"),
         Err(error) => error.to_string(),
     };
-    instance.do_step(0.3, 0.3).unwrap(); // no harm done
+    // No harm is done.
+    instance.restore_state(&state).unwrap();
+    instance.do_step(0.3, 0.3).unwrap();
     told
 }
 

@@ -51,7 +51,17 @@ pub fn inputs() -> Vec<Input> {
                 "membrane.restitution=0.2:0.9",
             ],
         ),
-        option("a grid of 1e12 values", &["sweep", "--check", "--vary", "membrane.restitution=0.2:0.9:1000000000000"]),
+        option(
+            "a grid of 1e24 points",
+            &[
+                "sweep",
+                "--check",
+                "--vary",
+                "membrane.restitution=0.2:0.9:1000000000000",
+                "--vary",
+                "membrane.stiffness=1e5:2e5:1000000000000",
+            ],
+        ),
         option("a logarithmic range from zero", &["sweep", "--check", "--vary", "membrane.restitution=log:0:0.9:5"]),
         option("shard 9 of 8", &["sweep", "--shard", "9/8", "--vary", "membrane.restitution=0.2:0.9:2"]),
         option("a time limit that is none", &["fmu", "check", "toy.fmu", "--time-limit", "-1"]),

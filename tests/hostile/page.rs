@@ -23,7 +23,7 @@ pub fn row(input: &Input, told: &Told) -> String {
 }
 
 /// A table with its heading.
-pub fn section(kind: &str, rows: Vec<String>) -> String {
+pub fn section(kind: &str, rows: &[String]) -> String {
     format!("\n## {kind}\n\n| input | how given | exit code | what is told |\n|---|---|---|---|\n{}", rows.concat())
 }
 

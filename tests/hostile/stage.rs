@@ -188,13 +188,24 @@ fn told(input: &Input, output: &Output, root: &Path) -> Told {
     Told { code: Some(2), line: line.trim_start_matches("videg: ").to_owned() }
 }
 
-/// `text` without the names of folders and the numbers of threads.
+/// `text` without what differs from run to run or with each parameter of the model: folders, numbers of threads, GUIDs.
 fn without_folders(text: &str, root: &Path) -> String {
     let root = root.display().to_string();
     let folders = ["/work/", "/tmp/", "/home/"];
     let text = folders.iter().fold(text.to_owned(), |text, part| text.replace(&format!("{root}{part}"), ""));
-    match text.split_once("'main' (") {
+    let text = match text.split_once("'main' (") {
         Some((before, after)) => format!("{before}'main'{}", after.split_once(')').map_or("", |(_, after)| after)),
         None => text,
-    }
+    };
+    let guid = |part: &str| {
+        part.as_bytes().get(36) == Some(&b'}') && part.bytes().take(36).all(|b| b == b'-' || b.is_ascii_hexdigit())
+    };
+    let parts = text.split('{').enumerate();
+    parts
+        .map(|(k, part)| match (k, guid(part)) {
+            (0, _) => part.to_owned(),
+            (_, true) => format!("{{...{}", &part[36..]),
+            (_, false) => format!("{{{part}"),
+        })
+        .collect()
 }

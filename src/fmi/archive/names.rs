@@ -98,13 +98,13 @@ mod tests {
     #[test]
     fn two_entries_for_one_file_are_refused() {
         for (names, told) in [
-            (["a/Read.me", "a/read.ME"], "entry \"a/read.ME\" is the same file as \"a/Read.me\""),
-            (["\u{c4}", "\u{e4}"], "is the same file as \"\u{c4}\""),
-            (["a", "a/b"], "entry \"a/b\" is the same file as \"a\""),
-            (["a/b", "a"], "entry \"a\" is the same file as \"a\""),
-            (["a/b", "A/c"], "entry \"A/c\" is the same file as \"a\""),
-            (["a/b", "a//b"], "entry \"a//b\" is the same file as \"a/b\""),
-            (["b", "./b"], "entry \"./b\" is the same file as \"b\""),
+            (["a/Read.me", "a/read.ME"], "entry \"a/read.ME\" would take the place of \"a/Read.me\""),
+            (["\u{c4}", "\u{e4}"], "would take the place of \"\u{c4}\""),
+            (["a", "a/b"], "entry \"a/b\" would take the place of \"a\""),
+            (["a/b", "a"], "entry \"a\" would take the place of \"a\""),
+            (["a/b", "A/c"], "entry \"A/c\" would take the place of \"a\""),
+            (["a/b", "a//b"], "entry \"a//b\" would take the place of \"a/b\""),
+            (["b", "./b"], "entry \"./b\" would take the place of \"b\""),
         ] {
             let found = refusal(&names).unwrap_or_default();
             assert!(found.contains(told), "{names:?}: {found}");

@@ -51,7 +51,7 @@ pub enum Refusal {
         why: &'static str,
     },
     /// Two entries would be written to one place, at least where file systems do not tell case apart.
-    #[error("entry \"{}\" is the same file as \"{}\"", entry.escape_debug(), other.escape_debug())]
+    #[error("entry \"{}\" would take the place of \"{}\"", entry.escape_debug(), other.escape_debug())]
     Collision {
         /// The later entry.
         entry: String,

@@ -50,7 +50,7 @@ impl Ending {
                 write!(out, "took longer than the time limit of {limit} s; its process was ended")
             }
             How::Silent => out.write_str("closed the pipes of its process, which was ended"),
-            How::Garbled(what) => write!(out, "corrupted its process, which was ended (it sent {what})"),
+            How::Garbled(what) => write!(out, "corrupted its process, which was ended (what it sent: {what})"),
             How::Refused(cause) => write!(out, "lost its process ({cause})"),
         }
     }

@@ -83,7 +83,7 @@ impl Pool {
             resources: wanted.resources.to_owned(),
             debug: wanted.debug,
         };
-        remote.instantiate(&request).map_err(|ending| FmiError::Isolated(Box::new(ending)))
+        remote.instantiate(&request).map_err(FmiError::Isolated)
     }
 
     fn ending(&self, call: &str, how: How, messages: Vec<LogRecord>, printed: String) -> Ending {

@@ -3,7 +3,10 @@
 use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 
-use fmi2_abi::*;
+use fmi2_abi::{
+    fmi2Boolean, fmi2Byte, fmi2CallbackFunctions, fmi2Component, fmi2Discard, fmi2Error, fmi2FMUstate, fmi2False,
+    fmi2OK, fmi2Status, fmi2StatusKind, fmi2String, fmi2Type, fmi2Warning,
+};
 
 use super::protocol::{Given, Plain, Request};
 use super::remote::{Remote, of};

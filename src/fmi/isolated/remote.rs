@@ -66,10 +66,10 @@ impl Remote {
     }
 
     /// The component, or NULL where the FMU refuses.
-    pub fn instantiate(mut self, request: &Request) -> Result<fmi2Component, Ending> {
+    pub fn instantiate(mut self, request: &Request) -> Result<fmi2Component, Box<Ending>> {
         let (_, given) = self.call("fmi2Instantiate", request);
         match self.fate {
-            Fate::Ended(ending) => Err(*ending),
+            Fate::Ended(ending) => Err(ending),
             _ if given == Given::Number(1) => Ok(Box::into_raw(Box::new(self)).cast()),
             _ => Ok(ptr::null_mut()),
         }

@@ -5,7 +5,10 @@ use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 use std::sync::Arc;
 
-use fmi2_abi::*;
+use fmi2_abi::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2FMUstate, fmi2False, fmi2OK,
+    fmi2Status, fmi2Warning,
+};
 
 use super::protocol::{Given, LONGEST_STATE, Plain, Request};
 use crate::fmi::library::Functions;
@@ -27,11 +30,11 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub fn new(functions: Functions, environment: Arc<Environment>) -> Self {
+    pub fn new(functions: &Functions, environment: Arc<Environment>) -> Self {
         let callbacks = Box::new(environment.callbacks());
         let (component, states) = (ptr::null_mut(), HashMap::new());
         Self {
-            functions,
+            functions: *functions,
             component,
             _environment: environment,
             callbacks,

@@ -28,7 +28,7 @@ pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> i
         // Nobody is left to be told if this fails.
         let _ = send(&mut *log.lock().unwrap_or_else(PoisonError::into_inner), &Reply::Log(record.clone()));
     })));
-    let mut session = Session::new(functions, environment);
+    let mut session = Session::new(&functions, environment);
     say(&Reply::Loaded)?;
     while let Some(request) = receive(&mut requests)? {
         if matches!(request, Request::Unload) {
