@@ -15,8 +15,9 @@ readonly REQUIREMENTS=(
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: one takes long to build what it runs, the other installs Wine and cross compilers.
-readonly EXTRA_STAGES=(conformance-slow portability)
+# Not among those that run by default: one takes long to build what it runs, one installs Wine and cross compilers, one takes
+# long.
+readonly EXTRA_STAGES=(conformance-slow portability soak)
 
 usage() {
     cat <<'EOF'
@@ -37,6 +38,7 @@ Runs the stages named, or all of them in this order:
 Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build
+  soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
@@ -216,6 +218,10 @@ stage_conformance-slow() {
 stage_portability() {
     run tests/linux-glibc/run.sh
     run tests/windows/run.sh
+}
+
+stage_soak() {
+    run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --nocapture --test-threads 1
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------
