@@ -16,9 +16,8 @@ readonly REQUIREMENTS=(
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: they take long to build what they run, install Wine and cross compilers, or need a
-# nightly compiler.
-readonly EXTRA_STAGES=(conformance-slow portability sanitizers release coverage)
+# Not among those that run by default: they take long, install Wine and cross compilers, or need a nightly compiler.
+readonly EXTRA_STAGES=(conformance-slow portability soak sanitizers release coverage)
 
 usage() {
     cat <<'EOF'
@@ -42,6 +41,7 @@ Runs the stages named, or all of them in this order:
 Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build
+  soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
   release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
@@ -283,6 +283,10 @@ stage_release() {
 
 stage_coverage() {
     run tests/coverage/run.sh
+}
+
+stage_soak() {
+    run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --nocapture --test-threads 1
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -274,7 +274,7 @@ fn a_run_of_1e9_s_keeps_the_rhythm_of_its_first_hundred_periods() {
 #[test]
 fn a_membrane_pressed_in_without_bound_keeps_a_capacitance() {
     let soft = Parameters { stiffness: 1e-6, stiffness_exponent: 1.0, ball_mass: 1e6, ..Parameters::default() };
-    let membrane = Harvester::new(&soft, 0.0).unwrap().membrane().clone();
+    let membrane = *Harvester::new(&soft, 0.0).unwrap().membrane();
     let mut last = 1.0;
     for exponent in 0..40 {
         let ratio = membrane.area_ratio(1e-3 * 10_f64.powi(exponent));

@@ -37,7 +37,7 @@ impl CsvRecorder {
     /// If the file cannot be written.
     pub fn finish(self) -> Result<(), CosimError> {
         let Self { path, writer, .. } = self;
-        let written = writer.into_inner().map_err(|error| error.into_error());
+        let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
         let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
         file.and_then(WholeFile::finish).map_err(|cause| CosimError::Write { path, cause })
     }

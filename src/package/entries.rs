@@ -87,20 +87,24 @@ impl Entries {
         self.files.keys().map(String::as_str)
     }
 
-    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it.
+    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it. It is made in memory: what
+    /// fails on the way to the disk is the archive then, and nothing else.
     ///
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
         let folder = archive.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
+        let mut bytes = Cursor::new(Vec::new());
+        self.write_to(&mut bytes, archive)?;
         let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
-        self.write_to(temporary.as_file_mut(), archive)?;
+        let written = temporary.write_all(bytes.get_ref()).and_then(|()| temporary.as_file().sync_all());
+        written.map_err(PackageError::io("write", archive))?;
         temporary.persist(archive).map_err(|error| PackageError::io("write", archive)(error.error))?;
         Ok(())
     }
 
-    fn write_to(&self, file: &mut File, archive: &Path) -> Result<()> {
+    fn write_to(&self, file: &mut Cursor<Vec<u8>>, archive: &Path) -> Result<()> {
         let failed = |cause| PackageError::Zip { path: archive.to_path_buf(), cause };
         let mut writer = ZipWriter::new(file);
         for (name, source) in &self.files {

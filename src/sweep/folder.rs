@@ -108,9 +108,11 @@ fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
 /// If another one is there by now; a refusal of the file system.
 pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> Result<(), SweepError> {
     let path = folder.join(DOCUMENT);
-    if read_document(folder)?.is_none() {
-        // Under a name of its own first, so that a reader never sees half of it.
-        let part = results.with_extension("json.part");
+    // Under a name of its own first, so that a reader never sees half of it.
+    let part = results.with_extension("json.part");
+    if read_document(folder)?.is_some() {
+        remove(&part)?; // of an attempt that was killed
+    } else {
         write_synced(&part, document.as_bytes()).map_err(SweepError::file("write", &part))?;
         match std::fs::hard_link(&part, &path) {
             // Some file systems have no hard links, and a rename replaces what another process wrote just now: it is

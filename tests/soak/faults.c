@@ -27,7 +27,7 @@
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static uint64_t state;
 static unsigned long calls, kill_at, rate;
-static int full;
+static int full, halved;
 static char folder[PATH_MAX];
 
 __attribute__((constructor)) static void begin(void) {
@@ -111,7 +111,10 @@ ssize_t write(int fd, const void *bytes, size_t count) {
     case PASS: return real(fd, bytes, count);
     case FAIL:
         /* What fits into the last block still is written; the next call says that the disk is full. */
-        if (full && count > 1 && next() % 2 == 0) return real(fd, bytes, count / 2);
+        if (full && !halved && count > 1 && next() % 2 == 0) {
+            halved = 1;
+            return real(fd, bytes, count / 2);
+        }
         return -1;
     default:
         if (real(fd, bytes, count / 2) < 0) abort();
