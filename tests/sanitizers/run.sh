@@ -10,9 +10,11 @@ sequences=${SEQUENCES:-2000}
 platform=$(rustc +nightly --print host-tuple)
 names=(VibroImpactHarvester HarvestingCircuit)
 
-# What is built for a sanitizer; the standard library is not, so that the compiler must be told to link the two.
+# What is built for a sanitizer; the standard library is not, so that the compiler must be told to link the two. The libraries
+# take the functions of the sanitizer from the host.
 build() {
-    RUSTFLAGS="-Zsanitizer=$1 -Cunsafe-allow-abi-mismatch=sanitizer" cargo +nightly build --quiet --locked \
+    RUSTFLAGS="-Zsanitizer=$1 -Cunsafe-allow-abi-mismatch=sanitizer -Clink-arg=-Wl,--export-dynamic" \
+        cargo +nightly build --quiet --locked \
         --target "$platform" --target-dir "target/sanitizers/$1" -p fmi2-host -p videg-fmu-harvester -p videg-fmu-circuit
 }
 

@@ -37,9 +37,8 @@ pub fn state<S: Slave>(content: &[u8]) -> bool {
     let again = S::read_state(&mut StateReader::new(&bytes)).unwrap_or_else(|error| panic!("refused again: {error}"));
     assert_eq!(written(&again), bytes);
     for k in 0..STEPS {
-        if slave.do_step(f64::from(k) * STEP, STEP, &Logger::silent()).is_err() {
-            break;
-        }
+        // A step from before the time of the state is refused, one from there goes on.
+        let _ = slave.do_step(f64::from(k) * STEP, STEP, &Logger::silent());
     }
     true
 }

@@ -64,6 +64,7 @@ fn check(bytes: &[u8]) -> bool {
             assert!(report.is_complete() && results.len() == whole.len(), "{report:?}");
             assert!(resumed == 0 || resumed < kept, "{resumed} lines go on from, {kept} are as they were");
             assert_eq!(results[0], whole[0]);
+            assert_eq!(sweeps::rows(&results.concat()), whole.len() - 1, "a line is not a row");
             assert_eq!(results[resumed + 1..], whole[resumed + 1..]);
             for (number, line) in results[1..].iter().enumerate() {
                 assert!(line.starts_with(format!("{number},").as_bytes()), "line {number}");

@@ -60,3 +60,8 @@ pub(crate) fn check(sweep: &Sweep) {
     assert_eq!(document["runs"], sweep.runs());
     assert_eq!(document["columns"].as_array().map(Vec::len), Some(sweep.columns().len()));
 }
+
+/// Rows of results, as programs that know CSV see them.
+pub(crate) fn rows(results: &[u8]) -> usize {
+    csv::ReaderBuilder::new().from_reader(results).byte_records().map(|row| row.unwrap()).count()
+}
