@@ -87,17 +87,12 @@ impl Entries {
         self.files.keys().map(String::as_str)
     }
 
-    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it.
+    /// Writes the archive. Nobody ever sees half of it.
     ///
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
-        let folder = archive.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
-        let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
-        self.write_to(temporary.as_file_mut(), archive)?;
-        temporary.persist(archive).map_err(|error| PackageError::io("write", archive)(error.error))?;
-        Ok(())
+        put(archive, |file| self.write_to(file, archive))
     }
 
     fn write_to(&self, file: &mut File, archive: &Path) -> Result<()> {
@@ -118,6 +113,16 @@ impl Entries {
         writer.finish().map_err(failed)?;
         Ok(())
     }
+}
+
+/// Has a file written beside its place and moves it there, so that nobody ever sees half of it.
+pub(super) fn put(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) -> Result<()> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
+    let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
+    write(temporary.as_file_mut())?;
+    temporary.persist(path).map_err(|error| PackageError::io("write", path)(error.error))?;
+    Ok(())
 }
 
 /// The same on every machine and day.
