@@ -14,7 +14,9 @@ PATH="$(pwd)/target/tools/bin:$tools/bin:$PATH"
 if [[ $(cargo-deny --version 2>/dev/null) != "cargo-deny $deny_version" ]]; then
     cargo install --quiet --locked --root "$tools" --version "$deny_version" cargo-deny
 fi
+# Each workspace needs some of the exceptions only.
 for manifest in Cargo.toml fuzz/Cargo.toml tests/fmi-crate/Cargo.toml; do
     echo "+ cargo deny --manifest-path $manifest check $*"
-    cargo deny --locked --all-features --manifest-path "$manifest" check --config deny.toml --hide-inclusion-graph "$@"
+    cargo deny --locked --workspace --all-features --manifest-path "$manifest" --config deny.toml check \
+        --hide-inclusion-graph --allow license-exception-not-encountered "$@"
 done

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::entries::Entries;
+use super::entries::{Entries, put};
 use super::error::{PackageError, Result};
 use super::{AddedBinary, FMUS, FmuPackage, Options, locate};
 
@@ -56,7 +56,13 @@ pub(super) fn write(archives: [&[u8]; FMUS.len()], added: &[AddedBinary], output
     parts
         .map(|((fmu, archive), description)| {
             let path = output.join(format!("{}.fmu", fmu.identifier));
-            entries(fmu, archive, description, added)?.write(&path)?;
+            let entries = entries(fmu, archive, description, added)?;
+            if added.is_empty() {
+                // Packed again, the same entries may get other bytes.
+                put(&path, archive)?;
+            } else {
+                entries.write(&path)?;
+            }
             Ok(path)
         })
         .collect()
@@ -79,12 +85,18 @@ mod tests {
     use super::*;
     use crate::package::Platform;
 
+    /// A library that does not go through a packer in one piece.
+    fn library() -> Vec<u8> {
+        (0..200_000_u32).flat_map(|k| k.wrapping_mul(k).to_le_bytes()).collect()
+    }
+
     /// An archive as it is packaged, as bytes.
     fn packaged(description: &[u8]) -> Vec<u8> {
         let folder = tempfile::tempdir().unwrap();
         let mut entries = Entries::default();
         entries.add_bytes("modelDescription.xml", description.to_vec());
-        entries.add_bytes("binaries/linux64/VibroImpactHarvester.so", b"embedded".to_vec());
+        std::fs::write(folder.path().join("library"), library()).unwrap();
+        entries.add_file("binaries/linux64/VibroImpactHarvester.so", &folder.path().join("library"));
         entries.write(&folder.path().join("it.fmu")).unwrap();
         std::fs::read(folder.path().join("it.fmu")).unwrap()
     }
@@ -107,13 +119,17 @@ mod tests {
         let library = folder.path().join("library");
         std::fs::write(&library, "added").unwrap();
         let archive = packaged(DESCRIPTIONS[0]);
-        for (platform, wanted) in [("linux64", &b"added"[..]), ("win64", b"embedded")] {
+        for (platform, wanted) in [("linux64", b"added".to_vec()), ("win64", library())] {
             let platform = Platform::of_folder(platform).unwrap();
             let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: library.clone() };
             let path = folder.path().join("it.fmu");
             entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap().write(&path).unwrap();
             let found = Entries::read(&std::fs::read(path).unwrap()).unwrap();
-            assert_eq!(found.bytes("binaries/linux64/VibroImpactHarvester.so"), Some(wanted));
+            assert!(
+                found.bytes("binaries/linux64/VibroImpactHarvester.so") == Some(&wanted[..]),
+                "{}",
+                platform.folder
+            );
             assert_eq!(found.bytes(&platform.entry(FMUS[0].identifier)), Some(&b"added"[..]));
         }
     }

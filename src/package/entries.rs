@@ -87,21 +87,15 @@ impl Entries {
         self.files.keys().map(String::as_str)
     }
 
-    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it. It is made in memory: what
-    /// fails on the way to the disk is the archive then, and nothing else.
+    /// Writes the archive; nobody ever sees half of it. It is made in memory: what fails on the way to the disk is the
+    /// archive then, and nothing else.
     ///
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
-        let folder = archive.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
         let mut bytes = Cursor::new(Vec::new());
         self.write_to(&mut bytes, archive)?;
-        let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
-        let written = temporary.write_all(bytes.get_ref()).and_then(|()| temporary.as_file().sync_all());
-        written.map_err(PackageError::io("write", archive))?;
-        temporary.persist(archive).map_err(|error| PackageError::io("write", archive)(error.error))?;
-        Ok(())
+        put(archive, bytes.get_ref())
     }
 
     fn write_to(&self, file: &mut Cursor<Vec<u8>>, archive: &Path) -> Result<()> {
@@ -122,6 +116,18 @@ impl Entries {
         writer.finish().map_err(failed)?;
         Ok(())
     }
+}
+
+/// Writes a file beside its place and moves it there, so that nobody ever sees half of it. Several processes may do so at
+/// once: the last one has its way.
+pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
+    let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
+    let written = temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all());
+    written.map_err(PackageError::io("write", path))?;
+    temporary.persist(path).map_err(|error| PackageError::io("write", path)(error.error))?;
+    Ok(())
 }
 
 /// The same on every machine and day.
