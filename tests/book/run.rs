@@ -73,7 +73,9 @@ impl<'a> Session<'a> {
                 "diff" => self.diff(block),
                 "text" if index > 0 && blocks[index - 1].language == "python" => {}
                 language if FILES.contains(&language) => self.file(block),
-                other => self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run")),
+                other => {
+                    self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run"))
+                }
             }
         }
     }
@@ -170,7 +172,10 @@ impl<'a> Session<'a> {
         let chapter = format!("/{}\"", self.chapter.path.display());
         let lists = |file: &&str| std::fs::read_to_string(root().join(file)).unwrap().contains(&chapter);
         if !DOCUMENTATION_TESTS.iter().any(|file| lists(&file)) {
-            self.fail(block, &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"));
+            self.fail(
+                block,
+                &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"),
+            );
         }
     }
 
