@@ -56,7 +56,9 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
                 description.model_name
             )
             .unwrap();
-            variables.iter().for_each(|variable| row(&mut page, &description, variable));
+            for variable in variables {
+                row(&mut page, &description, variable);
+            }
         }
     }
     keep("docs/reference/variables.md", &page);

@@ -171,7 +171,7 @@ impl<'a> Session<'a> {
     fn rust(&mut self, block: &Block) {
         let chapter = format!("/{}\"", self.chapter.path.display());
         let lists = |file: &&str| std::fs::read_to_string(root().join(file)).unwrap().contains(&chapter);
-        if !DOCUMENTATION_TESTS.iter().any(|file| lists(&file)) {
+        if !DOCUMENTATION_TESTS.iter().any(lists) {
             self.fail(
                 block,
                 &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"),
