@@ -6,6 +6,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("cargo run --release --example", "shows what benchmarks measured last"),
     ("cargo test", "the tests themselves"),
     ("cargo +nightly", "needs a nightly compiler"),
+    ("cargo fuzz", "needs a nightly compiler"),
+    ("VIDEG_FUZZ", "needs a nightly compiler"),
     ("./test.sh", "the tests themselves"),
     ("UPDATE_", "writes what the tests compare with"),
 ];

@@ -67,14 +67,14 @@ impl<'a> Session<'a> {
             let output = blocks.get(index + 1).filter(|next| next.language == "text" && next.mark.is_none());
             match block.language.as_str() {
                 "console" => self.console(block),
-                "sh" => self.shell(block),
+                "sh" | "bash" => self.shell(block),
                 "python" => self.python(block, output),
                 "rust" => self.rust(block),
                 "diff" => self.diff(block),
                 "text" if index > 0 && blocks[index - 1].language == "python" => {}
                 language if FILES.contains(&language) => self.file(block),
                 other => {
-                    self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run"))
+                    self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run"));
                 }
             }
         }
