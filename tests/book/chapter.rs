@@ -20,7 +20,8 @@ pub struct Chapter {
 impl Chapter {
     /// The page at `path`, from the root of the source tree.
     pub fn read(path: &Path) -> Self {
-        let text = std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+        let text =
+            std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         Self { path: path.to_owned(), blocks: blocks(&text), text }
     }
 

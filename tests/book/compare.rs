@@ -66,9 +66,14 @@ fn numbers_agree_within_the_tolerance_and_placeholders_with_anything() {
     ] {
         assert!(agree(shown, printed), "{shown} must stand for {printed}");
     }
-    for (shown, printed) in
-        [("a 1.0", "a 1.01"), ("a", "a\nb"), ("a\n...", "b"), ("597 impacts", "598 impacts"), ("x...y", "xz"), ("", "a")]
-    {
+    for (shown, printed) in [
+        ("a 1.0", "a 1.01"),
+        ("a", "a\nb"),
+        ("a\n...", "b"),
+        ("597 impacts", "598 impacts"),
+        ("x...y", "xz"),
+        ("", "a"),
+    ] {
         assert!(!agree(shown, printed), "{shown} must not stand for {printed}");
     }
 }

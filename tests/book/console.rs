@@ -6,6 +6,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("cargo run --release --example", "shows what benchmarks measured last"),
     ("cargo test", "the tests themselves"),
     ("cargo +nightly", "needs a nightly compiler"),
+    ("cargo fuzz", "needs a nightly compiler"),
+    ("VIDEG_FUZZ", "needs a nightly compiler"),
     ("./test.sh", "the tests themselves"),
     ("UPDATE_", "writes what the tests compare with"),
 ];
@@ -25,9 +27,9 @@ pub fn steps(text: &str) -> Vec<Step> {
     let mut continued = false;
     for line in text.lines() {
         match (line.strip_prefix("$ "), steps.last_mut()) {
-            (_, Some(step)) if continued => step.command += &format!("\n{line}"),
+            (_, Some(step)) if continued => step.command.extend(["\n", line]),
             (Some(command), _) => steps.push(Step { command: command.to_owned(), shown: String::new() }),
-            (None, Some(step)) => step.shown += &format!("{line}\n"),
+            (None, Some(step)) => step.shown.extend([line, "\n"]),
             (None, None) => panic!("a console block begins with \"$ \", not with {line:?}"),
         }
         continued = line.ends_with('\\');
@@ -37,7 +39,7 @@ pub fn steps(text: &str) -> Vec<Step> {
 
 /// The block that these are the commands of.
 pub fn transcript(steps: &[Step]) -> String {
-    steps.iter().map(|step| format!("$ {}\n{}", step.command, step.shown)).collect()
+    steps.iter().flat_map(|step| ["$ ", &step.command, "\n", &step.shown]).collect()
 }
 
 /// The commands of a `sh` block, one a line, without comments.

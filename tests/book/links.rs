@@ -53,7 +53,11 @@ fn slug(heading: &str) -> String {
 fn joined(folder: &Path, link: &str) -> PathBuf {
     let mut path = PathBuf::new();
     for part in folder.join(link).components() {
-        if part == Component::ParentDir { path.pop(); } else { path.push(part); }
+        if part == Component::ParentDir {
+            path.pop();
+        } else {
+            path.push(part);
+        }
     }
     path
 }

@@ -4,7 +4,7 @@
 //! | block | what happens to it |
 //! |---|---|
 //! | `console` | commands after `$ ` run one by one in a folder that looks like a fresh clone; what they print is compared |
-//! | `sh` | commands to choose from: the tool takes their arguments, and each runs to the end with exit code 0 |
+//! | `sh`, `bash` | commands to choose from: the tool takes their arguments, and each runs to the end with exit code 0 |
 //! | `python` | all blocks of a chapter run in order in one interpreter; a `text` block behind one is what it prints |
 //! | `rust` | a documentation test: `src/book.rs` and `fmu/export/src/lib.rs` list the chapters |
 //! | `c`, `spice`, `toml`, `json`, `xml`, `csv` | a file that a command of the chapter takes; `toml` without a name: a case file |

@@ -24,7 +24,8 @@ fn the_scripts_are_the_tutorials() {
 /// The page as a script: text as cells of Markdown, code as cells of code. What code prints is left to those who run it.
 fn cells(chapter: &Chapter) -> String {
     let page = chapter.path.display();
-    let mut script = format!("# Made from {page} by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.\n");
+    let mut script =
+        format!("# Made from {page} by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.\n");
     let mut at = 0;
     for block in &chapter.blocks {
         let fence = chapter.text[..block.range.start].rfind("```").unwrap();
@@ -52,12 +53,14 @@ fn code(block: &Block) -> Option<String> {
     match (block.language.as_str(), block.file()) {
         ("python", _) => Some(block.text.clone()),
         ("console", _) => {
-            let runs = console::steps(&block.text).into_iter().map(|step| {
-                format!("subprocess.run({:?}, shell=True, check=True)\n", step.command)
-            });
+            let runs = console::steps(&block.text)
+                .into_iter()
+                .map(|step| format!("subprocess.run({:?}, shell=True, check=True)\n", step.command));
             Some(format!("import subprocess\n\n{}", runs.collect::<String>()))
         }
-        (_, Some(name)) => Some(format!("from pathlib import Path\n\nPath({name:?}).write_text(r\"\"\"{}\"\"\")\n", block.text)),
+        (_, Some(name)) => {
+            Some(format!("from pathlib import Path\n\nPath({name:?}).write_text(r\"\"\"{}\"\"\")\n", block.text))
+        }
         _ => None,
     }
 }

@@ -14,6 +14,7 @@ const PACKAGES: [(&str, &str); 3] =
 pub fn applies_and_passes(diff: &str) -> Result<(), String> {
     // Always the same folder, so that Cargo knows what it has compiled before.
     let folder = root().join("target/book/source");
+    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
     copy_sources(&folder).map_err(|error| format!("cannot copy the sources: {error}"))?;
     let file = root().join("target/book/change.diff");
     std::fs::write(&file, diff).map_err(|error| error.to_string())?;
@@ -49,7 +50,19 @@ fn packages(diff: &str) -> BTreeMap<&'static str, Option<&str>> {
 
 /// What Cargo needs of the source tree. Files that are there already and equal keep their time.
 fn copy_sources(to: &Path) -> std::io::Result<()> {
-    for name in ["Cargo.toml", "Cargo.lock", "README.md", "model", "circuit", "fmu", "src", "tests", "benches", "examples", "docs"] {
+    for name in [
+        "Cargo.toml",
+        "Cargo.lock",
+        "README.md",
+        "model",
+        "circuit",
+        "fmu",
+        "src",
+        "tests",
+        "benches",
+        "examples",
+        "docs",
+    ] {
         copy(&root().join(name), &to.join(name))?;
     }
     Ok(())
@@ -61,8 +74,10 @@ fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
         return if there.as_ref() == Some(&content) { Ok(()) } else { std::fs::write(to, content) };
     }
     std::fs::create_dir_all(to)?;
-    let names: Vec<PathBuf> = std::fs::read_dir(from)?.map(|entry| Ok(entry?.file_name().into())).collect::<Result<_, std::io::Error>>()?;
-    for gone in std::fs::read_dir(to)?.filter_map(Result::ok).filter(|entry| !names.contains(&entry.file_name().into())) {
+    let names: Vec<PathBuf> =
+        std::fs::read_dir(from)?.map(|entry| Ok(entry?.file_name().into())).collect::<Result<_, std::io::Error>>()?;
+    for gone in std::fs::read_dir(to)?.filter_map(Result::ok).filter(|entry| !names.contains(&entry.file_name().into()))
+    {
         let path = gone.path();
         if path.is_dir() { std::fs::remove_dir_all(path)? } else { std::fs::remove_file(path)? }
     }

@@ -28,7 +28,9 @@ fn keys(value: &Value, path: &str, found: &mut BTreeSet<String>) {
             }
         }
         Value::Array(items) if items.iter().any(Value::is_object) => {
-            items.iter().for_each(|item| keys(item, &format!("{path}[]"), found));
+            for item in items {
+                keys(item, &format!("{path}[]"), found);
+            }
         }
         _ => {
             found.insert(path.to_owned());

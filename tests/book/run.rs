@@ -67,13 +67,15 @@ impl<'a> Session<'a> {
             let output = blocks.get(index + 1).filter(|next| next.language == "text" && next.mark.is_none());
             match block.language.as_str() {
                 "console" => self.console(block),
-                "sh" => self.shell(block),
+                "sh" | "bash" => self.shell(block),
                 "python" => self.python(block, output),
                 "rust" => self.rust(block),
                 "diff" => self.diff(block),
                 "text" if index > 0 && blocks[index - 1].language == "python" => {}
                 language if FILES.contains(&language) => self.file(block),
-                other => self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run")),
+                other => {
+                    self.fail(block, &format!("nothing runs a block of language {other:?}; say that it is not run"));
+                }
             }
         }
     }
@@ -169,8 +171,11 @@ impl<'a> Session<'a> {
     fn rust(&mut self, block: &Block) {
         let chapter = format!("/{}\"", self.chapter.path.display());
         let lists = |file: &&str| std::fs::read_to_string(root().join(file)).unwrap().contains(&chapter);
-        if !DOCUMENTATION_TESTS.iter().any(|file| lists(&file)) {
-            self.fail(block, &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"));
+        if !DOCUMENTATION_TESTS.iter().any(lists) {
+            self.fail(
+                block,
+                &format!("none of {DOCUMENTATION_TESTS:?} lists the chapter, so the block is not compiled"),
+            );
         }
     }
 

@@ -1,0 +1,148 @@
+# Made from docs/tutorial/ngspice.md by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.
+
+# %% [markdown]
+# # C(t) in ngspice
+#
+# You take the capacitances of the harvester into a circuit of your own in ngspice, see what it gains, and hold it against the
+# embedded solver. It takes ngspice (Debian: `apt install ngspice libngspice0`) and, for the sweep at the end, Python with
+# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree.
+#
+# The mechanics do not feel the circuit under the paper's contact law, so C(t) can be computed first and the circuit later, as often
+# as you like.
+#
+# ## Get C(t)
+
+# %%
+import subprocess
+
+subprocess.run("cargo run --release -- simulate --case fig14 --until 10 --output out/ngspice", shell=True, check=True)
+
+# %% [markdown]
+# The time series has the columns `left.capacitance` and `right.capacitance` in F, a row each millisecond and at each kink and peak.
+# ngspice reads tables of numbers, here in pF, so that 1 V stands for 1 pF:
+
+# %%
+import csv
+from pathlib import Path
+
+with open("out/ngspice/timeseries.csv", newline="") as file:
+    rows = [[float(row[name]) for name in ("time", "left.capacitance", "right.capacitance")] for row in csv.DictReader(file)]
+with open("out/ngspice/capacitance.tab", "w") as table:
+    for time, left, right in rows:
+        table.write(f"{time!r} {1e12 * left!r} {1e12 * right!r}\n")
+rest = sum(rows[0][1:])
+print(f"{len(rows)} rows; both membranes at rest: {1e12 * rest:.6f} pF")
+
+# %% [markdown]
+# ## A circuit of your own
+#
+# Here the membranes lie between a supply of 2 kV and a storage that is held at 2.2 kV, with a diode on either side. Save this as
+# `out/ngspice/own.cir`:
+
+# %%
+from pathlib import Path
+
+Path("out/ngspice/own.cir").write_text(r"""* Supply, diode, both membranes, diode, storage
+Vin in 0 2000
+Vs in anode 0
+Dcharge anode de ideal
+
+* C(t): time in s, left and right capacitance in pF, linear between the rows; 1 V = 1 pF.
+Atable %v([cl cr]) table
+.model table filesource (file="capacitance.tab" amploffset=[0 0] amplscale=[1 1])
+
+* The capacitance at 0 s as a capacitor, the rest of C(t) as a charge. C='...' would be wrong: ngspice makes
+* I = C dV/dt of it and loses V dC/dt.
+Cfix de 0 30.029535p
+Cvar de 0 Q='(V(cl)+V(cr)-30.029535)*1e-12*V(de)'
+
+Vr de out_anode 0
+Dstorage out_anode out ideal
+Vstorage out 0 2200
+
+.model ideal D(IS=1e-13 N=0.01 RS=0 CJO=0)
+.ic v(in)=2000 v(anode)=2000 v(de)=2000 v(out)=2200 v(cl)=15.0147674 v(cr)=15.0147674
+.options gmin=1e-20 abstol=1e-12 vntol=1e-6 chgtol=1e-14 reltol=1e-5 method=trap
+
+.control
+tran 1e-4 10 0 1e-4 uic
+meas tran q_supply integ i(vs) from=0 to=10
+meas tran q_storage integ i(vr) from=0 to=10
+let from_supply = 2000*q_supply
+let to_storage = 2200*q_storage
+print from_supply to_storage
+quit
+.endc
+.end
+""")
+
+# %% [markdown]
+# What these options are for, and why `gmin` must be so small at 2 kV, stands in `ngspice_netlists/README.md`.
+
+# %%
+import subprocess
+
+subprocess.run("cd out/ngspice && ngspice -b own.cir 2>/dev/null | grep \"^from\\|^to\"", shell=True, check=True)
+
+# %% [markdown]
+# The storage gets more than the supply gives: the mechanics paid for the rest.
+#
+# ## The same from videg
+
+# %%
+import subprocess
+
+subprocess.run("videg cosim --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'", shell=True, check=True)
+
+# %% [markdown]
+# `supply` and `load` (the storage) are the two numbers of ngspice, in J, to a seventh of a percent. videg also
+# runs ngspice itself, as a shared library that steps along with the harvester, which is what a circuit that acts back on the ball needs:
+
+# %%
+import subprocess
+
+subprocess.run("videg cosim --circuit ngspice --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'", shell=True, check=True)
+
+# %% [markdown]
+# And `videg crosscheck` holds closed forms, embedded solver, ngspice as a program and ngspice as a library against each other, claim
+# by claim. With `--export` it leaves a folder for somebody who has ngspice alone: netlists, C(t), and the values to expect.
+
+# %%
+import subprocess
+
+subprocess.run("videg crosscheck --until 10 --export out/for-ngspice >/dev/null && ls out/for-ngspice", shell=True, check=True)
+
+# %% [markdown]
+# ## Which storage voltage gains most
+#
+# A slow cycle gains (C3 U_in - C2 U_out)(U_out - U_in), so there is a best voltage between U_in and the peak that constant charge
+# reaches ([Circuit and energy](../theory/circuit.md)). In ngspice:
+
+# %%
+import os
+import subprocess
+
+import matplotlib.pyplot as plt
+
+figures = Path(os.environ.get("FIGURES", "out/ngspice"))
+figures.mkdir(parents=True, exist_ok=True)
+netlist = Path("out/ngspice/own.cir").read_text()
+voltages, gains = [2050, 2200, 2350, 2500, 2650, 2800], []
+for voltage in voltages:
+    Path("out/ngspice/sweep.cir").write_text(netlist.replace("2200", str(voltage)))
+    run = subprocess.run(["ngspice", "-b", "sweep.cir"], cwd="out/ngspice", capture_output=True, text=True, check=True)
+    value = {words[0]: float(words[2]) for words in map(str.split, run.stdout.splitlines()) if words[1:2] == ["="]}
+    gains.append(value["to_storage"] - value["from_supply"])
+    print(f"storage at {voltage} V: gain {1e6 * gains[-1]:6.1f} uJ in 10 s")
+
+# %%
+figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
+axes.plot(voltages, [1e6 * gain for gain in gains], "o-")
+axes.axhline(0, color="tab:gray", linewidth=0.8)
+axes.set_xlabel("voltage of the storage, V")
+axes.set_ylabel("gain in 10 s, uJ")
+figure.savefig(figures / "storage.svg")
+
+# %% [markdown]
+# `videg crosscheck --sweep` and `videg reproduce tuning` draw this map for Zener diodes, switches and storages, over voltage and
+# load.
