@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use videg::fmi::{Bounds, Fmu, Instance, Isolation, Logging};
+use videg::fmi::{Bounds, Fmu, Instance, Isolation, Kind, Logging};
 use videg::package::{Options, build_all};
 
 /// Runs of each measurement, of which the shortest counts.
@@ -61,13 +61,19 @@ fn step(fmu: &Fmu) -> anyhow::Result<Duration> {
 /// Mean time of reading.
 fn read(fmu: &Fmu) -> anyhow::Result<Duration> {
     const READS: u32 = 20_000;
-    let outputs: Vec<_> = fmu.description().output_variables().map(|it| it.value_reference).take(16).collect();
+    let outputs: Vec<_> = reals(fmu).take(16).collect();
     let (instance, mut values) = (initialised(fmu)?, vec![0.0; outputs.len()]);
     let begun = Instant::now();
     for _ in 0..READS {
         instance.get_real(&outputs, &mut values)?;
     }
     Ok(begun.elapsed() / READS)
+}
+
+/// Value references of the Real outputs.
+fn reals(fmu: &Fmu) -> impl Iterator<Item = u32> {
+    let reals = fmu.description().output_variables().filter(|it| matches!(it.kind, Kind::Real { .. }));
+    reals.map(|it| it.value_reference)
 }
 
 /// Mean time to make, initialise and free an instance.

@@ -1,5 +1,5 @@
 //! Isolated FMUs: the same numbers as in one process, and whatever they do to their own process is told and harms no other.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::path::{Path, PathBuf};
@@ -223,7 +223,6 @@ fn a_worker_whose_host_is_killed_ends() {
     let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
     let mut host = Command::new(env!("CARGO_BIN_EXE_videg")).args(["fmu", "check"]).arg(&path).spawn().unwrap();
     let pid = wait_for(|| std::fs::read_to_string(&mark).ok().filter(|text| !text.is_empty()));
-    assert!(Path::new("/proc/self").exists());
     host.kill().unwrap();
     host.wait().unwrap();
     let process = PathBuf::from("/proc").join(&pid);

@@ -123,12 +123,16 @@ fn read_text(path: &Path) -> Result<String, ScenarioError> {
     }
 }
 
-/// What the reader of TOML says, in one line: without the drawing of the place.
+/// What the reader of TOML says, in one line: the line of the file that it draws, but not how it points there.
 pub(crate) fn toml_error(error: &toml::de::Error) -> String {
-    let is_drawn = |line: &str| line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ').starts_with('|');
-    let text = error.to_string();
-    let said: Vec<_> = text.lines().filter(|line| !is_drawn(line)).map(str::trim).filter(|it| !it.is_empty()).collect();
-    said.join(": ")
+    const SHOWN: usize = 80;
+    let shown = |line: &str| {
+        let drawn = line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ').strip_prefix('|');
+        let text = drawn.unwrap_or(line).trim();
+        let is_pointer = text.chars().all(|c| c == '^' || c == ' ');
+        (!is_pointer).then(|| text.chars().take(if drawn.is_some() { SHOWN } else { usize::MAX }).collect::<String>())
+    };
+    error.to_string().lines().filter_map(shown).collect::<Vec<_>>().join(": ")
 }
 
 /// Turns nested tables back into dotted names.

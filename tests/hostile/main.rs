@@ -12,6 +12,7 @@ mod descriptions;
 mod files;
 mod libraries;
 mod memory;
+mod netlists;
 mod options;
 mod page;
 mod stage;

@@ -37,11 +37,6 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Whether a call took too long.
-    pub fn is_time_limit(&self) -> bool {
-        matches!(self.how, How::TooLong)
-    }
-
     fn how(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.how {
             How::Ended(status) => write!(out, "ended its process ({status}{})", self.memory()),
