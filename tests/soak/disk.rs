@@ -90,7 +90,7 @@ fn name(path: &Path) -> String {
 
 /// Whether a file is one that is not complete, by its name.
 pub fn is_partial(name: &str) -> bool {
-    name.ends_with(".part")
+    Path::new(name).extension().is_some_and(|extension| extension == "part")
 }
 
 /// That a program which failed names a file in `folder` and what is wrong with the disk, in its last line.

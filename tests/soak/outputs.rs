@@ -48,7 +48,9 @@ fn disturb(arguments: &[&str], at_most: u64, what: &str) -> u64 {
     let restore = || {
         std::fs::remove_dir_all(&folder).unwrap();
         std::fs::create_dir(&folder).unwrap();
-        old.iter().for_each(|(name, bytes)| std::fs::write(folder.join(name), bytes).unwrap());
+        for (name, bytes) in &old {
+            std::fs::write(folder.join(name), bytes).unwrap();
+        }
     };
     restore();
     let calls = disk::calls(&mut command(arguments, &folder), &folder);
