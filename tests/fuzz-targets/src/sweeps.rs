@@ -27,7 +27,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
     let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
     let (name, step) = (case.name.clone().unwrap_or_default(), case.step);
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
-    let is_own = |setting: &Setting| HARVESTER.variable(&setting.name).is_ok();
+    let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
     Sweep::new(Request {
         name,
         description: &HARVESTER,
