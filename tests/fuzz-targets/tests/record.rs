@@ -21,9 +21,9 @@ struct Sum {
 impl Sum {
     fn row(&self, name: &str) -> String {
         let Self { runs, executions, edges, findings, .. } = self;
-        let [hours, cpu_hours] = [self.seconds, self.cpu_seconds].map(|seconds| seconds as f64 / 3600.0);
+        let [minutes, cpu_minutes] = [self.seconds, self.cpu_seconds].map(|seconds| seconds as f64 / 60.0);
         let edges = if *edges > 0 { edges.to_string() } else { String::new() };
-        format!("| {name} | {runs} | {hours:.2} | {cpu_hours:.2} | {executions} | {edges} | {findings} |\n")
+        format!("| {name} | {runs} | {minutes:.1} | {cpu_minutes:.1} | {executions} | {edges} | {findings} |\n")
     }
 
     fn add(&mut self, other: &Self) {
@@ -48,7 +48,8 @@ fn table(record: &str) -> String {
     }
     let mut total = Sum::default();
     sums.values().for_each(|sum| total.add(sum));
-    let mut text = "| target | runs | hours | hours of CPU | executions | edges reached | findings |\n".to_owned();
+    let mut text =
+        "| target | runs | minutes | minutes of the processor | executions | edges reached | findings |\n".to_owned();
     text += "|---|---|---|---|---|---|---|\n";
     sums.iter().for_each(|(name, sum)| write!(text, "{}", sum.row(&format!("`{name}`"))).unwrap());
     text + &total.row("all")
