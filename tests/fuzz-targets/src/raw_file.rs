@@ -26,10 +26,11 @@ fn seeds() -> Vec<Vec<u8>> {
 }
 
 fn raw(variables: u32, points: u32) -> Vec<u8> {
-    let list: String = (0..variables).map(|index| format!("\t{index}\tv({index})\tvoltage\n")).collect();
+    let list: Vec<_> = (0..variables).map(|index| format!("\t{index}\tv({index})\tvoltage\n")).collect();
     let header = format!(
         "Title: a title\nDate: now\nPlotname: Transient Analysis\nFlags: real\nNo. Variables: {variables}\n\
-         No. Points: {points}       \nVariables:\n{list}Binary:\n"
+         No. Points: {points}       \nVariables:\n{}Binary:\n",
+        list.concat()
     );
     let numbers = (0..variables * points).flat_map(|number| (f64::from(number) * 0.7).to_le_bytes());
     header.into_bytes().into_iter().chain(numbers).collect()

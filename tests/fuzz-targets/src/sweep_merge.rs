@@ -26,7 +26,7 @@ fn check(bytes: &[u8]) -> bool {
     let heading = shards[0].iter().position(|byte| *byte == b'\n').unwrap() + 1;
     let lines = shards.iter().flat_map(|shard| &shard[heading..]);
     assert!(shards[0][..heading].iter().chain(lines).eq(&results), "other lines than those of the shards");
-    let count = results.iter().filter(|byte| **byte == b'\n').count() as u64;
+    let count = results.split_inclusive(|byte| *byte == b'\n').count() as u64;
     assert!(report.is_complete() && report.runs + 1 == count && report.failed <= report.runs, "{report:?}");
     assert_eq!(sweeps::rows(&results) as u64, report.runs, "a line is not a row");
     assert_eq!(fs::read_dir(&output).unwrap().count(), 3, "results, document and table");

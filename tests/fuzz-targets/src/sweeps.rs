@@ -6,6 +6,7 @@ use videg::cosim::EmbeddedCircuit;
 use videg::fmi::{ModelDescription, Value};
 use videg::scenario::{self, Setting};
 use videg::sweep::{self, Request, Sweep, SweepError, SweepFile, Times};
+use videg_circuit::Settings;
 
 /// What the harvester says of itself.
 pub(crate) static HARVESTER: LazyLock<ModelDescription> =
@@ -19,7 +20,7 @@ pub(crate) fn apply(setting: &Setting) {
     {
         assert_eq!(Value::parse(&HARVESTER, variable, &value.to_string()), Ok(value), "{setting:?}");
     }
-    let _ = EmbeddedCircuit::apply(&mut Default::default(), setting);
+    let _ = EmbeddedCircuit::apply(&mut Settings::default(), setting);
 }
 
 /// The sweep of the harvester that a file asks for.
@@ -27,7 +28,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
     let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
     let (name, step) = (case.name.clone().unwrap_or_default(), case.step);
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
-    let is_own = |setting: &Setting| HARVESTER.variable(&setting.name).is_ok();
+    let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
     Sweep::new(Request {
         name,
         description: &HARVESTER,
@@ -63,5 +64,5 @@ pub(crate) fn check(sweep: &Sweep) {
 
 /// Rows of results, as programs that know CSV see them.
 pub(crate) fn rows(results: &[u8]) -> usize {
-    csv::ReaderBuilder::new().from_reader(results).byte_records().map(|row| row.unwrap()).count()
+    csv::Reader::from_reader(results).into_byte_records().collect::<Result<Vec<_>, _>>().unwrap().len()
 }
