@@ -52,3 +52,15 @@ impl Ledger {
         self.converted() - self.mechanical
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_user_gains_what_the_load_got_less_what_the_supply_gave() {
+        let ledger = Ledger { supply: 3.0, load: 5.0, zener: 7.0, ..Ledger::default() };
+        assert_eq!(ledger.surplus(), 2.0);
+        assert_eq!(ledger.converted(), 9.0);
+    }
+}

@@ -116,12 +116,12 @@ mod tests {
     #[test]
     fn an_added_library_joins_those_inside_or_takes_the_place_of_one() {
         let folder = tempfile::tempdir().unwrap();
-        let other = folder.path().join("library");
-        std::fs::write(&other, "added").unwrap();
+        let added_library = folder.path().join("library");
+        std::fs::write(&added_library, "added").unwrap();
         let archive = packaged(DESCRIPTIONS[0]);
         for (platform, wanted) in [("linux64", b"added".to_vec()), ("win64", library())] {
             let platform = Platform::of_folder(platform).unwrap();
-            let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: other.clone() };
+            let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: added_library.clone() };
             let path = folder.path().join("it.fmu");
             entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap().write(&path).unwrap();
             let found = Entries::read(&std::fs::read(path).unwrap()).unwrap();

@@ -57,7 +57,8 @@ def percent(lines: int, missed: int) -> float:
 def test_lines(source: str) -> int:
     """The line from which on a file holds its own tests."""
     lines = source.splitlines()
-    starts = (number for number, line in enumerate(lines, 1) if line == "#[cfg(test)]")
+    pairs = zip(lines, lines[1:], strict=False)
+    starts = (number for number, pair in enumerate(pairs, 1) if pair == ("#[cfg(test)]", "mod tests {"))
     return next(starts, len(lines) + 1)
 
 
@@ -84,7 +85,8 @@ def page(files: list[File], gaps: dict[str, str]) -> tuple[str, list[str]]:
     for package in PACKAGES:
         inside = [file for file in files if file.name.startswith(f"{package}/src/")]
         lines, missed = sum(len(file.lines) for file in inside), sum(len(file.missed) for file in inside)
-        text += f"| `{package}` | {lines} | {missed} | {percent(lines, missed):.1f} % |\n"
+        reached = f"{percent(lines, missed):.1f} %" if lines else "types and constants only"
+        text += f"| `{package}` | {lines} | {missed} | {reached} |\n"
         if percent(lines, missed) < BOUND:
             failures.append(f"{package} reaches {percent(lines, missed):.1f} % of its lines, wanted are {BOUND:g} %")
     text += f"\n## Files below {BOUND:g} %\n\n"

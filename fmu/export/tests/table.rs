@@ -149,10 +149,10 @@ fn accessors_are_those_that_the_row_was_finished_with() {
             Kind::Real(it) => assert_eq!(it.set.map(|set| set(&mut sample, 4.0)).is_some(), written, "{}", row.name()),
             Kind::Integer(it) => assert_eq!(it.set.map(|set| set(&mut sample, 5)).is_some(), written, "{}", row.name()),
             Kind::Boolean(it) => {
-                assert_eq!(it.set.map(|set| set(&mut sample, true)).is_some(), written, "{}", row.name())
+                assert_eq!(it.set.map(|set| set(&mut sample, true)).is_some(), written, "{}", row.name());
             }
             Kind::String(it) => {
-                assert_eq!(it.set.map(|set| set(&mut sample, "y")).is_some(), written, "{}", row.name())
+                assert_eq!(it.set.map(|set| set(&mut sample, "y")).is_some(), written, "{}", row.name());
             }
             Kind::Enumeration(it) => assert_eq!(it.set.is_some(), written, "{}", row.name()),
         }
