@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy scale conformance browser book)
+readonly STAGES=(setup lint unit valgrind fmpy fuzz scale conformance browser book)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -11,12 +11,13 @@ readonly REQUIREMENTS=(
     scale/requirements.txt
     tests/requirements-conformance.txt
     tests/requirements-browser.txt
+    tests/requirements-release.txt
 )
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
-# Not among those that run by default: one takes long to build what it runs, the other installs Wine and cross compilers.
-readonly EXTRA_STAGES=(conformance-slow portability)
+# Not among those that run by default: they take long, install Wine and cross compilers, or need a nightly compiler.
+readonly EXTRA_STAGES=(conformance-slow portability soak sanitizers release coverage)
 
 usage() {
     cat <<'EOF'
@@ -24,10 +25,11 @@ Usage: ./test.sh [STAGE...]
 
 Runs the stages named, or all of them in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
-  lint         cargo fmt, clippy and rustdoc, with warnings as errors
+  lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
-  fmpy         FMPy simulates the FMUs and agrees with the command line
+  fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
+  fuzz         each fuzz target for 20 s, where there is a nightly compiler; kept inputs run in the stage unit anyway
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
@@ -39,7 +41,12 @@ Runs the stages named, or all of them in this order:
 Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build
+  soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
+  sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
+  release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
+               licences of the dependencies; installs mingw and builds cargo-deny
+  coverage     lines of model, circuit and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF
@@ -164,6 +171,23 @@ stage_lint() {
         skip "cargo clippy is not installed"
     fi
     run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+    run release/version.sh check
+    run python3 release/interface.py check
+    lint_workflows
+}
+
+lint_workflows() {
+    if has_command shellcheck; then
+        run shellcheck release/*.sh tests/release/run.sh tests/coverage/run.sh
+    else
+        skip "shellcheck is not installed"
+    fi
+    if [[ -x $VENV/bin/zizmor ]]; then
+        run "$VENV/bin/check-jsonschema" --builtin-schema vendor.github-workflows .github/workflows/*.yml
+        run "$VENV/bin/zizmor" --quiet --offline .github/workflows
+    else
+        skip "check-jsonschema and zizmor are not in $VENV"
+    fi
 }
 
 stage_unit() {
@@ -188,6 +212,22 @@ stage_fmpy() {
     need_python
     build_fmus
     run "$VENV/bin/python" -m pytest tests/fmpy
+    run "$VENV/bin/python" tests/valgrind/fmpy_run.py
+}
+
+has_nightly() {
+    cargo +nightly --version >/dev/null 2>&1
+}
+
+# A record of its own: the one in git is of long runs.
+stage_fuzz() {
+    if ! has_nightly; then
+        echo "no nightly compiler: nothing is fuzzed, kept inputs are replayed in the stage unit"
+        return
+    fi
+    PATH="$PWD/target/tools/bin:$PATH" has_command cargo-fuzz ||
+        run cargo install --quiet --locked --root target/tools cargo-fuzz --version 0.13.2
+    run env RECORD=/dev/null fuzz/run.sh 20
 }
 
 stage_scale() {
@@ -227,6 +267,26 @@ stage_conformance-slow() {
 stage_portability() {
     run tests/linux-glibc/run.sh
     run tests/windows/run.sh
+}
+
+stage_sanitizers() {
+    has_nightly || fail "no nightly compiler, which sanitizers need (rustup toolchain install nightly)"
+    run tests/sanitizers/run.sh
+}
+
+stage_release() {
+    need_python
+    run "$VENV/bin/python" -m pytest tests/release
+    run release/deny.sh
+    run tests/release/run.sh
+}
+
+stage_coverage() {
+    run tests/coverage/run.sh
+}
+
+stage_soak() {
+    run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --nocapture --test-threads 1
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -9,17 +9,27 @@
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
+//! - [`whole`] writes files that appear whole or not at all;
 //! - [`cli`] is the command-line tool.
+//!
+//! Without the feature `tool`, which is on by default, there are [`fmi`], [`scenario`], [`cosim`], [`ngspice`] and
+//! [`sweep`] alone.
 
 #[cfg(doctest)]
 mod book;
+#[cfg(feature = "tool")]
 pub mod cli;
 pub mod cosim;
+#[cfg(feature = "tool")]
 pub mod crosscheck;
 pub mod fmi;
 pub mod ngspice;
+#[cfg(feature = "tool")]
 pub mod package;
+#[cfg(feature = "tool")]
 pub mod paper;
+#[cfg(feature = "tool")]
 pub mod report;
 pub mod scenario;
 pub mod sweep;
+pub mod whole;

@@ -90,8 +90,8 @@ impl Circuit {
     /// storage takes what rises to `U_out`.
     ///
     /// # Errors
-    /// `dt` or a capacitance out of bounds, by name; [`Error::Integration`] with exponential diodes. The circuit
-    /// is unchanged then.
+    /// `dt` or a capacitance out of bounds, by name; a voltage, current or energy that is no finite number;
+    /// [`Error::Integration`] with exponential diodes. The circuit is unchanged then.
     pub fn advance(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
         not_negative(names::STEP, dt, "s")?;
         check_capacitances(capacitance)?;
@@ -99,13 +99,31 @@ impl Circuit {
             return Ok(());
         }
         finite("time", self.state.time + dt, "s")?;
+        let before = self.state;
         match self.parameters.diodes {
             Diodes::Ideal => self.advance_ideal(dt, capacitance)?,
             Diodes::Exponential(diode) => self.advance_exponential(&diode, dt, capacitance)?,
         }
         self.state.capacitance = capacitance;
         self.state.time += dt;
-        Ok(())
+        self.check_numbers().inspect_err(|_| self.state = before)
+    }
+
+    /// That no voltage, current or energy has left the range of numbers, as it does beside a capacitance of 1e308 F.
+    fn check_numbers(&self) -> Result<(), Error> {
+        let ([left, right], ledger) = (self.voltage(), self.ledger());
+        let State { load_voltage, load_current, supply_current, .. } = self.state;
+        let sum = left + right + load_voltage + load_current + supply_current + ledger.converted() + ledger.mechanical;
+        if (sum + ledger.supply_charge + ledger.load_charge).is_finite() {
+            return Ok(());
+        }
+        finite(names::LEFT_VOLTAGE, left, "V")?;
+        finite(names::RIGHT_VOLTAGE, right, "V")?;
+        finite("load.voltage", load_voltage, "V")?;
+        finite("load.current", load_current, "A")?;
+        finite("supply.current", supply_current, "A")?;
+        ledger.validate()?;
+        finite("energy converted", ledger.converted(), "J")
     }
 
     fn advance_ideal(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {

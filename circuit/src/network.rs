@@ -33,7 +33,8 @@ impl Elements {
                 Release::Switch | Release::Storage => 0.0,
             },
             conductance: match parameters.release {
-                Release::Zener | Release::Switch => 1.0 / parameters.load_resistance,
+                // The absolute value: -0 ohm is 0 ohm.
+                Release::Zener | Release::Switch => 1.0 / parameters.load_resistance.abs(),
                 Release::Storage => f64::INFINITY,
             },
             release: parameters.release,

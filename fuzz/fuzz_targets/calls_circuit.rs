@@ -1,15 +1,6 @@
-//! Calls of the C functions of HarvestingCircuit, in any order and with any arguments; each answer is checked against the
-//! tables of FMI 2.0.
 #![no_main]
 
-use std::sync::LazyLock;
+#[path = "../../tests/fuzz-targets/fmu/circuit.rs"]
+mod targets;
 
-use HarvestingCircuit as _; // links its C functions
-use fmi2_host::{Fmu, linked_functions, run_tape};
-
-static FMU: LazyLock<Fmu> = LazyLock::new(|| {
-    let description = include_str!("../../modelDescription/HarvestingCircuit.xml");
-    Fmu::new(linked_functions!(), description).unwrap_or_else(|error| panic!("{error}"))
-});
-
-libfuzzer_sys::fuzz_target!(|tape: &[u8]| run_tape(&FMU, tape).unwrap_or_else(|what| panic!("{what}")));
+videg_fuzz::program!(targets::TARGETS);

@@ -1,9 +1,6 @@
-//! The content of a serialised state of HarvestingCircuit, behind its checksum.
 #![no_main]
 
-use HarvestingCircuit::Harvesting;
+#[path = "../../tests/fuzz-targets/fmu/circuit.rs"]
+mod targets;
 
-libfuzzer_sys::fuzz_target!(
-    init: videg_fuzz::write_seeds::<Harvesting>(),
-    |content: &[u8]| videg_fuzz::state::<Harvesting>(content)
-);
+videg_fuzz::program!(targets::TARGETS);

@@ -83,6 +83,21 @@ pub enum ModelError {
         /// Its value.
         value: f64,
     },
+    /// An integrator has passed over more samples of the phase noise than can be made up for.
+    #[error(
+        "t = {time} s is more than {limit} hold intervals of excitation.noiseHold = {hold} s after the sample due at \
+         {due} s: an importer must stop at nextEventTime"
+    )]
+    NoiseLag {
+        /// Time reached, s.
+        time: f64,
+        /// When the next sample was due, s.
+        due: f64,
+        /// Hold intervals allowed.
+        limit: f64,
+        /// Length of one, s.
+        hold: f64,
+    },
     /// More events than the budget within one second of simulated time.
     #[error(
         "more than {limit} events within one second up to t = {time} s, with ball.travel = {travel} m and \

@@ -116,6 +116,13 @@ impl Flight {
         sin_cos(4.0 * self.turns_at(tau))
     }
 
+    /// dz, m, at `tau`, s, where the angle has this sine and cosine.
+    #[inline]
+    fn value(&self, tau: f64, [_, cos]: [f64; 2]) -> f64 {
+        let [c0, c1, c2, c3] = self.coefficients;
+        c0 + tau * (c1 + tau * (c2 + tau * c3)) - self.swing * cos
+    }
+
     /// dz, m, and its first seven derivatives at `tau`, s, where the angle has this sine and cosine.
     #[inline]
     fn derivatives(&self, tau: f64, [sin, cos]: [f64; 2]) -> [f64; 8] {

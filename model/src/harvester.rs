@@ -32,6 +32,10 @@ use crate::noise;
 use crate::parameters::{ContactLaw, NoiseModel, OutsideGap, Parameters};
 use crate::pulse::{Deflection, Knot, PulseShape, Pulses};
 
+/// Largest force, voltage and rate of these, in SI units. Far beyond any use, and small enough that no energy of a run up to
+/// 1e9 s is infinite, whatever the parameters.
+const MAX_INPUT: f64 = 1e18;
+
 /// Farthest start from t = 0, s: times have digits below a microsecond up to there.
 const MAX_START: f64 = 1e9;
 
@@ -122,9 +126,9 @@ impl Harvester {
     /// order along `direction`.
     ///
     /// # Errors
-    /// As [`Harvester::new`]; a force that is not finite.
+    /// As [`Harvester::new`]; a force that is not finite or beyond 1e18 N.
     pub fn along(parameters: &Parameters, start: f64, force: f64, direction: &Direction) -> Result<Self, ModelError> {
-        finite("externalForce", force)?;
+        within("externalForce", force, "N")?;
         let mut harvester = Self::before_events(parameters, start)?;
         let xi = xi(parameters, &harvester.noise);
         harvester.tangent = Tangent::along(&harvester, force, direction, xi);
@@ -244,11 +248,11 @@ impl Harvester {
     /// [`Harvester::sensitivities`] are counted from here.
     ///
     /// # Errors
-    /// A force or rate that is not finite.
+    /// A force or rate that is not finite, or beyond 1e18 N or N/s.
     #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
-        finite("externalForce", force)?;
-        finite("derivative of externalForce", rate)?;
+        within("externalForce", force, "N")?;
+        within("derivative of externalForce", rate, "N/s")?;
         self.forget_changes();
         self.push(force, rate);
         Ok(())
@@ -256,6 +260,10 @@ impl Harvester {
 
     #[inline]
     fn push(&mut self, force: f64, rate: f64) {
+        // Nothing pushes, as before: two quotients less for each step of a caller that sets its inputs anew.
+        if [force, rate, self.cylinder.drive.external, self.cylinder.drive.external_rate] == [0.0; 4] {
+            return;
+        }
         let (mass, drive) = (self.parameters.cylinder_mass, &self.cylinder.drive);
         let (external, external_rate) = (force / mass, rate / mass);
         let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
@@ -432,6 +440,16 @@ fn xi(parameters: &Parameters, noise: &Noise) -> f64 {
         NoiseModel::Held => noise::normal(parameters.seed, noise.sample),
         NoiseModel::Wiener => noise.walk,
     }
+}
+
+/// An input, or its rate, within its bounds.
+#[inline]
+fn within(name: &'static str, value: f64, unit: &'static str) -> Result<(), ModelError> {
+    if value.abs() <= MAX_INPUT {
+        return Ok(());
+    }
+    finite(name, value)?;
+    Err(ModelError::Bounds { name, value, unit, min: -MAX_INPUT, max: MAX_INPUT })
 }
 
 fn finite(name: &'static str, value: f64) -> Result<(), ModelError> {

@@ -25,6 +25,9 @@ pub struct Membrane {
     power: f64,
 }
 
+/// Deflection, in units of `R_2`, from which on the membrane is nearly a needle. No ordinary one gets near.
+const STEEP: f64 = 1e4;
+
 /// Cosine of the angle alpha between the free membrane and its original plane, and 1 - cos(alpha) without cancellation.
 #[derive(Debug, Clone, Copy)]
 struct Tangent {
@@ -93,7 +96,14 @@ impl Membrane {
         let half = deflection / (r2 + root);
         let square = half * half;
         let inverse = 1.0 / (1.0 + square);
-        let (cos, sin) = ((1.0 - square) * inverse, 2.0 * half * inverse);
+        let mut complement = 1.0 - square;
+        if deflection > STEEP * r2 {
+            // Here that loses its digits: R_2 + root - delta is taken from root^2 - delta^2 = R_2^2 - 2 r_b delta instead.
+            let both = 1.0 + root / deflection;
+            let rest = r2 * r2 + rb * (r2 * (r2 / deflection) - 2.0 * rb) / both;
+            complement = ((r2 - rb) + rest / (both * deflection)) / (r2 + root) * (1.0 + half);
+        }
+        let (cos, sin) = (complement * inverse, 2.0 * half * inverse);
         Tangent { cos, versine: half * sin, cos_slope: -sin * cos / root }
     }
 

@@ -110,3 +110,16 @@ fn states_that_are_not_finite_are_refused() {
     let refused = harvester.place(0.0, [0.0, f64::NAN, 0.0, 0.0], 0.0);
     assert!(matches!(refused, Err(ModelError::NotFinite { .. })));
 }
+
+#[test]
+fn an_integrator_that_passes_over_the_samples_of_the_phase_noise_is_told_where_it_should_have_stopped() {
+    let p = Parameters { phase_noise: 0.5, noise_hold: 1e-6, ..Parameters::default() };
+    let mut harvester = Harvester::new(&p, 0.0).unwrap();
+    let states = harvester.states();
+    harvester.place(0.5, states, 0.0).unwrap();
+    harvester.handle_events().unwrap();
+    // 1e15 samples later.
+    harvester.place(1e9, states, 0.0).unwrap();
+    let error = harvester.handle_events().unwrap_err().to_string();
+    assert!(error.contains("more than 1000000 hold intervals of excitation.noiseHold = 0.000001 s"), "{error}");
+}

@@ -25,6 +25,8 @@ def read_parameters(file: Path) -> dict[str, str]:
         root = ElementTree.parse(file).getroot()
     except (OSError, ElementTree.ParseError) as error:
         raise Problem(f"parameter set {file}: {error}") from error
+    if root.tag != f"{VALUES}ParameterSet":
+        raise Problem(f"parameter set {file}: its root is {root.tag}, not {VALUES}ParameterSet of SSP 1.0")
     try:
         return {item.attrib["name"]: item[0].attrib["value"] for item in root.iter(f"{VALUES}Parameter")}
     except (KeyError, IndexError) as error:

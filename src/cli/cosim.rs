@@ -7,10 +7,11 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, names};
 
+use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
-use super::{Verdict, cosim_report, electrical, output, packaging, picture, settings};
+use super::{Verdict, cosim_report, electrical, output, picture, settings};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, EnergyBalance, FmuCircuit,
     HarvesterFmu, Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
@@ -19,6 +20,7 @@ use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
 use crate::report::Drawing;
 use crate::scenario::Scenario;
+use crate::whole;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -35,6 +37,8 @@ pub struct Arguments {
     /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     adaptive: Option<f64>,
+    #[command(flatten)]
+    isolation: IsolationOptions,
 }
 
 /// The method of the master, as it is asked for.
@@ -118,10 +122,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let scenario = options.scenario()?;
     let coupling = Coupling { method: arguments.master.into(), tolerance: arguments.adaptive };
     coupling.check()?;
-    let fmu = packaging::open("VibroImpactHarvester")?;
+    let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let finished = couple(arguments.circuit, coupling, &fmu, scenario, &csv)?;
+    let finished = couple((arguments.circuit, &arguments.isolation), coupling, &fmu, scenario, &csv)?;
     let files = write_files(&folder, &csv, &finished)?;
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -134,9 +138,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
-/// Runs the co-simulation and writes the time series to `csv`.
+/// Runs the co-simulation with a circuit, which as an FMU may be isolated, and writes the time series to `csv`.
 pub fn couple(
-    backend: Backend,
+    backend: (Backend, &IsolationOptions),
     coupling: Coupling,
     fmu: &Fmu,
     scenario: Scenario,
@@ -150,16 +154,19 @@ pub fn couple(
     let circuits = circuits(backend, &scenario, &settings, ratios, &harvester)?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let master = Master::new(harvester, circuits, &scenario, coupling)?;
-    let mut recorder = CsvRecorder::create(&output::partial(csv), true)?;
+    let mut recorder = CsvRecorder::create(csv, true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);
     let outcome = master.run(&mut [&mut recorder, &mut trace, &mut bar]);
     bar.finish();
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            recorder.leave()?;
+            return Err(anyhow!("{error}; the time series up to there is in {}", whole::partial(csv).display()));
+        }
+    };
     recorder.finish()?;
-    // What is there when a subsystem gives up stays.
-    let outcome = outcome
-        .map_err(|error| anyhow!("{error}; the time series up to there is in {}", output::partial(csv).display()))?;
-    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
     warnings.extend(voltage_warning);
     warnings.extend(coupling_warning(&coupling));
@@ -199,7 +206,7 @@ fn coupling_warning(coupling: &CouplingSummary) -> Option<String> {
 /// The circuit asked for, and three to compare it with: the same with an ideal switch, and two that gain, with isolated
 /// membranes and the voltage of release that gains most: a switch, and a storage in place of the load.
 fn circuits(
-    backend: Backend,
+    (backend, isolation): (Backend, &IsolationOptions),
     scenario: &Scenario,
     settings: &Settings,
     ratios: electrical::Ratios,
@@ -215,7 +222,7 @@ fn circuits(
             Box::new(NgspiceCircuit::new(&label(settings), &program, &elements, capacitance, &run)?)
         }
         Backend::Fmu => {
-            let fmu = packaging::open("HarvestingCircuit")?;
+            let fmu = isolation.open_own("HarvestingCircuit")?;
             let all = electrical::every_setting(settings);
             Box::new(FmuCircuit::new(&label(settings), &fmu, &all, capacitance, scenario.until)?)
         }

@@ -6,13 +6,14 @@ use crate::cosim::{CouplingSummary, EnergyBalance};
 use crate::report::{self, Column, Report, ReportError, Section, Table};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
-pub const EXPLANATION: [&str; 6] = [
+pub const EXPLANATION: [&str; 7] = [
     "Why they differ: an impact moves the charge dQ = U_in dC from the supply, which gives U_in dQ. W of Eq. (13) is half",
     "of that: the change of the stored energy, not a gain. A Zener in series then burns U_z dQ, and the load sees only what",
-    "is above U_z: the surplus of the paper's circuit is negative. An ideal switch at U_z = U_in hands the same energy on,",
-    "so the surplus is about zero; with isolated membranes and U_z above U_in the mechanics' work reaches the load. It does",
-    "so without a switch to be driven where a diode leads into a storage at U_out, whose intake counts as the load's: a slow",
-    "cycle then gains (C3 U_in - C2 U_out) (U_out - U_in), the most at U_out = U_in (C3/C2 + 1)/2.",
+    "is above U_z. At U_z = U_in the paper's circuit thus gains at most U_in^2 dC (dC/(2 C2) - 1), a loss unless C3/C2 is",
+    "above 3, or 5 with both membranes on one node. An ideal switch at U_z = U_in into a quick load hands on what the supply",
+    "gave; with U_z above U_in the mechanics' work reaches the load, the more so with isolated membranes. It does so without",
+    "a switch to be driven where a diode leads into a storage at U_out, whose intake counts as the load's: a slow cycle then",
+    "gains (C3 U_in - C2 U_out) (U_out - U_in), the most at U_out = U_in (C3/C2 + 1)/2.",
 ];
 
 /// A row of the energy table: its name and how to read it from a circuit, in J.

@@ -10,6 +10,7 @@ use super::{crosscheck_picture as picture, crosscheck_report as page, output};
 use crate::cosim::CircuitSample;
 use crate::crosscheck::export::{Expected, Item};
 use crate::crosscheck::{Compared, Curve, Solver, export as folder_for_ngspice};
+use crate::whole;
 
 /// Writes everything into `folder`; the list has a place for `result.json`, which is written last.
 pub fn write(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {
@@ -41,17 +42,15 @@ pub fn write_data(folder: &Path, finished: &Finished) -> anyhow::Result<(Vec<Pat
 
 /// Writes rows into a file that appears when it is whole.
 fn csv(path: &Path, heading: &[String], rows: impl Iterator<Item = Vec<String>>) -> anyhow::Result<()> {
-    let part = output::partial(path);
-    let write = || -> anyhow::Result<()> {
-        let mut writer = csv::Writer::from_path(&part)?;
+    let written = whole::fill(path, |file| -> anyhow::Result<()> {
+        let mut writer = csv::Writer::from_writer(file);
         writer.write_record(heading)?;
         for row in rows {
             writer.write_record(row)?;
         }
-        writer.flush()?;
-        Ok(std::fs::rename(&part, path)?)
-    };
-    write().with_context(|| format!("cannot write {}", path.display()))
+        Ok(writer.flush()?)
+    });
+    written.with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn shown(value: Option<f64>) -> String {

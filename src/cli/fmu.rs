@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
+use super::message::plain;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
@@ -38,11 +40,13 @@ enum Task {
     },
     /// Load an FMU and run it for some steps: does it keep the promises of its model description?
     Check {
-        /// The FMU; its code is run in this process
+        /// The FMU; its code is run
         file: PathBuf,
         /// Print one JSON object on stdout instead of the list
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        isolation: IsolationOptions,
     },
     /// Describe an FMU: platforms, capabilities, variables. Nothing of it is unpacked or run
     Info {
@@ -58,7 +62,7 @@ enum Task {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     match &arguments.task {
         Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
-        Task::Check { file, json } => return fmu_check::run(file, *json),
+        Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Verdict::Passed)
@@ -132,7 +136,7 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
     if json {
         output::print(&serde_json::to_string_pretty(&info)?)?;
     } else {
-        output::print(&text(&info))?;
+        output::print(&plain(&text(&info)))?;
     }
     Ok(())
 }

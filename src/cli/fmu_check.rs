@@ -4,6 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
+use super::message::one_line;
 use super::{Verdict, output};
 use crate::fmi::{FmiError, Fmu, Instance, Kind, Logging};
 
@@ -13,7 +15,21 @@ const STEP: f64 = 1e-3;
 const STEPS: u32 = 10;
 
 /// A check by name: says what it left out, or why it failed.
-type Task = (&'static str, fn(&mut Instance) -> Result<String, String>);
+type Task = (&'static str, fn(&mut Instance) -> Result<String, Trouble>);
+
+/// Why a check failed.
+enum Trouble {
+    /// The FMU does not keep its promises.
+    Failed(String),
+    /// It took its process down.
+    Ended(FmiError),
+}
+
+impl From<FmiError> for Trouble {
+    fn from(error: FmiError) -> Self {
+        if matches!(error, FmiError::Isolated(_)) { Self::Ended(error) } else { Self::Failed(error.to_string()) }
+    }
+}
 
 /// One check and what came of it.
 #[derive(Serialize)]
@@ -32,9 +48,12 @@ struct Output<'a> {
 }
 
 /// Runs the checks; what was found goes to stdout, as text or as one JSON object.
-pub fn run(file: &Path, json: bool) -> anyhow::Result<Verdict> {
-    let fmu = Fmu::open(file)?;
-    let checks = checks(&fmu);
+///
+/// # Errors
+/// An FMU that cannot be opened, or that took its process down.
+pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Result<Verdict> {
+    let fmu = isolation.open(file)?;
+    let (checks, end) = checks(&fmu);
     let passed = checks.iter().all(|check| check.passed);
     if json {
         output::print(&serde_json::to_string_pretty(&Output { file, passed, checks })?)?;
@@ -42,10 +61,13 @@ pub fn run(file: &Path, json: bool) -> anyhow::Result<Verdict> {
         for check in &checks {
             let (mark, detail) = (if check.passed { "ok    " } else { "FAILED" }, &check.detail);
             let colon = if detail.is_empty() { "" } else { ": " };
-            output::print(&format!("{mark}  {}{colon}{detail}", check.name))?;
+            output::print(&one_line(&format!("{mark}  {}{colon}{detail}", check.name)))?;
         }
     }
-    Ok(if passed { Verdict::Passed } else { Verdict::Failed })
+    match end {
+        Some(error) => Err(error.into()),
+        None => Ok(if passed { Verdict::Passed } else { Verdict::Failed }),
+    }
 }
 
 fn check(name: &'static str, result: Result<String, String>) -> Check {
@@ -53,34 +75,57 @@ fn check(name: &'static str, result: Result<String, String>) -> Check {
     Check { name, passed, detail: result.unwrap_or_else(|reason| reason) }
 }
 
-fn text<T>(result: Result<T, FmiError>) -> Result<String, String> {
-    result.map(|_| String::new()).map_err(|error| error.to_string())
+/// Checks in their order, up to the first that fails.
+#[derive(Default)]
+struct Checks {
+    done: Vec<Check>,
+    /// What the FMU did to its process.
+    end: Option<FmiError>,
+}
+
+impl Checks {
+    /// Adds a check; whether it has passed.
+    fn add(&mut self, name: &'static str, result: Result<String, Trouble>) -> bool {
+        let result = result.map_err(|trouble| match trouble {
+            Trouble::Failed(reason) => reason,
+            Trouble::Ended(error) => self.end.insert(error).to_string(),
+        });
+        let passed = result.is_ok();
+        self.done.push(check(name, result));
+        passed
+    }
 }
 
 /// All checks, in the order in which a simulation needs them; the first that fails ends the list.
-fn checks(fmu: &Fmu) -> Vec<Check> {
-    let mut instance = match fmu.instantiate("check", Logging::default()) {
-        Ok(instance) => instance,
-        Err(error) => return vec![check("library loads and instantiates", Err(error.to_string()))],
-    };
-    let mut checks = vec![check("library loads and instantiates", Ok(String::new()))];
+fn checks(fmu: &Fmu) -> (Vec<Check>, Option<FmiError>) {
     let tasks: [Task; 6] = [
-        ("initialises with its start values", |instance| text(initialize(instance))),
+        ("initialises with its start values", |instance| done(initialize(instance))),
         ("outputs are finite after initialisation", finite_outputs),
-        ("steps", |instance| text(step(instance, 0..STEPS))),
+        ("steps", |instance| done(step(instance, 0..STEPS))),
         ("outputs are finite after the steps", finite_outputs),
         ("saved state restores to the bit", rollback),
         ("terminates, resets and initialises again", |instance| {
-            text(instance.terminate().and_then(|()| instance.reset()).and_then(|()| initialize(instance)))
+            done(instance.terminate().and_then(|()| instance.reset()).and_then(|()| initialize(instance)))
         }),
     ];
-    for (name, task) in tasks {
-        checks.push(check(name, task(&mut instance)));
-        if checks.last().is_some_and(|check| !check.passed) {
-            break;
+    let mut checks = Checks::default();
+    let first = "library loads and instantiates";
+    let mut instance = match fmu.instantiate("check", Logging::default()) {
+        Ok(instance) => instance,
+        Err(error) => {
+            checks.add(first, Err(error.into()));
+            return (checks.done, checks.end);
         }
+    };
+    checks.add(first, Ok(String::new()));
+    if tasks.into_iter().all(|(name, task)| checks.add(name, task(&mut instance))) {
+        checks.add("is freed", done(instance.free()));
     }
-    checks
+    (checks.done, checks.end)
+}
+
+fn done<T>(result: Result<T, FmiError>) -> Result<String, Trouble> {
+    Ok(result.map(|_| String::new())?)
 }
 
 fn initialize(instance: &mut Instance) -> Result<(), FmiError> {
@@ -101,35 +146,35 @@ fn outputs(instance: &Instance) -> (Vec<u32>, Vec<String>) {
     reals.map(|variable| (variable.value_reference, variable.name.clone())).unzip()
 }
 
-fn values(instance: &Instance, references: &[u32]) -> Result<Vec<f64>, String> {
+fn values(instance: &Instance, references: &[u32]) -> Result<Vec<f64>, FmiError> {
     let mut values = vec![0.0; references.len()];
-    instance.get_real(references, &mut values).map_err(|error| error.to_string())?;
+    instance.get_real(references, &mut values)?;
     Ok(values)
 }
 
-fn finite_outputs(instance: &mut Instance) -> Result<String, String> {
+fn finite_outputs(instance: &mut Instance) -> Result<String, Trouble> {
     let (references, names) = outputs(instance);
     let values = values(instance, &references)?;
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(String::new()),
-        Some(index) => Err(format!("{} = {}", names[index], values[index])),
+        Some(index) => Err(Trouble::Failed(format!("{} = {}", names[index], values[index]))),
     }
 }
 
 /// Runs on from a saved state twice; both runs must give the same bits.
-fn rollback(instance: &mut Instance) -> Result<String, String> {
+fn rollback(instance: &mut Instance) -> Result<String, Trouble> {
     if !instance.description().co_simulation.can_get_and_set_fmu_state {
         return Ok("left out, the FMU cannot save its state".to_owned());
     }
     let (references, names) = outputs(instance);
-    let state = instance.save_state().map_err(|error| error.to_string())?;
-    step(instance, STEPS..2 * STEPS).map_err(|error| error.to_string())?;
+    let state = instance.save_state()?;
+    step(instance, STEPS..2 * STEPS)?;
     let first = values(instance, &references)?;
-    instance.restore_state(&state).map_err(|error| error.to_string())?;
-    step(instance, STEPS..2 * STEPS).map_err(|error| error.to_string())?;
+    instance.restore_state(&state)?;
+    step(instance, STEPS..2 * STEPS)?;
     let second = values(instance, &references)?;
     match first.iter().zip(&second).position(|(a, b)| a.to_bits() != b.to_bits()) {
         None => Ok(String::new()),
-        Some(index) => Err(format!("{} = {} and then {}", names[index], first[index], second[index])),
+        Some(index) => Err(Trouble::Failed(format!("{} = {} and then {}", names[index], first[index], second[index]))),
     }
 }

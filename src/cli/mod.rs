@@ -14,6 +14,8 @@ mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
+mod isolation;
+mod message;
 mod options;
 mod output;
 mod packaging;
@@ -54,7 +56,7 @@ enum Verb {
     /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
     Simulate(simulate::Arguments),
     /// Run many times over parameters and seeds, on all cores; resumes what was interrupted, merges what was divided
-    Sweep(sweep::Arguments),
+    Sweep(Box<sweep::Arguments>),
     /// Reproduce the tables and figures of the paper, as data, pictures and one report
     Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs
@@ -66,6 +68,9 @@ enum Verb {
     /// Run the shared library of ngspice for another process
     #[command(name = crate::ngspice::live::WORKER_VERB, hide = true)]
     NgspiceWorker,
+    /// Run an instance of an FMU for another process
+    #[command(name = crate::fmi::isolated::WORKER_VERB, hide = true)]
+    FmuWorker,
 }
 
 /// Whether everything that was checked holds.
@@ -98,7 +103,8 @@ pub fn main() -> ExitCode {
         Verb::Fmu(arguments) => fmu::run(&arguments),
         Verb::Ssp(arguments) => ssp::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments),
-        Verb::NgspiceWorker => worker::run(),
+        Verb::NgspiceWorker => worker::run_ngspice(),
+        Verb::FmuWorker => worker::run_fmu(),
     };
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,
@@ -108,7 +114,7 @@ pub fn main() -> ExitCode {
         // A reader that has seen enough (`videg ... | head`) is no failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("videg: {error:#}");
+            eprintln!("videg: {}", message::one_line(&format!("{error:#}")));
             ExitCode::from(2)
         }
     }
@@ -123,7 +129,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
-    let message = message.join(" ");
+    let message = message::one_line(&message.join(" "));
     eprintln!("videg: {} (see --help)", message.trim_start_matches("error: "));
     ExitCode::from(2)
 }

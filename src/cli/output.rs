@@ -1,11 +1,13 @@
-//! The folder into which a verb writes, and files that appear whole or not at all.
+//! The folder into which a verb writes, what it writes there, and what it prints.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
+use super::message::one_line;
 use crate::scenario::Scenario;
+use crate::whole;
 
 /// The folder for the results of `verb`, made if it is not there.
 pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::Result<PathBuf> {
@@ -17,18 +19,9 @@ pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::
     Ok(folder)
 }
 
-/// Writes a file under another name first, so that a reader never sees half of it.
+/// Writes a file that appears whole or not at all.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
-    let part = partial(path);
-    let written = std::fs::write(&part, content).and_then(|()| std::fs::rename(&part, path));
-    written.with_context(|| format!("cannot write {}", path.display()))
-}
-
-/// Name under which a file is written before it is complete.
-pub fn partial(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    path.with_file_name(name)
+    whole::write(path, content).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Prints `text` and an end of line on stdout.
@@ -48,6 +41,6 @@ pub fn command_line() -> String {
 /// Shows warnings on stderr, one line each.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("videg: warning: {warning}");
+        eprintln!("videg: warning: {}", one_line(warning));
     }
 }

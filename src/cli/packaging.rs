@@ -26,10 +26,14 @@ pub fn build() -> anyhow::Result<Vec<PathBuf>> {
     paths.context("cannot package the FMUs")
 }
 
+/// Packages the FMUs, with progress; returns the archive of the one with this identifier.
+pub fn path(identifier: &str) -> anyhow::Result<PathBuf> {
+    let mut paths = build()?;
+    let index = FMUS.iter().position(|fmu| fmu.identifier == identifier).filter(|&index| index < paths.len());
+    Ok(paths.swap_remove(index.with_context(|| format!("no FMU is called {identifier}"))?))
+}
+
 /// Packages the FMUs, with progress, and opens the one with this identifier.
 pub fn open(identifier: &str) -> anyhow::Result<Fmu> {
-    let paths = build()?;
-    let index = FMUS.iter().position(|fmu| fmu.identifier == identifier);
-    let path = index.and_then(|index| paths.get(index)).with_context(|| format!("no FMU is called {identifier}"))?;
-    Ok(Fmu::open(path)?)
+    Ok(Fmu::open(path(identifier)?)?)
 }

@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use clap::Args;
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
 use super::{Verdict, cosim, crosscheck, crosscheck_files, format, output, packaging, reproduce_files as files};
@@ -151,7 +152,8 @@ impl Book<'_> {
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
-        let finished = cosim::couple(cosim::Backend::Embedded, Coupling::default(), fmu, scenario, &csv)?;
+        let circuit = (cosim::Backend::Embedded, &IsolationOptions::default());
+        let finished = cosim::couple(circuit, Coupling::default(), fmu, scenario, &csv)?;
         output::write(&svg, &finished.drawing.svg)?;
         self.warnings.extend(finished.warnings.iter().cloned());
         self.chapters.push(Chapter::audit(AUDIT, &finished, vec![csv, svg]));

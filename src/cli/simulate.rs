@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use clap::Args;
 use serde::Serialize;
 
+use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate_contacts::Contacts;
 use super::simulate_law::{self, Law};
-use super::{Verdict, format, output, packaging, picture, settings, simulate_both};
+use super::{Verdict, format, output, picture, settings, simulate_both};
 use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
 use crate::fmi::Fmu;
 use crate::report::{self, Column, Report, Section};
@@ -25,6 +25,8 @@ pub struct Arguments {
     /// compare [default: impulsive]
     #[arg(long, value_enum)]
     law: Option<Law>,
+    #[command(flatten)]
+    isolation: IsolationOptions,
 }
 
 /// What `--json` says of every run: what was run, and the mechanics.
@@ -91,10 +93,10 @@ pub struct Mechanics {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let options = &arguments.run;
     let scenario = simulate_law::scenario(arguments.law, options)?;
+    let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     if arguments.law == Some(Law::Both) {
-        return simulate_both::run(options, &scenario);
+        return simulate_both::run(options, &fmu, &scenario);
     }
-    let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
     let Mechanics { summary: mechanics, trace, warnings, .. } = follow(&fmu, &scenario, &csv)?;
@@ -116,7 +118,7 @@ pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mech
     let (mechanical, electrical) = settings::split(fmu.description(), scenario)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
     let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
-    let mut recorder = CsvRecorder::create(&output::partial(csv), false)?;
+    let mut recorder = CsvRecorder::create(csv, false)?;
     let detail = picture::DETAIL.min(scenario.until);
     let mut trace = Trace::new(scenario.until, detail);
     let mut contacts = Contacts::new(scenario.until - detail);
@@ -129,7 +131,6 @@ pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mech
     }
     bar.finish();
     recorder.finish()?;
-    std::fs::rename(output::partial(csv), csv).with_context(|| format!("cannot write {}", csv.display()))?;
     Ok(Mechanics { summary, trace, contacts, warnings })
 }
 

@@ -9,7 +9,7 @@ use super::options::RunOptions;
 use super::simulate::{Mechanics, RunOutput, file_list, follow, heading};
 use super::simulate_contacts::ContactSummary;
 use super::simulate_law::Law;
-use super::{Verdict, output, packaging, simulate_both_report};
+use super::{Verdict, output, simulate_both_report};
 use crate::cosim::MechanicsSummary;
 use crate::fmi::Fmu;
 use crate::scenario::Scenario;
@@ -48,12 +48,11 @@ struct Output<'a> {
     laws: &'a Laws,
 }
 
-/// Runs both laws.
-pub fn run(options: &RunOptions, scenario: &Scenario) -> anyhow::Result<Verdict> {
-    let fmu = packaging::open("VibroImpactHarvester")?;
+/// Runs both laws of the harvester `fmu`.
+pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<Verdict> {
     let folder = output::folder(options.output.as_deref(), "simulate", scenario)?;
-    let (impulsive, impulsive_csv) = under(Law::Impulsive, &fmu, scenario, &folder)?;
-    let (compliant, compliant_csv) = under(Law::Compliant, &fmu, scenario, &folder)?;
+    let (impulsive, impulsive_csv) = under(Law::Impulsive, fmu, scenario, &folder)?;
+    let (compliant, compliant_csv) = under(Law::Compliant, fmu, scenario, &folder)?;
     let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
     let warnings = warnings([&impulsive, &compliant], &laws);
     let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));

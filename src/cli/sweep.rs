@@ -10,10 +10,11 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
+use super::isolation::IsolationOptions;
 use super::progress::RunBar;
 use super::simulate::file_list;
 use super::sweep_options::What;
-use super::{Verdict, format, output, packaging};
+use super::{Verdict, format, output};
 use crate::fmi::Fmu;
 use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
 
@@ -46,6 +47,8 @@ pub struct Arguments {
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    isolation: IsolationOptions,
 }
 
 #[derive(Subcommand)]
@@ -134,7 +137,7 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
     let design = arguments.what.design.or(file.design).unwrap_or_default();
-    let fmu = arguments.fmu.as_deref().map(Fmu::open).transpose()?;
+    let fmu = arguments.fmu.as_deref().map(|path| arguments.isolation.open(path)).transpose()?;
     let own = sweep::harvester_description()?;
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
@@ -142,11 +145,13 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     if arguments.check {
         return show_counts(arguments, &sweep, design);
     }
-    let engine = match (fmu, BuiltIn::new(&sweep)) {
-        (Some(fmu), _) => Engine::Fmu(fmu),
-        (None, Some(built_in)) => Engine::BuiltIn(Box::new(built_in)),
+    let engine = match fmu {
+        Some(fmu) => Engine::Fmu(fmu),
         // What the model itself does not offer goes through its FMU, with the same numbers.
-        (None, None) => Engine::Fmu(packaging::open("VibroImpactHarvester")?),
+        None => match BuiltIn::new(&sweep)? {
+            Some(built_in) => Engine::BuiltIn(Box::new(built_in)),
+            None => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
+        },
     };
     let (stop, signal) = signals()?;
     let report = follow(arguments, &sweep, &engine, &stop)?;

@@ -1,28 +1,29 @@
 //! Observers that keep a run: all of it in a CSV file, and what a figure needs in memory.
 
-use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
+use crate::whole::WholeFile;
 
 /// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
-/// are called as the FMU variables are, units are SI.
+/// are called as the FMU variables are, units are SI. The file gets its name when it is finished; of a run that ends early,
+/// what is there stays under another one ([`crate::whole::partial`]).
 pub struct CsvRecorder {
     path: PathBuf,
-    writer: csv::Writer<BufWriter<File>>,
+    writer: csv::Writer<BufWriter<WholeFile>>,
     circuit: bool,
     row: Vec<f64>,
 }
 
 impl CsvRecorder {
-    /// Creates the file at `path`; with `circuit`, the columns of the first circuit are in it, too.
+    /// Begins the file that will be at `path`; with `circuit`, the columns of the first circuit are in it, too.
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn create(path: &Path, circuit: bool) -> Result<Self, CosimError> {
         let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
-        let file = File::create(path).map_err(fail)?;
+        let file = WholeFile::create(path).map_err(fail)?;
         let mut writer = csv::Writer::from_writer(BufWriter::new(file));
         let names = ["time"].into_iter().chain(HarvesterSample::names().iter().copied());
         let circuit_names = CircuitSample::NAMES.into_iter().take(if circuit { usize::MAX } else { 0 });
@@ -30,11 +31,22 @@ impl CsvRecorder {
         Ok(Self { path: path.to_owned(), writer, circuit, row: Vec::new() })
     }
 
-    /// Writes what is left.
+    /// Writes what is left, and gives the file its name.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn finish(mut self) -> Result<(), CosimError> {
+    pub fn finish(self) -> Result<(), CosimError> {
+        let Self { path, writer, .. } = self;
+        let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
+        let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
+        file.and_then(WholeFile::finish).map_err(|cause| CosimError::Write { path, cause })
+    }
+
+    /// Writes what is left of a run that ended early, under the other name.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn leave(mut self) -> Result<(), CosimError> {
         self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
     }
 }

@@ -9,6 +9,7 @@ use videg_circuit::{Release, Settings, Topology};
 use crate::ngspice::{
     CapacitanceSource, CapacitanceTable, Check, Elements, FileName, Netlist, Ngspice, NgspiceError, Run,
 };
+use crate::whole;
 
 /// First line of the page that tells a folder made here from any other.
 const MARK: &str = "Made by: videg crosscheck --export";
@@ -210,9 +211,9 @@ pub fn write(folder: &Path, title: &str, items: &[Item]) -> Result<Vec<PathBuf>,
         std::fs::create_dir_all(&own).map_err(fail(&own))?;
         Ngspice::export(&own, &item.netlist, &item.table)?;
         let path = own.join(EVALUATION);
-        std::fs::write(&path, &item.script).map_err(fail(&path))?;
+        whole::write(&path, &item.script).map_err(fail(&path))?;
     }
-    std::fs::write(&page, page_text(title, items)).map_err(fail(&page))?;
+    whole::write(&page, page_text(title, items)).map_err(fail(&page))?;
     Ok(files)
 }
 
@@ -227,10 +228,10 @@ fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), ExportError> {
             return Err(ExportError::Foreign(parent.to_owned()));
         }
     }
-    for file in files {
-        let free = kind(file).is_err();
-        if !(free || ours && regular(file)) {
-            return Err(ExportError::Foreign(file.clone()));
+    for file in files.iter().flat_map(|file| [file.clone(), whole::partial(file)]) {
+        let free = kind(&file).is_err();
+        if !(free || ours && regular(&file)) {
+            return Err(ExportError::Foreign(file));
         }
     }
     Ok(())

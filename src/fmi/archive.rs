@@ -1,7 +1,7 @@
 //! The .fmu file as an untrusted zip archive: bounds, names that stay inside, and nothing believed that can be measured.
 
 use std::fs::{self, File};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -11,6 +11,11 @@ use zip::result::ZipError;
 
 use super::description::ModelDescription;
 use super::error::{DescriptionError, FmiError, Refusal, Result};
+
+mod directory;
+mod names;
+
+use names::Names;
 
 const DESCRIPTION: &str = "modelDescription.xml";
 /// An entry may always unpack to this size, however well it is compressed.
@@ -76,12 +81,22 @@ impl Archive {
         if found.len() > limits.archive_bytes {
             return Err(refuse(Refusal::ArchiveSize { found: found.len(), allowed: limits.archive_bytes }));
         }
-        if has_zip64_directory(&mut file).map_err(FmiError::io("read", path))? {
+        if directory::is_zip64(&mut file).map_err(FmiError::io("read", path))? {
             return Err(refuse(Refusal::Zip64));
         }
-        let zip = ZipArchive::new(file).map_err(|cause| FmiError::NotAnArchive { path: path.into(), cause })?;
+        let again = file.try_clone().map_err(FmiError::io("read", path))?;
+        let broken = |cause| FmiError::NotAnArchive { path: path.into(), cause };
+        let mut zip = ZipArchive::new(file).map_err(broken)?;
         if zip.len() > limits.entries {
             return Err(refuse(Refusal::Entries { found: zip.len(), allowed: limits.entries }));
+        }
+        let listed = directory::count(&again, zip.central_directory_start(), limits.entries + 1);
+        let listed = listed.map_err(FmiError::io("read", path))?;
+        if listed != zip.len() {
+            return Err(refuse(Refusal::Duplicates { listed, found: zip.len() }));
+        }
+        if zip.has_overlapping_entries().map_err(broken)? {
+            return Err(refuse(Refusal::Overlap));
         }
         let mut archive = Self { path: path.into(), zip, limits, names: Vec::new() };
         archive.vet_entries()?;
@@ -162,7 +177,7 @@ impl Archive {
             if let Some(parent) = target.parent() {
                 fs::create_dir_all(parent).map_err(FmiError::io("create", parent))?;
             }
-            // An entry never replaces another, even where names differ in case only.
+            // An entry never replaces another, whatever the file system makes of their names.
             let mut file = File::create_new(&target).map_err(FmiError::io("create", &target))?;
             unpack_entry(&mut entry, &name, &mut file, &mut left, &self.limits, &self.path)?;
         }
@@ -170,15 +185,13 @@ impl Archive {
     }
 
     fn vet_entries(&mut self) -> Result<()> {
+        let mut names = Names::default();
         for index in 0..self.zip.len() {
             let path = || self.path.clone();
             let broken = |cause| FmiError::NotAnArchive { path: path(), cause };
             let entry = self.zip.by_index_data(index).map_err(broken)?;
             let name = entry.name().map_err(broken)?.into_owned();
-            if let Some(why) = leaves_folder(&name) {
-                let reason = Refusal::Path { entry: name, why };
-                return Err(FmiError::Refused { path: path(), reason });
-            }
+            names.add(&name).map_err(|reason| FmiError::Refused { path: path(), reason })?;
             if !is_plain(entry.unix_mode()) {
                 return Err(FmiError::Refused { path: path(), reason: Refusal::SpecialFile { entry: name } });
             }
@@ -220,47 +233,12 @@ fn unpack_entry(
     }
 }
 
-/// Why a name does not stay inside the folder, on any operating system.
-fn leaves_folder(name: &str) -> Option<&'static str> {
-    let bytes = name.as_bytes();
-    if name.is_empty() || name.contains('\0') {
-        Some("its name is empty or holds a zero byte")
-    } else if name.contains('\\') {
-        Some("its name holds a backslash; FMI uses forward slashes")
-    } else if name.starts_with('/') {
-        Some("its name is absolute")
-    } else if bytes.get(1) == Some(&b':') && bytes.first().is_some_and(u8::is_ascii_alphabetic) {
-        Some("its name begins with a drive letter")
-    } else if name.split('/').any(|part| part == "..") {
-        Some("its name holds \"..\"")
-    } else {
-        None
-    }
-}
-
 /// Whether a Unix mode says a regular file or a folder, or nothing.
 fn is_plain(mode: Option<u32>) -> bool {
     const TYPE: u32 = 0o170_000;
     const FOLDER: u32 = 0o040_000;
     const REGULAR: u32 = 0o100_000;
     mode.is_none_or(|mode| matches!(mode & TYPE, 0 | FOLDER | REGULAR))
-}
-
-/// Whether the archive ends with a zip64 directory. Only that can announce more than 65535 entries, so its absence
-/// bounds the memory that the directory takes before the entries can be counted.
-fn has_zip64_directory(file: &mut File) -> io::Result<bool> {
-    const END: &[u8] = b"PK\x05\x06";
-    const ZIP64_LOCATOR: &[u8] = b"PK\x06\x07";
-    const LOCATOR_LENGTH: usize = 20;
-    // The end record may be followed by a comment of at most 64 KiB.
-    const TAIL: u64 = 65_536 + 22 + LOCATOR_LENGTH as u64;
-    let length = file.metadata()?.len();
-    file.seek(SeekFrom::Start(length.saturating_sub(TAIL)))?;
-    let mut tail = Vec::new();
-    file.take(TAIL).read_to_end(&mut tail)?;
-    file.rewind()?;
-    let mut records = tail.windows(LOCATOR_LENGTH + END.len());
-    Ok(records.any(|window| window.starts_with(ZIP64_LOCATOR) && window.ends_with(END)))
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ pub struct ModelDescription {
     /// Positions in `variables` of the outputs, as `ModelStructure` lists them.
     pub outputs: Vec<usize>,
     pub(super) positions: HashMap<String, usize>,
+    pub(super) enumeration_positions: HashMap<String, usize>,
 }
 
 /// The `CoSimulation` element.
@@ -291,7 +292,7 @@ impl ModelDescription {
     pub fn enumeration(&self, variable: &Variable) -> Option<&EnumerationType> {
         let name = variable.declared_type.as_deref()?;
         matches!(variable.kind, Kind::Enumeration { .. })
-            .then(|| self.enumerations.iter().find(|enumeration| enumeration.name == name))
+            .then(|| self.enumeration_positions.get(name).and_then(|&position| self.enumerations.get(position)))
             .flatten()
     }
 

@@ -12,6 +12,7 @@ use super::logging::{LogRecord, Status};
 
 mod causes;
 
+use super::isolated::Ending;
 pub use causes::{DescriptionError, Refusal, ValueError};
 
 /// Result of the importer.
@@ -172,6 +173,32 @@ pub enum FmiError {
         /// Name of the instance that made the state.
         owner: String,
     },
+    /// A serialised state is too large.
+    #[error("{function} of '{instance}': the FMU asks for {found} bytes, allowed are {allowed}")]
+    StateSize {
+        /// The function.
+        function: &'static str,
+        /// Name of the instance.
+        instance: String,
+        /// What the FMU asks for.
+        found: usize,
+        /// Bound.
+        allowed: usize,
+    },
+    /// The process of an isolated FMU cannot be started.
+    #[error("cannot start {} {} for the FMU: {cause}", program.display(), super::isolated::WORKER_VERB)]
+    Worker {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: String,
+    },
+    /// The process of an isolated FMU cannot use the library; in its words.
+    #[error("{0}")]
+    Refusal(String),
+    /// The process of an isolated FMU has ended, or had to be.
+    #[error("{0}")]
+    Isolated(Box<Ending>),
     /// A text holds a zero byte, or a name is empty.
     #[error("{what} \"{}\" cannot be passed to an FMU: it is empty or holds a zero byte", text.escape_debug())]
     Text {

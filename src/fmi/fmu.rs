@@ -14,6 +14,7 @@ use super::archive::{Archive, Limits};
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
 use super::instance::Instance;
+use super::isolated::{self, Isolation, Pool};
 use super::library::{self, Functions, HOST_PLATFORM};
 use super::logging::Logging;
 
@@ -33,9 +34,19 @@ pub(super) struct Loaded {
     resources: CString,
     /// Some instance returned Fatal: no function of the library may be called any more.
     fatal: AtomicBool,
-    // In the order of dropping: the library goes before the folder that holds it.
-    library: Option<Library>,
+    // In the order of dropping: the library, or what has loaded it, goes before the folder that holds it.
+    code: Code,
     _folder: Option<TempDir>,
+}
+
+/// Where the library of an FMU is loaded.
+pub(super) enum Code {
+    /// In this process.
+    Here(#[allow(dead_code, reason = "kept until it is dropped")] Library),
+    /// In others.
+    Isolated(Box<Pool>),
+    /// Nowhere: it is part of this program, or must not be touched any more.
+    None,
 }
 
 impl Fmu {
@@ -53,27 +64,54 @@ impl Fmu {
     /// # Errors
     /// As [`Fmu::open`].
     pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
-        let path = path.as_ref();
+        Self::load(path.as_ref(), limits, |_, _| None)
+    }
+
+    /// As [`Fmu::open`], but each instance runs in a process of its own.
+    ///
+    /// # Errors
+    /// As [`Fmu::open`], and when the process cannot be started, or ends.
+    pub fn open_isolated(path: impl AsRef<Path>, isolation: &Isolation) -> Result<Self> {
+        Self::open_isolated_unless(path, isolation, |_, _| false)
+    }
+
+    /// As [`Fmu::open_isolated`], unless `is_trusted` says of model identifier and unpacked library that the library may be
+    /// loaded into this process.
+    ///
+    /// # Errors
+    /// As [`Fmu::open_isolated`].
+    pub fn open_isolated_unless(
+        path: impl AsRef<Path>,
+        isolation: &Isolation,
+        is_trusted: impl FnOnce(&str, &Path) -> bool,
+    ) -> Result<Self> {
+        let decide = |identifier: &str, library: &Path| (!is_trusted(identifier, library)).then(|| isolation.clone());
+        Self::load(path.as_ref(), Limits::default(), decide)
+    }
+
+    fn load(path: &Path, limits: Limits, decide: impl FnOnce(&str, &Path) -> Option<Isolation>) -> Result<Self> {
         let mut archive = Archive::open_with(path, limits)?;
         let description = archive.description()?;
-        let entry = library::entry_name(HOST_PLATFORM, &description.co_simulation.model_identifier);
+        let identifier = &description.co_simulation.model_identifier;
+        let entry = library::entry_name(HOST_PLATFORM, identifier);
         if !archive.contains(&entry) {
             return Err(FmiError::NoBinary { path: path.into(), wanted: entry, found: archive.platforms() });
         }
         let folder = archive.unpack()?;
         let resources = folder.path().join("resources");
         std::fs::create_dir_all(&resources).map_err(FmiError::io("create", &resources))?;
-        let (library, functions) = library::load(&folder.path().join(&entry), &path.join(&entry))?;
-        let loaded = Loaded {
-            path: path.into(),
-            guid: c_string("guid", &description.guid)?,
-            resources: c_string("resource location", &file_uri(&resources))?,
-            description,
-            functions,
-            fatal: AtomicBool::new(false),
-            library: Some(library),
-            _folder: Some(folder),
+        let (guid, resources) =
+            (c_string("guid", &description.guid)?, c_string("resource location", &file_uri(&resources))?);
+        let library = folder.path().join(&entry);
+        let (code, functions) = if let Some(isolation) = decide(identifier, &library) {
+            let pool = Pool::new(isolation, path, folder.path(), &entry)?;
+            (Code::Isolated(Box::new(pool)), isolated::FUNCTIONS)
+        } else {
+            let (library, functions) = library::load(&library, &path.join(&entry))?;
+            (Code::Here(library), functions)
         };
+        let (path, fatal) = (path.into(), AtomicBool::new(false));
+        let loaded = Loaded { path, description, functions, guid, resources, fatal, code, _folder: Some(folder) };
         Ok(Self { loaded: Arc::new(loaded) })
     }
 
@@ -87,7 +125,7 @@ impl Fmu {
             description,
             functions: *functions,
             fatal: AtomicBool::new(false),
-            library: None,
+            code: Code::None,
             _folder: None,
         };
         Self { loaded: Arc::new(loaded) }
@@ -101,6 +139,11 @@ impl Fmu {
     /// The archive that this was opened from.
     pub fn path(&self) -> &Path {
         &self.loaded.path
+    }
+
+    /// Whether its instances run in processes of their own.
+    pub fn is_isolated(&self) -> bool {
+        self.loaded.pool().is_some()
     }
 
     /// Makes an instance. Instances are independent, and may live on different threads.
@@ -127,6 +170,11 @@ impl Loaded {
         &self.resources
     }
 
+    /// What runs the instances in processes of their own, if they do not run in this one.
+    pub(super) fn pool(&self) -> Option<&Pool> {
+        if let Code::Isolated(pool) = &self.code { Some(pool) } else { None }
+    }
+
     pub(super) fn is_dead(&self) -> bool {
         self.fatal.load(Ordering::Relaxed)
     }
@@ -140,7 +188,7 @@ impl Drop for Loaded {
     fn drop(&mut self) {
         if self.is_dead() {
             // Instances that were never freed may still run code of the library: it stays.
-            std::mem::forget(self.library.take());
+            std::mem::forget(std::mem::replace(&mut self.code, Code::None));
         }
     }
 }

@@ -14,6 +14,7 @@ use fmi2_abi::{
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
 use super::fmu::{Loaded, c_string};
+use super::isolated::{self, Verdict, Wanted};
 use super::library::Functions;
 use super::logging::{Environment, LogRecord, Logging};
 
@@ -73,11 +74,25 @@ impl Core {
 
     #[cold]
     fn failed(&self, function: &'static str, status: fmi2Status) -> FmiError {
-        if status == fmi2Fatal {
+        if self.loaded.pool().is_some() {
+            // SAFETY: the component is that of a living isolated instance.
+            if let Some(verdict) = unsafe { isolated::verdict(self.component) } {
+                return self.convicted(function, verdict);
+            }
+        } else if status == fmi2Fatal {
             self.loaded.kill();
         }
         let (instance, messages) = (self.text_name.clone(), self.environment.last());
         FmiError::Call { function, instance, status: status.into(), messages }
+    }
+
+    /// Why a call to an isolated instance came to nothing.
+    #[cold]
+    fn convicted(&self, function: &'static str, verdict: Verdict) -> FmiError {
+        match verdict {
+            Verdict::Ended(ending) => FmiError::Isolated(ending),
+            Verdict::Over => self.dead(function),
+        }
     }
 
     #[cold]
@@ -136,13 +151,7 @@ impl Instance {
         }
         let environment = Environment::new(logging.sink);
         let callbacks = Rc::new(environment.callbacks());
-        let (guid, resources) = (loaded.guid().as_ptr(), loaded.resources().as_ptr());
-        let debug = fmi2Boolean::from(logging.enabled);
-        // SAFETY: the strings and the callbacks live as long as the component, in `Core`.
-        let component = unsafe {
-            let instantiate = loaded.functions.instantiate;
-            instantiate(name.as_ptr(), fmi2CoSimulation, guid, resources, Rc::as_ptr(&callbacks), fmi2False, debug)
-        };
+        let component = instantiate(&loaded, &name, &environment, &callbacks, logging.enabled)?;
         if component.is_null() {
             let model = loaded.description.co_simulation.model_identifier.clone();
             let (guid, messages) = (loaded.description.guid.clone(), environment.last());
@@ -157,6 +166,20 @@ impl Instance {
 
     pub(super) fn core(&self) -> &Rc<Core> {
         &self.core
+    }
+
+    /// Frees the instance, as dropping it does, and says whether that took its process down. States that are not dropped
+    /// by then are lost. An instance in this process is freed with the last of its states.
+    ///
+    /// # Errors
+    /// When the process of an isolated instance ended meanwhile.
+    pub fn free(self) -> Result<()> {
+        if self.core.loaded.pool().is_none() {
+            return Ok(());
+        }
+        // SAFETY: the component is that of a living isolated instance.
+        let verdict = unsafe { isolated::free(self.core.component) };
+        verdict.map_or(Ok(()), |verdict| Err(self.core.convicted("fmi2FreeInstance", verdict)))
     }
 
     /// Name of the instance.
@@ -275,6 +298,25 @@ impl Instance {
         // SAFETY: nothing but the component is passed.
         self.core.call("fmi2Reset", |functions, component| unsafe { (functions.reset)(component) })
     }
+}
+
+/// Has the FMU make a component; NULL if it refuses.
+fn instantiate(
+    loaded: &Loaded,
+    name: &CStr,
+    environment: &Arc<Environment>,
+    callbacks: &Rc<fmi2CallbackFunctions>,
+    debug: bool,
+) -> Result<fmi2Component> {
+    let (guid, resources) = (loaded.guid(), loaded.resources());
+    if let Some(pool) = loaded.pool() {
+        return pool.instantiate(&Wanted { name, guid, resources, debug }, environment);
+    }
+    let (name, guid, resources) = (name.as_ptr(), guid.as_ptr(), resources.as_ptr());
+    let debug = fmi2Boolean::from(debug);
+    let function = loaded.functions.instantiate;
+    // SAFETY: the strings and the callbacks live as long as the component, in `Core`.
+    Ok(unsafe { function(name, fmi2CoSimulation, guid, resources, Rc::as_ptr(callbacks), fmi2False, debug) })
 }
 
 impl fmt::Debug for Instance {

@@ -11,6 +11,7 @@ use fmi2_abi::{
     fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
     fmi2Pending, fmi2Status, fmi2String, fmi2Warning,
 };
+use serde::{Deserialize, Serialize};
 
 /// How many messages an instance remembers.
 const REMEMBERED: usize = 100;
@@ -20,7 +21,7 @@ const SHOWN: usize = 5;
 const MAX_MESSAGE: usize = 4096;
 
 /// Result of a call, as FMI counts them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// All well.
     Ok,
@@ -68,7 +69,7 @@ impl fmt::Display for Status {
 }
 
 /// One message of an FMU.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LogRecord {
     /// Name of the instance.
     pub instance: String,
@@ -138,7 +139,8 @@ impl Environment {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn take(&self, record: LogRecord) {
+    /// Remembers a message and hands it to the sink.
+    pub(super) fn take(&self, record: LogRecord) {
         let mut log = self.lock();
         if let Some(sink) = &mut log.sink {
             // A panic must not cross the C frames of the FMU.

@@ -1,8 +1,8 @@
 //! Importer for FMI 2.0 co-simulation FMUs.
 //!
 //! An FMU is foreign input twice over: an archive and an XML file, which are read with bounds and without trust
-//! ([`Archive`], [`ModelDescription`]), and a shared library, which can only be trusted ([`Fmu`], [`Instance`]).
-//! Looking at an FMU ([`Archive::description`]) neither unpacks nor loads anything.
+//! ([`Archive`], [`ModelDescription`]), and a shared library, which can only be trusted ([`Fmu`], [`Instance`]) or run in
+//! a process of its own ([`isolated`]). Looking at an FMU ([`Archive::description`]) neither unpacks nor loads anything.
 //!
 //! ```no_run
 //! use videg::fmi::{Fmu, Logging};
@@ -31,6 +31,7 @@ mod description;
 mod error;
 mod fmu;
 mod instance;
+pub mod isolated;
 mod library;
 mod logging;
 mod state;
@@ -49,6 +50,7 @@ pub use description::{
 pub use error::{DescriptionError, FmiError, Refusal, Result, ValueError};
 pub use fmu::Fmu;
 pub use instance::Instance;
+pub use isolated::{Bounds, Isolation};
 pub use library::{HOST_PLATFORM, LIBRARY_EXTENSION, library_extension};
 pub use logging::{LogRecord, LogSink, Logging, Status};
 pub use state::FmuState;

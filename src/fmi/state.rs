@@ -9,6 +9,7 @@ use fmi2_abi::fmi2FMUstate;
 
 use super::error::{FmiError, Result};
 use super::instance::{Core, Instance};
+use super::isolated::LONGEST_STATE;
 
 /// A saved state, freed on drop. It keeps its instance alive, since only that can free it.
 pub struct FmuState {
@@ -73,7 +74,8 @@ impl Instance {
     /// Turns a saved state into bytes.
     ///
     /// # Errors
-    /// When the FMU does not declare `canSerializeFMUstate`, the state is foreign, or a call fails.
+    /// When the FMU does not declare `canSerializeFMUstate`, the state is foreign or larger than 256 MiB, or a call
+    /// fails.
     pub fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
         let name = "fmi2SerializeFMUstate";
         self.require_serialization(name)?;
@@ -83,6 +85,10 @@ impl Instance {
         self.core().call("fmi2SerializedFMUstateSize", |functions, component| unsafe {
             (functions.serialized_state_size)(component, state.state, &raw mut size)
         })?;
+        if size > LONGEST_STATE {
+            let (instance, found, allowed) = (self.name().to_owned(), size, LONGEST_STATE);
+            return Err(FmiError::StateSize { function: name, instance, found, allowed });
+        }
         let mut bytes = vec![0_u8; size];
         // SAFETY: as above, and the buffer has the size that the FMU has asked for.
         self.core().call(name, |functions, component| unsafe {

@@ -23,6 +23,8 @@ type Result<T> = std::result::Result<T, Error>;
 
 /// Deepest nesting of elements; FMI 2.0 itself needs six, vendor annotations may add some.
 const MAX_DEPTH: usize = 64;
+/// Most attributes of an element; FMI 2.0 itself has 16. The reader compares each with all before it.
+const MAX_ATTRIBUTES: usize = 256;
 
 pub(super) fn read(document: &[u8]) -> Result<ModelDescription> {
     let document = document.strip_prefix(b"\xef\xbb\xbf").unwrap_or(document);
@@ -59,13 +61,17 @@ fn vet(text: &str) -> Result<()> {
         match event {
             Event::DocType(_) => return Err(Error::Doctype),
             Event::Start(element) => {
+                count_attributes(&element)?;
                 root(&element, &mut has_root, reader.buffer_position())?;
                 depth += 1;
                 if depth > MAX_DEPTH {
                     return Err(Error::Depth { allowed: MAX_DEPTH });
                 }
             }
-            Event::Empty(element) => root(&element, &mut has_root, reader.buffer_position())?,
+            Event::Empty(element) => {
+                count_attributes(&element)?;
+                root(&element, &mut has_root, reader.buffer_position())?;
+            }
             Event::End(_) => depth = depth.saturating_sub(1),
             Event::Eof if depth > 0 || !has_root => {
                 let cause = "the document ends too early".to_owned();
@@ -75,6 +81,15 @@ fn vet(text: &str) -> Result<()> {
             _ => {}
         }
     }
+}
+
+fn count_attributes(element: &BytesStart<'_>) -> Result<()> {
+    let mut attributes = element.attributes();
+    if attributes.with_checks(false).nth(MAX_ATTRIBUTES).is_none() {
+        return Ok(());
+    }
+    let element = element.name().as_ref().chars().take(100).collect();
+    Err(Error::Attributes { element, allowed: MAX_ATTRIBUTES })
 }
 
 /// Looks at the first element: name and version.
@@ -101,6 +116,7 @@ fn convert(raw: raw::Description) -> Result<ModelDescription> {
     let types = raw.type_definitions.unwrap_or_default().types;
     let enumerations = types.iter().filter_map(enumeration).collect::<Result<Vec<_>>>()?;
     let variables = raw.model_variables.ok_or_else(|| missing(root, "ModelVariables"))?.variables;
+    let types = variable::Types::of(&types);
     let variables = variables
         .into_iter()
         .enumerate()
@@ -116,6 +132,7 @@ fn convert(raw: raw::Description) -> Result<ModelDescription> {
         generation_tool: raw.generation_tool,
         co_simulation: capabilities(co_simulation)?,
         units: raw.unit_definitions.unwrap_or_default().units.into_iter().map(unit).collect::<Result<_>>()?,
+        enumeration_positions: enumerations.iter().enumerate().rev().map(|(k, it)| (it.name.clone(), k)).collect(),
         enumerations,
         log_categories: raw
             .log_categories

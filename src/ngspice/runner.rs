@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use super::capacitance::CapacitanceTable;
 use super::template::{FileName, Netlist};
 use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
+use crate::whole;
 
 /// The program.
 #[derive(Debug, Clone)]
@@ -100,9 +101,9 @@ impl Ngspice {
     /// If a file cannot be written.
     pub fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
         let path = folder.join(FileName::Netlist.name());
-        std::fs::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
+        whole::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
         let path = folder.join(FileName::Table.name());
-        let written = File::create(&path).and_then(|file| table.write(BufWriter::new(file)));
+        let written = whole::fill(&path, |file| table.write(BufWriter::new(file)));
         written.map_err(|cause| NgspiceError::File { path, cause })
     }
 

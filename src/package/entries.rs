@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::io::{self, Cursor, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, System, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 
 use super::error::{PackageError, Result};
 
@@ -25,6 +26,31 @@ enum Source {
 }
 
 impl Entries {
+    /// Reads an archive that this program wrote. Not for what comes from outside: nothing bounds what is unpacked.
+    ///
+    /// # Errors
+    /// When it is broken.
+    pub(super) fn read(archive: &[u8]) -> std::result::Result<Self, ZipError> {
+        let mut zip = ZipArchive::new(Cursor::new(archive))?;
+        let mut entries = Self::default();
+        for index in 0..zip.len() {
+            let mut entry = zip.by_index(index)?;
+            let name = entry.name()?.into_owned();
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes)?;
+            entries.add_bytes(&name, bytes);
+        }
+        Ok(entries)
+    }
+
+    /// The bytes of an entry that holds bytes.
+    pub(super) fn bytes(&self, name: &str) -> Option<&[u8]> {
+        match self.files.get(name) {
+            Some(Source::Bytes(bytes)) => Some(bytes),
+            _ => None,
+        }
+    }
+
     /// Adds a file under a name with forward slashes.
     pub fn add_file(&mut self, name: &str, file: &Path) {
         self.files.insert(name.to_owned(), Source::File(file.to_path_buf()));
@@ -61,20 +87,18 @@ impl Entries {
         self.files.keys().map(String::as_str)
     }
 
-    /// Writes the archive beside its place and moves it there, so that nobody ever sees half of it.
+    /// Writes the archive; nobody ever sees half of it. It is made in memory: what fails on the way to the disk is the
+    /// archive then, and nothing else.
     ///
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
-        let folder = archive.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
-        let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
-        self.write_to(temporary.as_file_mut(), archive)?;
-        temporary.persist(archive).map_err(|error| PackageError::io("write", archive)(error.error))?;
-        Ok(())
+        let mut bytes = Cursor::new(Vec::new());
+        self.write_to(&mut bytes, archive)?;
+        put(archive, bytes.get_ref())
     }
 
-    fn write_to(&self, file: &mut File, archive: &Path) -> Result<()> {
+    fn write_to(&self, file: &mut Cursor<Vec<u8>>, archive: &Path) -> Result<()> {
         let failed = |cause| PackageError::Zip { path: archive.to_path_buf(), cause };
         let mut writer = ZipWriter::new(file);
         for (name, source) in &self.files {
@@ -92,6 +116,18 @@ impl Entries {
         writer.finish().map_err(failed)?;
         Ok(())
     }
+}
+
+/// Writes a file beside its place and moves it there, so that nobody ever sees half of it. Several processes may do so at
+/// once: the last one has its way.
+pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
+    let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
+    let written = temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all());
+    written.map_err(PackageError::io("write", path))?;
+    temporary.persist(path).map_err(|error| PackageError::io("write", path)(error.error))?;
+    Ok(())
 }
 
 /// The same on every machine and day.

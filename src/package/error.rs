@@ -77,6 +77,14 @@ pub enum PackageError {
         /// Files looked for.
         looked: Vec<PathBuf>,
     },
+    /// An archive inside the program cannot be used.
+    #[error("the {identifier}.fmu inside videg {why}")]
+    Embedded {
+        /// Model identifier.
+        identifier: &'static str,
+        /// What is wrong.
+        why: String,
+    },
     /// A model description cannot be used.
     #[error(transparent)]
     Description(#[from] FmiError),

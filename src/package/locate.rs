@@ -8,18 +8,39 @@ use super::platform::Platform;
 use super::target::Target;
 use super::{FMUS, FmuPackage, NO_BUILD, Options, cargo, fresh};
 
+/// What is said to somebody who has the program alone.
+const NO_TREE: &str = if cfg!(feature = "embedded-fmus") {
+    "there is no source tree to build it from"
+} else {
+    "there is no source tree to build it from, and this videg was compiled without the feature embedded-fmus"
+};
+
 /// The source tree: the one that holds the running program, the one it was compiled in, or the one around the
 /// working folder.
 pub(super) fn workspace() -> Option<PathBuf> {
-    let program = std::env::current_exe().ok();
-    let here = std::env::current_dir().ok();
     let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let around = |path: Option<&Path>| {
-        path.and_then(|path| path.ancestors().find(|folder| is_workspace(folder)).map(Path::to_path_buf))
-    };
-    around(program.as_deref())
+    around_program()
         .or_else(|| is_workspace(compiled).then(|| compiled.to_path_buf()))
-        .or_else(|| around(here.as_deref()))
+        .or_else(|| std::env::current_dir().ok().and_then(|here| around(&here)))
+}
+
+/// The source tree that holds the running program, if one does.
+pub(super) fn around_program() -> Option<PathBuf> {
+    std::env::current_exe().ok().and_then(|program| around(&program))
+}
+
+fn around(path: &Path) -> Option<PathBuf> {
+    path.ancestors().find(|folder| is_workspace(folder)).map(Path::to_path_buf)
+}
+
+/// Where the library of an FMU may lie that goes with this program: not in some source tree around the working folder.
+pub(super) fn own_libraries(fmu: &FmuPackage) -> Vec<PathBuf> {
+    let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let program = std::env::current_exe().ok();
+    let around = program.as_deref().and_then(|path| path.ancestors().find(|folder| is_workspace(folder)));
+    let workspace = around.or_else(|| is_workspace(compiled).then_some(compiled));
+    let name = Platform::HOST.cargo_name(fmu.identifier);
+    folders(workspace, None).iter().map(|folder| folder.join(&name)).collect()
 }
 
 fn is_workspace(folder: &Path) -> bool {
@@ -41,7 +62,7 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
         return Ok(libraries);
     }
     let why = match workspace {
-        None => "there is no source tree to build it from".to_owned(),
+        None => NO_TREE.to_owned(),
         Some(_) if !options.build => format!("building is switched off, by option or {NO_BUILD}"),
         Some(workspace) => match cargo::build(workspace, target, options.progress) {
             // A program that was handed over without a toolchain.

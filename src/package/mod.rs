@@ -3,7 +3,8 @@
 //! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
 //! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses.
 //! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
-//! is packaged always belongs to the sources. Without it, the libraries beside the running program are taken.
+//! is packaged always belongs to the sources. Without it, the FMUs inside the program are taken (the feature
+//! `embedded-fmus`), or else the libraries beside it.
 //!
 //! ```no_run
 //! use videg::package::{Options, build_all};
@@ -20,6 +21,7 @@ mod binary;
 mod cargo;
 mod contents;
 mod documentation;
+mod embedded;
 mod entries;
 mod error;
 mod fresh;
@@ -98,6 +100,14 @@ impl Default for Options {
     }
 }
 
+/// Whether `library` has the bytes of the library of the FMU `identifier` that goes with this program: that beside it, or
+/// that of the source tree that it is of.
+pub fn is_own(identifier: &str, library: &Path) -> bool {
+    let Some(fmu) = FMUS.iter().find(|fmu| fmu.identifier == identifier) else { return false };
+    let Ok(bytes) = std::fs::read(library) else { return false };
+    locate::own_libraries(fmu).iter().any(|own| std::fs::read(own).is_ok_and(|own| own == bytes))
+}
+
 /// Where FMUs are written by default, for a source tree.
 fn default_output(workspace: Option<&Path>) -> PathBuf {
     workspace.unwrap_or_else(|| Path::new(".")).join("target").join("fmu")
@@ -109,6 +119,10 @@ fn default_output(workspace: Option<&Path>) -> PathBuf {
 /// When a library cannot be built or found, a model description is missing or belongs to another model, or a file
 /// cannot be read or written.
 pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
+    if let Some(archives) = embedded::archives(options) {
+        let output = options.output.clone().unwrap_or_else(|| default_output(None));
+        return embedded::write(archives, &options.added, &output);
+    }
     let workspace = options.workspace.clone().or_else(locate::workspace);
     let workspace = workspace.as_deref();
     let output = options.output.clone().unwrap_or_else(|| default_output(workspace));

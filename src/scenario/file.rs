@@ -14,6 +14,8 @@
 //! load.resistance = inf
 //! ```
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -54,18 +56,28 @@ struct Layout {
     set: Table,
 }
 
+/// What `parse` makes of the text of the file at `path`, and the name of that file without its ending.
+///
+/// # Errors
+/// An unreadable file; what `parse` finds wrong.
+pub(crate) fn read_file<T>(
+    path: &Path,
+    parse: impl FnOnce(&str) -> Result<T, String>,
+) -> Result<(T, Option<String>), ScenarioError> {
+    let shown = path.display().to_string();
+    let text = read_text(path)?;
+    let content = parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
+    Ok((content, path.file_stem().map(|stem| stem.to_string_lossy().into_owned())))
+}
+
 impl CaseFile {
     /// Reads the file at `path`. The run is called after it unless it says otherwise.
     ///
     /// # Errors
     /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let shown = path.display().to_string();
-        let text =
-            std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
-        let mut file = Self::parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
-        let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        file.name = file.name.or_else(stem);
+        let (mut file, stem) = read_file(path, Self::parse)?;
+        file.name = file.name.or(stem);
         Ok(file)
     }
 
@@ -74,7 +86,7 @@ impl CaseFile {
     /// # Errors
     /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
     pub fn parse(text: &str) -> Result<Self, String> {
-        Self::of(toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?)
+        Self::of(toml::from_str(text).map_err(|error| toml_error(&error))?)
     }
 
     /// What a table says that is laid out as a case file.
@@ -82,7 +94,7 @@ impl CaseFile {
     /// # Errors
     /// An unknown key; a value that no variable can have.
     pub fn from_table(table: Table) -> Result<Self, String> {
-        Self::of(table.try_into().map_err(|error: toml::de::Error| error.to_string().trim_end().to_owned())?)
+        Self::of(table.try_into().map_err(|error| toml_error(&error))?)
     }
 
     fn of(layout: Layout) -> Result<Self, String> {
@@ -91,6 +103,32 @@ impl CaseFile {
         let Layout { case, name, description, until, step, window, .. } = layout;
         Ok(Self { case, name, description, until, step, window, settings })
     }
+}
+
+/// The text of a case or sweep file.
+///
+/// # Errors
+/// An unreadable file, or one of more than 16 MiB, which no such file has.
+fn read_text(path: &Path) -> Result<String, ScenarioError> {
+    const LARGEST: u64 = 16 << 20;
+    let shown = path.display().to_string();
+    let mut text = String::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
+    match read {
+        Err(cause) => Err(ScenarioError::Unreadable { path: shown, cause }),
+        Ok(_) if text.len() as u64 > LARGEST => {
+            Err(ScenarioError::BadFile { path: shown, reason: format!("more than {LARGEST} bytes") })
+        }
+        Ok(_) => Ok(text),
+    }
+}
+
+/// What the reader of TOML says, in one line: without the drawing of the place.
+pub(crate) fn toml_error(error: &toml::de::Error) -> String {
+    let is_drawn = |line: &str| line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ').starts_with('|');
+    let text = error.to_string();
+    let said: Vec<_> = text.lines().filter(|line| !is_drawn(line)).map(str::trim).filter(|it| !it.is_empty()).collect();
+    said.join(": ")
 }
 
 /// Turns nested tables back into dotted names.
@@ -161,7 +199,7 @@ mod tests {
             ("case = ", "line 1"),
         ] {
             let reason = CaseFile::parse(text).unwrap_err();
-            assert!(reason.contains(named), "{text}: {reason}");
+            assert!(reason.contains(named) && reason.lines().count() == 1, "{text}: {reason}");
         }
     }
 }

@@ -3,6 +3,7 @@
 mod file;
 mod preset;
 
+pub(crate) use file::{read_file, toml_error};
 pub use file::{CaseFile, value_text};
 
 use serde::Serialize;

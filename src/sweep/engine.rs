@@ -23,8 +23,15 @@ pub struct BuiltIn {
     setters: Vec<Setter>,
 }
 
+/// How a parameter of the model is set.
 #[derive(Clone, Copy)]
-enum Setter {
+struct Setter {
+    name: &'static str,
+    set: Set,
+}
+
+#[derive(Clone, Copy)]
+enum Set {
     Quantity(fn(&mut Parameters, f64)),
     Choice(fn(&mut Parameters, i32)),
 }
@@ -33,7 +40,8 @@ impl Engine {
     /// How many runs may go on at once.
     pub(super) fn at_once(&self, jobs: usize) -> usize {
         match self {
-            Self::Fmu(fmu) if fmu.description().co_simulation.can_be_instantiated_only_once_per_process => 1,
+            // Isolated instances have a process each.
+            Self::Fmu(fmu) if !fmu.is_isolated() && is_single(fmu) => 1,
             _ => jobs,
         }
     }
@@ -47,65 +55,96 @@ impl Engine {
             return Ok(Err(error.to_string()));
         }
         match self {
-            Self::BuiltIn(built_in) => Ok(built_in.run(sweep, run).map_err(|error| error.to_string())),
+            Self::BuiltIn(built_in) => {
+                let parameters = built_in.parameters(run)?;
+                Ok(simulate(sweep, &parameters).map_err(|error| error.to_string()))
+            }
             Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
                 Ok(results) => Ok(Ok(results)),
-                Err(error) if is_final(&error) => Err(error.into()),
+                Err(error) if is_final(&error, fmu) => Err(error.into()),
                 Err(error) => Ok(Err(error.to_string())),
             },
         }
     }
 }
 
-/// Whether no instance of the FMU can go on.
-fn is_final(error: &FmiError) -> bool {
-    matches!(error, FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. })
+fn is_single(fmu: &Fmu) -> bool {
+    fmu.description().co_simulation.can_be_instantiated_only_once_per_process
+}
+
+/// Whether no instance of the FMU can go on. What becomes of an isolated one concerns no other.
+fn is_final(error: &FmiError, fmu: &Fmu) -> bool {
+    match error {
+        FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. } => !fmu.is_isolated(),
+        FmiError::Worker { .. } => true,
+        _ => false,
+    }
 }
 
 impl BuiltIn {
     /// The model, if all that `sweep` sets are parameters and it records nothing.
-    pub fn new(sweep: &Sweep) -> Option<Self> {
-        if !sweep.record.is_empty() {
-            return None;
-        }
-        let mut parameters = Parameters::default();
-        for (variable, value) in &sweep.settings {
-            Setter::of(variable)?.set(&mut parameters, value);
-        }
+    ///
+    /// # Errors
+    /// A parameter that is given a value of another type than the model has it in.
+    pub fn new(sweep: &Sweep) -> Result<Option<Self>, SweepError> {
+        let settings = sweep.settings.iter().map(|(variable, _)| variable);
         let varied = sweep.points.axes().iter().map(|axis| &axis.variable);
         let varied = varied.chain(sweep.seeds.as_ref().map(|seeds| &seeds.variable));
-        Some(Self { parameters, setters: varied.map(Setter::of).collect::<Option<_>>()? })
+        let [set, setters] = [settings.map(Setter::of).collect(), varied.map(Setter::of).collect::<Option<Vec<_>>>()];
+        let Some((set, setters)) = set.zip(setters).filter(|_| sweep.record.is_empty()) else { return Ok(None) };
+        let mut parameters = Parameters::default();
+        for (setter, (_, value)) in set.iter().zip(&sweep.settings) {
+            setter.set(&mut parameters, value)?;
+        }
+        Ok(Some(Self { parameters, setters }))
     }
 
-    fn run(&self, sweep: &Sweep, run: &Run) -> Result<Results, ModelError> {
+    /// The parameters of `run`.
+    fn parameters(&self, run: &Run) -> Result<Parameters, SweepError> {
         let mut parameters = self.parameters;
         let seed = run.seed.map(Value::Integer);
         for (setter, value) in self.setters.iter().zip(run.values.iter().chain(&seed)) {
-            setter.set(&mut parameters, value);
+            setter.set(&mut parameters, value)?;
         }
-        let mut harvester = Harvester::new(&parameters, 0.0)?;
-        let averages = sweep.times.drive(&mut harvester, sweep.times.window[1])?;
-        Ok(Results { averages, recorded: Vec::new() })
+        Ok(parameters)
     }
+}
+
+fn simulate(sweep: &Sweep, parameters: &Parameters) -> Result<Results, ModelError> {
+    let mut harvester = Harvester::new(parameters, 0.0)?;
+    let averages = sweep.times.drive(&mut harvester, sweep.times.window[1])?;
+    Ok(Results { averages, recorded: Vec::new() })
 }
 
 impl Setter {
     fn of(variable: &Variable) -> Option<Self> {
         let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == variable.name);
         let choice = Parameters::CHOICES.iter().find(|choice| choice.name == variable.name);
-        quantity.map(|quantity| Self::Quantity(quantity.set)).or(choice.map(|choice| Self::Choice(choice.set)))
+        let quantity = quantity.map(|quantity| Self { name: quantity.name, set: Set::Quantity(quantity.set) });
+        quantity.or(choice.map(|choice| Self { name: choice.name, set: Set::Choice(choice.set) }))
     }
 
-    /// Sets a value of the variable's type.
-    fn set(self, parameters: &mut Parameters, value: &Value) {
-        match (self, value) {
-            (Self::Quantity(set), Value::Real(number)) => set(parameters, *number),
-            (Self::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
+    /// Sets a value of the parameter's type.
+    ///
+    /// # Errors
+    /// A value of another type.
+    fn set(self, parameters: &mut Parameters, value: &Value) -> Result<(), SweepError> {
+        match (self.set, value) {
+            (Set::Quantity(set), Value::Real(number)) => set(parameters, *number),
+            (Set::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
                 set(parameters, *number);
             }
-            (Self::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
-            _ => {}
+            (Set::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
+            (set, value) => {
+                let allowed = match set {
+                    Set::Quantity(_) => "Real",
+                    Set::Choice(_) => "Integer, Boolean or Enumeration",
+                };
+                let (name, given) = (self.name, value.type_name());
+                return Err(SweepError::Type { name, value: value.to_string(), given, allowed });
+            }
         }
+        Ok(())
     }
 }
 
@@ -145,6 +184,7 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
     let results =
         Results { averages: averages.filter(|_| sweep.averages), recorded: recorded.collect::<Result<_, _>>()? };
     slave.instance.terminate()?;
+    slave.instance.free()?;
     Ok(results)
 }
 
@@ -180,5 +220,35 @@ impl Driven for Slave {
         self.instance.get_real(sums, &mut values)?;
         self.instance.get_integer(&[*impacts], &mut count)?;
         Ok(Gains { voltage: values[0], energy: values[1], impacts: count[0] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(name: &str, value: &Value) -> Result<Parameters, String> {
+        let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == name);
+        let choice = Parameters::CHOICES.iter().find(|choice| choice.name == name);
+        let set = quantity.map(|quantity| Set::Quantity(quantity.set)).or(choice.map(|choice| Set::Choice(choice.set)));
+        let name = quantity.map(|quantity| quantity.name).or(choice.map(|choice| choice.name)).unwrap();
+        let mut parameters = Parameters::default();
+        let setter = Setter { name, set: set.unwrap() };
+        setter.set(&mut parameters, value).map(|()| parameters).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_parameter_takes_values_of_its_own_type_and_refuses_others_by_name() {
+        assert_eq!(set("membrane.restitution", &Value::Real(0.25)).unwrap().restitution, 0.25);
+        assert!(set("contact.reaction", &Value::Boolean(true)).unwrap().reaction);
+        assert_eq!(set("excitation.seed", &Value::Integer(7)).unwrap().seed, 7);
+        assert_eq!(
+            set("membrane.restitution", &Value::Integer(1)).unwrap_err(),
+            "membrane.restitution = 1 is of type Integer; allowed: Real"
+        );
+        assert_eq!(
+            set("excitation.seed", &Value::Real(1.5)).unwrap_err(),
+            "excitation.seed = 1.5 is of type Real; allowed: Integer, Boolean or Enumeration"
+        );
     }
 }

@@ -27,6 +27,18 @@ pub enum SweepError {
         /// What is allowed.
         reason: String,
     },
+    /// A parameter of the model is given a value of another type than it has.
+    #[error("{name} = {value} is of type {given}; allowed: {allowed}")]
+    Type {
+        /// Name of the parameter.
+        name: &'static str,
+        /// What was given.
+        value: String,
+        /// Of which type.
+        given: &'static str,
+        /// What is allowed.
+        allowed: &'static str,
+    },
     /// The file system refused.
     #[error("cannot {action} {}: {cause}", path.display())]
     File {

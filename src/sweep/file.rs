@@ -26,7 +26,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::{Design, Vary};
-use crate::scenario::{CaseFile, ScenarioError};
+use crate::scenario::{CaseFile, ScenarioError, read_file, toml_error};
 
 /// What a sweep file says.
 #[derive(Debug, Default)]
@@ -74,17 +74,17 @@ impl SweepFile {
     /// # Errors
     /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let shown = path.display().to_string();
-        let text =
-            std::fs::read_to_string(path).map_err(|cause| ScenarioError::Unreadable { path: shown.clone(), cause })?;
-        let mut file = Self::parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
-        let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        file.case.name = file.case.name.or_else(stem);
+        let (mut file, stem) = read_file(path, Self::parse)?;
+        file.case.name = file.case.name.or(stem);
         Ok(file)
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
-        let said = |error: toml::de::Error| error.to_string().trim_end().to_owned();
+    /// Reads the text of a sweep file.
+    ///
+    /// # Errors
+    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(text).map_err(said)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
         let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =

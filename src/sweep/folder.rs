@@ -1,11 +1,12 @@
 //! Whose a folder of results is: its document says of which sweep, and results of no other stand beside it.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::document::differences;
 use super::{Shard, SweepError};
+use crate::whole::{self, LockError, partial};
 
 /// Name of the document in a folder of results.
 pub(super) const DOCUMENT: &str = "sweep.json";
@@ -13,13 +14,6 @@ pub(super) const DOCUMENT: &str = "sweep.json";
 pub(super) const RESULTS: &str = "sweep.csv";
 /// What to do about a folder of another sweep.
 const WAY_OUT: &str = "choose another --output, or --fresh to begin anew";
-
-/// Name under which a file is written before it is complete.
-pub(super) fn partial(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    path.with_file_name(name)
-}
 
 /// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With
 /// `fresh` whatever was there goes. The file of the results while they are being written.
@@ -114,9 +108,11 @@ fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
 /// If another one is there by now; a refusal of the file system.
 pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> Result<(), SweepError> {
     let path = folder.join(DOCUMENT);
-    if read_document(folder)?.is_none() {
-        // Under a name of its own first, so that a reader never sees half of it.
-        let part = results.with_extension("json.part");
+    // Under a name of its own first, so that a reader never sees half of it.
+    let part = results.with_extension("json.part");
+    if read_document(folder)?.is_some() {
+        remove(&part)?; // of an attempt that was killed
+    } else {
         write_synced(&part, document.as_bytes()).map_err(SweepError::file("write", &part))?;
         match std::fs::hard_link(&part, &path) {
             // Some file systems have no hard links, and a rename replaces what another process wrote just now: it is
@@ -138,53 +134,11 @@ fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
 
 /// Opens `part`, which no other process has open to write.
 pub(super) fn lock(part: &Path) -> Result<File, SweepError> {
-    loop {
-        let mut options = OpenOptions::new();
-        let file = options.read(true).write(true).create(true).truncate(false).open(part);
-        let file = file.map_err(SweepError::file("open", part))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(SweepError::Locked { path: part.to_owned() }),
-            // Some file systems of clusters have no locks: there, who starts two of a shard mixes them up.
-            Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
-            Err(TryLockError::Error(cause)) => return Err(SweepError::file("lock", part)(cause)),
-        }
-        // Who had it locked before may have given it its last name in between.
-        if is_at(&file, part).map_err(SweepError::file("lock", part))? {
-            return Ok(file);
-        }
-    }
-}
-
-#[cfg(unix)]
-fn has_no_locks(cause: &io::Error) -> bool {
-    let code = Some(rustix::io::Errno::NOLCK.raw_os_error());
-    cause.kind() == io::ErrorKind::Unsupported || cause.raw_os_error() == code
-}
-
-#[cfg(not(unix))]
-fn has_no_locks(cause: &io::Error) -> bool {
-    cause.kind() == io::ErrorKind::Unsupported
-}
-
-/// Whether `file` is what stands at `path`.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::MetadataExt as _;
-    let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
-    let own = identity(file.metadata()?);
-    match path.metadata() {
-        Ok(there) => Ok(identity(there) == own),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
-}
-
-/// Whether `file` is what stands at `path`: here, an open file cannot be renamed.
-#[cfg(not(unix))]
-#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
-fn is_at(_file: &File, _path: &Path) -> io::Result<bool> {
-    Ok(true)
+    whole::lock(part).map_err(|error| match error {
+        LockError::Open(cause) => SweepError::file("open", part)(cause),
+        LockError::Busy => SweepError::Locked { path: part.to_owned() },
+        LockError::Lock(cause) => SweepError::file("lock", part)(cause),
+    })
 }
 
 /// Removes a file, which need not be there.
@@ -257,19 +211,5 @@ mod tests {
         assert!(message.contains("it belongs to another sweep (seed is 1, not 2)"), "{message}");
         write_document(folder.path(), ONE, &other).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn a_file_that_got_its_last_name_is_not_the_one_that_is_locked() {
-        let folder = tempfile::tempdir().unwrap();
-        let [part, whole] = ["sweep.csv.part", RESULTS].map(|name| folder.path().join(name));
-        let file = lock(&part).unwrap();
-        assert!(is_at(&file, &part).unwrap());
-        fs::rename(&part, &whole).unwrap();
-        assert!(!is_at(&file, &part).unwrap());
-        fs::write(&part, "").unwrap();
-        assert!(!is_at(&file, &part).unwrap());
-        assert!(has_no_locks(&io::Error::from(rustix::io::Errno::NOLCK)));
     }
 }

@@ -66,9 +66,11 @@ fn next(from: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
     Ok(line.last() == Some(&b'\n'))
 }
 
-/// Whether a line is that of run `number`. A zero byte is what a power cut leaves, and in no text of an FMU.
+/// Whether a line is that of run `number`. A zero byte is what a power cut leaves, and in no text of an FMU. A quote that is
+/// not closed would make further lines part of a cell.
 fn is_run(line: &[u8], number: u64) -> bool {
     !line.contains(&0)
+        && line.iter().filter(|byte| **byte == b'"').count().is_multiple_of(2)
         && line.strip_prefix(number.to_string().as_bytes()).is_some_and(|rest| rest.first() == Some(&b','))
 }
 
@@ -100,6 +102,8 @@ mod tests {
             ("run,error\n5,\n\0\0\0\0\n6,\n", (13, 1, 0)),
             ("run,error\n5,\n60,\n", (13, 1, 0)),
             ("run,error\n5,\n6,\0\0,\n7,\n", (13, 1, 0)),
+            ("run,error\n5,\"a, \"\"b\"\"\"\n6,\n7,\n", (30, 3, 1)),
+            ("run,error\n5,\n6,\"\n7,\n", (13, 1, 0)),
             ("run,error\n5,\n6,\n7,\n8,\n", (19, 3, 0)),
         ] {
             assert_eq!(extent(text, 5, 3), expected, "{text:?}");

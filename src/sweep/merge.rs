@@ -9,6 +9,7 @@ use super::document::{Kept, differences};
 use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
 use super::{Shard, SweepError, column, lines, table};
+use crate::whole;
 
 /// Version of this program: tables that another one writes may have other bytes.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -28,7 +29,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     std::fs::create_dir_all(output).map_err(SweepError::file("make the folder", output))?;
     folder::check_document(output, &document)?;
     let path = output.join(RESULTS);
-    let part = folder::partial(&path);
+    let part = whole::partial(&path);
     let file = folder::lock(&part)?;
     folder::write_document(output, &document, &path)?;
     let failed = join(&shards, &kept, &file, &part)?;

@@ -155,6 +155,15 @@ impl Sweep {
         &self.columns
     }
 
+    /// Names and values of what run number `number`, below [`Sweep::runs`], is given: the variables that are varied, and
+    /// its seed if the samples have one.
+    pub fn given(&self, number: u64) -> Vec<(&str, Value)> {
+        let Run { values, seed, .. } = self.run(number);
+        let varied = self.points.axes().iter().map(|axis| axis.variable.name.as_str()).zip(values);
+        let seed = self.seeds.as_ref().map(|seeds| seeds.variable.name.as_str()).zip(seed.map(Value::Integer));
+        varied.chain(seed).collect()
+    }
+
     /// What run number `number` is given.
     pub(super) fn run(&self, number: u64) -> Run {
         let (point, sample) = (number / self.samples, number % self.samples);

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::folder::{self, RESULTS};
 use super::lines::{self, Extent};
 use super::{Shard, Sweep, SweepError, column};
+use crate::whole;
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
@@ -57,7 +58,7 @@ impl Record {
         std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
         let path = results_path(folder, shard);
         let file = folder::claim(folder, sweep.document(), &path, fresh)?;
-        let part = folder::partial(&path);
+        let part = whole::partial(&path);
         let range = range(sweep, shard);
         let heading = column::line(sweep.columns().iter().map(|column| column.name.as_str()));
         if let Some(extent) = complete(&path, &heading, &range)? {

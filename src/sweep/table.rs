@@ -1,6 +1,5 @@
 //! The results as a Parquet file, made from the CSV file in groups of rows: memory does not grow with the results.
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,8 +13,9 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type as Schema;
 
+use super::SweepError;
 use super::column::{Column, Type};
-use super::{SweepError, folder};
+use crate::whole::{self, WholeFile};
 
 /// Rows of a group.
 const GROUP: usize = 8_192;
@@ -31,14 +31,13 @@ pub(super) fn write(
 ) -> std::result::Result<PathBuf, SweepError> {
     let path = csv.with_extension("parquet");
     if anew || !path.exists() {
-        let part = folder::partial(&path);
-        fill(csv, columns, document, &part).map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;
-        std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
+        let filled = whole::fill(&path, |file| fill(csv, columns, document, file));
+        filled.map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;
     }
     Ok(path)
 }
 
-fn fill(csv: &Path, columns: &[Column], document: &str, part: &Path) -> Result<()> {
+fn fill(csv: &Path, columns: &[Column], document: &str, file: &mut WholeFile) -> Result<()> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_created_by(concat!("videg ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -46,8 +45,7 @@ fn fill(csv: &Path, columns: &[Column], document: &str, part: &Path) -> Result<(
         .build();
     let fields = columns.iter().map(|column| field(column).map(Arc::new)).collect::<Result<_>>()?;
     let schema = Schema::group_type_builder("sweep").with_fields(fields).build()?;
-    let file = File::create(part)?;
-    let mut writer = SerializedFileWriter::new(&file, Arc::new(schema), Arc::new(properties))?;
+    let mut writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties))?;
     let mut reader = csv::Reader::from_path(csv).map_err(external)?;
     let (mut record, mut rows) = (StringRecord::new(), Vec::with_capacity(GROUP));
     loop {
@@ -64,7 +62,7 @@ fn fill(csv: &Path, columns: &[Column], document: &str, part: &Path) -> Result<(
         }
     }
     writer.close()?;
-    Ok(file.sync_all()?)
+    Ok(())
 }
 
 fn external(error: csv::Error) -> ParquetError {

@@ -140,6 +140,31 @@ def test_an_fmu_that_fails_ends_both(start, fmus, broker, tmp_path, victim, surv
     assert end(other).returncode == 2
 
 
+NAMESPACE = 'xmlns="http://ssp-standard.org/SSP1/SystemStructureParameterValues"'
+SETS = {
+    "no XML": ("membrane.restitution = 0.7", "syntax error: line 1, column 0"),
+    "cut off": (f"<ParameterSet {NAMESPACE}><Parameters>", "no element found"),
+    "of another kind": ("<html/>", "its root is html, not {http://ssp-standard.org/SSP1/"),
+    "without a name": (
+        f'<ParameterSet {NAMESPACE}><Parameters><Parameter><Real value="1"/></Parameter></Parameters></ParameterSet>',
+        "a parameter has no name or no value",
+    ),
+    "without a value": (
+        f'<ParameterSet {NAMESPACE}><Parameters><Parameter name="ball.mass"/></Parameters></ParameterSet>',
+        "a parameter has no name or no value",
+    ),
+}
+
+
+@pytest.mark.parametrize("text, said", SETS.values(), ids=SETS.keys())
+@pytest.mark.parametrize("name", ["harvester", "circuit"])
+def test_a_parameter_set_that_is_malformed_is_refused_by_name(start, fmus, tmp_path, name, text, said):
+    parameters = tmp_path / "parameters.ssv"
+    parameters.write_text(text)
+    failed = end(start(*federate(name, fmus, tmp_path, "127.0.0.1:9", "--parameters", parameters)))
+    assert failed.returncode == 2 and f"parameter set {parameters}: {said}" in failed.stderr, failed.stderr
+
+
 def test_federates_that_were_started_differently_end_with_an_error(start, fmus, broker, tmp_path):
     circuit = start(*federate("circuit", fmus, tmp_path, broker, "--until", "1"))
     harvester = start(*federate("harvester", fmus, tmp_path, broker, "--until", "2"))

@@ -108,3 +108,41 @@ const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.l
 
 /// The whole table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS]);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fmi2_export::Kind;
+
+    /// The compiler makes the rows of the table; here one is made again, where it can be looked at as it is made.
+    #[test]
+    fn a_parameter_has_name_unit_start_and_bounds_of_the_table_of_the_circuit() {
+        let mut infinite = 0;
+        for (row, quantity) in quantities!(0 1 2 3 4 5 6 7 8 9 10).iter().zip(Settings::QUANTITIES) {
+            assert_eq!((row.name(), row.description()), (quantity.name, quantity.description));
+            let Kind::Real(real) = row.kind() else { panic!("{} is no Real", row.name()) };
+            assert_eq!((real.unit, real.start), (quantity.unit, Some(quantity.start)), "{}", row.name());
+            assert_eq!((real.min, real.max), (quantity.min, quantity.max), "{}", row.name());
+            assert_eq!(real.infinity_allowed, quantity.max == f64::INFINITY, "{}", row.name());
+            infinite += usize::from(real.infinity_allowed);
+        }
+        assert!(infinite > 0 && infinite < Settings::QUANTITIES.len(), "{infinite} parameters may be infinite");
+    }
+
+    #[test]
+    fn a_choice_has_the_items_of_the_table_of_the_circuit() {
+        let items: [EnumerationItem; 3] = items::<1, 3>();
+        let wanted = Settings::CHOICES[1].items;
+        assert!(items.iter().map(|item| (item.name, item.description)).eq(wanted.iter().copied()), "{items:?}");
+        let of = enumeration::<1>("Release", &RELEASE_ITEMS);
+        assert_eq!(of, RELEASE);
+        let row = choice::<1>(&RELEASE);
+        assert_eq!((row.name(), row.description()), (Settings::CHOICES[1].name, Settings::CHOICES[1].description));
+    }
+
+    #[test]
+    #[should_panic(expected = "items.len() == COUNT")]
+    fn a_count_of_items_that_is_not_theirs_is_refused() {
+        let _ = items::<1, 2>();
+    }
+}

@@ -168,6 +168,10 @@ impl Slave for Harvester {
         self.check_limits(log);
         let Self { parameters, model, .. } = self;
         let model = running(model)?;
+        let behind = t - model.time();
+        if behind > h && behind * parameters.frequency > 1.0 {
+            return Err(elsewhere(t, model.time()));
+        }
         let mut number = model.totals().impacts;
         let show = |shown: &Occurrence| match shown {
             Occurrence::Impact(impact) => {
@@ -243,6 +247,12 @@ impl Slave for Harvester {
 /// The model, or why there is none.
 fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveError> {
     model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+}
+
+/// Why no step begins at `t`, s: the model is far behind, as only a forged state has it, and could take for ever to get there.
+#[cold]
+fn elsewhere(t: f64, there: f64) -> SlaveError {
+    SlaveError::error(format!("the step begins at t = {t} s, but the state is of t = {there} s"))
 }
 
 /// An impact as the log shows it.

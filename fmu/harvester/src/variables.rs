@@ -375,3 +375,7 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &RIGHT_LOADS,
     &DERIVATIVES,
 ]);
+
+#[cfg(test)]
+#[path = "variables_tests.rs"]
+mod tests;

@@ -5,7 +5,7 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::{fresh, get, initialized, outputs, set, step};
-use fmi2_export::{Slave, StateError, StateReader, StateWriter};
+use fmi2_export::{Logger, Slave, StateError, StateReader, StateWriter};
 use std::process::Command;
 use videg_model::{Case, Parameters};
 
@@ -162,4 +162,12 @@ fn a_state_of_model_exchange_goes_on_to_the_last_bit() {
     assert_eq!(outputs(&copy), outputs(&original));
     assert_eq!(copy.event_indicators(), original.event_indicators());
     assert_eq!(get(&copy, "der(cylinder.velocity)"), get(&original, "der(cylinder.velocity)"));
+}
+
+#[test]
+fn no_step_begins_long_after_the_time_of_the_state() {
+    let mut slave = restored(&bytes(&initialized(&[]))).expect("a state");
+    let refusal = slave.do_step(1000.0, 0.01, &Logger::silent()).expect_err("1000 s lie between").to_string();
+    assert!(refusal.contains("t = 1000 s, but the state is of t = 0 s"), "{refusal}");
+    step(&mut slave, 0.0, 0.01);
 }

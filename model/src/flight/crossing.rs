@@ -1,8 +1,8 @@
 //! Where dz crosses a membrane.
 //!
 //! One sine and cosine give all derivatives. So the gap is taken as its Taylor series about a place near the crossing, whose
-//! root costs no more sines; there the next series is taken, until the step is so short that nothing is missing. The first
-//! place is one where sine and cosine are known beforehand.
+//! root costs no more sines; there the next series is taken, until one more step from its root, with the gap to all digits,
+//! is the last. The first place is one where sine and cosine are known beforehand.
 
 use super::zeros::Knot;
 use super::{Flight, Side};
@@ -47,6 +47,13 @@ impl Series {
         (slope < 0.0).then(|| -value * slope / (slope * slope - value * half_curvature))
     }
 
+    /// The step of Halley's method from the place itself.
+    #[inline]
+    fn first_step(&self) -> Option<f64> {
+        let Self([c0, c1, c2, ..]) = *self;
+        Self::halley([c0, c1, c2])
+    }
+
     /// The root of the first three terms ahead, where the gap is still open; none if they have none.
     #[inline]
     fn root_of_parabola(&self) -> Option<f64> {
@@ -80,7 +87,7 @@ impl Flight {
         let (mut low, mut high) = (from.tau, to.tau);
         let (begin, sine) = self.steepest(side, from, to).unwrap_or((from.tau, from.sine));
         let first = self.series(begin, sine, level, sign);
-        let start = if begin == from.tau { first.root_of_parabola() } else { Some(0.0) };
+        let start = if begin == from.tau { first.root_of_parabola() } else { first.first_step() };
         let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
         let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
         for _ in 0..MAX_SERIES {
@@ -94,8 +101,7 @@ impl Flight {
             if high - low <= f64::EPSILON * high {
                 return high;
             }
-            let step = Series::halley([series.0[0], series.0[1], series.0[2]]);
-            let Some(step) = step.filter(|step| (low..=high).contains(&(tau + step))) else {
+            let Some(step) = series.first_step().filter(|step| (low..=high).contains(&(tau + step))) else {
                 tau = 0.5 * (low + high);
                 continue;
             };

@@ -40,7 +40,8 @@ impl Knots {
 impl Flight {
     /// The place at `tau`, s, where the angle has this sine and cosine, with derivative number `order`.
     pub(super) fn knot(&self, order: usize, tau: f64, sine: [f64; 2]) -> Knot {
-        Knot { tau, value: self.derivatives(tau, sine)[order], sine }
+        let value = if order == 0 { self.value(tau, sine) } else { self.derivatives(tau, sine)[order] };
+        Knot { tau, value, sine }
     }
 
     /// Zeros of derivative number `order` strictly between `begin` and `end`.

@@ -1,6 +1,6 @@
 //! Contacts under the compliant law.
 
-use super::{Ball, Harvester, finite};
+use super::{Ball, Harvester, within};
 use crate::compliant::{Ending, Law, Phase, Ramp, Recoil, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
@@ -18,7 +18,7 @@ impl Harvester {
     /// [`electrostatic_feedback`](crate::Parameters::electrostatic_feedback) only.
     ///
     /// # Errors
-    /// A voltage or rate that is not finite.
+    /// A voltage or rate that is not finite, or beyond 1e18 V or V/s.
     #[inline]
     pub fn set_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
         let [left, right] = &self.voltages;
@@ -31,8 +31,8 @@ impl Harvester {
     fn change_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
         for side in [Side::Left, Side::Right] {
             let (value, rate) = (voltages[side.index()], rates[side.index()]);
-            finite("voltage of a membrane", value)?;
-            finite("derivative of the voltage of a membrane", rate)?;
+            within("voltage of a membrane", value, "V")?;
+            within("derivative of the voltage of a membrane", rate, "V/s")?;
             let ramp = &mut self.voltages[side.index()];
             if ramp.at(self.time) == value && ramp.rate == rate {
                 continue;

@@ -6,7 +6,8 @@
 
 use super::dues::Dues;
 use super::events::Search;
-use super::{Ball, Harvester, finite};
+use super::snapshot::MAX_LAG;
+use super::{Ball, Harvester, finite, within};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};
@@ -31,7 +32,7 @@ impl Harvester {
             finite("continuous state", value)?;
         }
         finite("time", time)?;
-        finite("externalForce", force)?;
+        within("externalForce", force, "N")?;
         if self.parameters.contact_law == ContactLaw::Compliant {
             return Err(ModelError::CompliantExchange);
         }
@@ -74,9 +75,10 @@ impl Harvester {
     /// continuous states have changed. A ball beyond a membrane and approaching it counts as meeting it. A second call at the same time changes nothing more.
     ///
     /// # Errors
-    /// More events than can be resolved.
+    /// More events than can be resolved; a time more than 1e6 hold intervals of the phase noise after the sample due.
     pub fn handle_events(&mut self) -> Result<bool, ModelError> {
         self.tangent.fresh = false;
+        self.check_lag()?;
         while let Some(due) = self.noise_limit().filter(|due| *due <= self.time * (1.0 + f64::EPSILON)) {
             self.next_noise_sample(due.min(self.time));
         }
@@ -92,6 +94,15 @@ impl Harvester {
     /// a pulse, where a capacitance has a kink.
     pub fn next_time_event(&self) -> Option<f64> {
         self.pulse_knots().map(|knot| knot.time).chain(self.noise_limit()).min_by(f64::total_cmp)
+    }
+
+    /// That the integrator has not passed over more samples of the phase noise than it may.
+    fn check_lag(&self) -> Result<(), ModelError> {
+        let (time, hold) = (self.time, self.parameters.noise_hold);
+        match self.noise_limit().filter(|due| time - due > MAX_LAG * hold) {
+            Some(due) => Err(ModelError::NoiseLag { time, due, limit: MAX_LAG, hold }),
+            None => Ok(()),
+        }
     }
 
     fn release_if_pulled(&mut self, side: Side) -> Result<bool, ModelError> {

@@ -14,7 +14,7 @@ use crate::parameters::{ContactLaw, Parameters};
 use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
 
 /// Phase-noise samples that an integrator may be behind: it may pause at an event before the event is handled.
-const MAX_LAG: f64 = 1e6;
+pub(super) const MAX_LAG: f64 = 1e6;
 
 /// Everything that a [`Harvester`] carries from one step to the next, besides its parameters.
 ///

@@ -67,6 +67,39 @@ fn names_that_leave_the_folder_are_refused() {
     }
 }
 
+/// The bytes with every `from` replaced by `to`, which is as long.
+fn renamed(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
+    for at in 0..bytes.len() - from.len() {
+        if bytes[at..].starts_with(from) {
+            bytes[at..at + from.len()].copy_from_slice(to);
+        }
+    }
+    bytes
+}
+
+#[test]
+fn two_entries_of_one_name_are_refused() {
+    let bytes = zip_bytes(&[("modelDescription.xml", GOOD), ("one", b"1"), ("two", b"2")]);
+    let (_folder, path) = saved(&renamed(bytes, b"two", b"one"));
+    assert_eq!(refusal(Archive::open(&path)), Refusal::Duplicates { listed: 3, found: 2 });
+    let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("one", b"1"), ("ONE", b"2")]);
+    assert!(matches!(refusal(Archive::open(&path)), Refusal::Collision { .. }));
+}
+
+#[test]
+fn entries_that_share_bytes_are_refused() {
+    let mut bytes = zip_bytes(&[("a", b"some bytes"), ("b", b"some bytes")]);
+    // The second header of the directory, to whose offset of 4 bytes that of the first entry is written.
+    let at = bytes.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap() + 42;
+    bytes[at..at + 4].fill(0);
+    let (_folder, path) = saved(&bytes);
+    let error = Archive::open(&path).err().unwrap();
+    assert!(
+        matches!(error, FmiError::Refused { reason: Refusal::Overlap, .. } | FmiError::NotAnArchive { .. }),
+        "{error}"
+    );
+}
+
 #[test]
 fn symbolic_links_are_refused() {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));

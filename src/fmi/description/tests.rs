@@ -133,6 +133,15 @@ fn a_huge_or_deep_document_is_refused() {
 }
 
 #[test]
+fn attributes_without_end_are_refused_before_they_are_compared() {
+    let many = (0..300_000).fold(String::new(), |all, k| all + &format!(" a{k}=''"));
+    let error = parse(&GOOD.replacen("<ModelVariables>", &format!("<New{many}/><ModelVariables>"), 1)).unwrap_err();
+    assert_eq!(error, DescriptionError::Attributes { element: "New".to_owned(), allowed: 256 });
+    let error = parse(&format!("<fmiModelDescription{many} fmiVersion='2.0'>")).unwrap_err();
+    assert_eq!(error, DescriptionError::Attributes { element: "fmiModelDescription".to_owned(), allowed: 256 });
+}
+
+#[test]
 fn a_byte_order_mark_and_unknown_parts_are_tolerated() {
     let text = format!("\u{feff}{}", GOOD.replacen("<ModelVariables>", "<New a='1'><b/></New><ModelVariables>", 1));
     assert_eq!(parse(&text).unwrap().variables.len(), 7);

@@ -25,7 +25,7 @@ pub enum Refusal {
     #[error("the archive has a zip64 directory, which only archives beyond 65535 entries or 4 GiB need")]
     Zip64,
     /// Unpacked it would be too large.
-    #[error("unpacking passed {allowed} bytes at entry \"{entry}\"")]
+    #[error("unpacking passed {allowed} bytes at entry \"{}\"", entry.escape_debug())]
     UnpackedSize {
         /// Entry at which the bound was passed.
         entry: String,
@@ -33,7 +33,7 @@ pub enum Refusal {
         allowed: u64,
     },
     /// An entry inflates too much.
-    #[error("entry \"{entry}\" inflates its {packed} bytes more than {allowed} times")]
+    #[error("entry \"{}\" inflates its {packed} bytes more than {allowed} times", entry.escape_debug())]
     Ratio {
         /// The entry.
         entry: String,
@@ -43,15 +43,34 @@ pub enum Refusal {
         allowed: u64,
     },
     /// An entry would be written outside its folder.
-    #[error("entry \"{}\" leaves the folder: {why}", entry.escape_debug())]
+    #[error("entry \"{}\" may leave the folder: {why}", entry.escape_debug())]
     Path {
         /// The entry.
         entry: String,
         /// What is wrong with its name.
         why: &'static str,
     },
+    /// Two entries would be written to one place, at least where file systems do not tell case apart.
+    #[error("entry \"{}\" would take the place of \"{}\"", entry.escape_debug(), other.escape_debug())]
+    Collision {
+        /// The later entry.
+        entry: String,
+        /// What was there.
+        other: String,
+    },
+    /// Entries share a name.
+    #[error("the archive lists {listed} entries with {found} different names")]
+    Duplicates {
+        /// Number of entries.
+        listed: usize,
+        /// Number of names.
+        found: usize,
+    },
+    /// Entries share bytes.
+    #[error("the entries overlap: some bytes of the archive belong to two of them")]
+    Overlap,
     /// An entry is neither a file nor a folder.
-    #[error("entry \"{entry}\" is a symbolic link or a special file")]
+    #[error("entry \"{}\" is a symbolic link or a special file", entry.escape_debug())]
     SpecialFile {
         /// The entry.
         entry: String,
@@ -95,6 +114,14 @@ pub enum DescriptionError {
     /// Elements are nested too deeply.
     #[error("the model description nests elements deeper than {allowed}")]
     Depth {
+        /// Bound.
+        allowed: usize,
+    },
+    /// An element has too many attributes.
+    #[error("the model description has an element <{element}> with more than {allowed} attributes")]
+    Attributes {
+        /// Name of the element.
+        element: String,
         /// Bound.
         allowed: usize,
     },

@@ -1,5 +1,6 @@
 //! One `ScalarVariable`: defaults of the standard, attributes of its type definition, base type.
 
+use std::collections::HashMap;
 use std::str::FromStr;
 
 use super::{
@@ -7,8 +8,21 @@ use super::{
     raw, real,
 };
 
+/// Type definitions by name; of those that share one, the first.
+pub(super) struct Types<'a>(HashMap<&'a str, &'a raw::SimpleType>);
+
+impl<'a> Types<'a> {
+    pub fn of(types: &'a [raw::SimpleType]) -> Self {
+        Self(types.iter().rev().filter_map(|simple| Some((simple.name.as_deref()?, simple))).collect())
+    }
+
+    fn get(&self, name: &str) -> Option<&'a raw::SimpleType> {
+        self.0.get(name).copied()
+    }
+}
+
 /// Reads the variable at `position` (from 0).
-pub(super) fn convert(raw: raw::ScalarVariable, position: usize, types: &[raw::SimpleType]) -> Result<Variable> {
+pub(super) fn convert(raw: raw::ScalarVariable, position: usize, types: &Types<'_>) -> Result<Variable> {
     let name = raw.name.clone().ok_or_else(|| missing(&format!("ScalarVariable {}", position + 1), "name"))?;
     let place = format!("variable \"{name}\"");
     let reference = raw.value_reference.as_deref().ok_or_else(|| missing(&place, "valueReference"))?;
@@ -41,7 +55,7 @@ fn default_initial(causality: Causality, variability: Variability) -> Option<Ini
 }
 
 /// The base type, and the name of the type definition.
-fn kind(raw: raw::ScalarVariable, place: &str, types: &[raw::SimpleType]) -> Result<(Kind, Option<String>)> {
+fn kind(raw: raw::ScalarVariable, place: &str, types: &Types<'_>) -> Result<(Kind, Option<String>)> {
     let raw::ScalarVariable { real: as_real, integer: as_integer, boolean: as_boolean, string, enumeration, .. } = raw;
     let (kind, declared) = if let Some(own) = as_real {
         let all = with_type(own, types, |simple| simple.real.as_ref());
@@ -72,11 +86,10 @@ fn kind(raw: raw::ScalarVariable, place: &str, types: &[raw::SimpleType]) -> Res
 /// The variable's own attributes, completed by those of its type definition.
 fn with_type(
     own: raw::Attributes,
-    types: &[raw::SimpleType],
+    types: &Types<'_>,
     pick: impl Fn(&raw::SimpleType) -> Option<&raw::Attributes>,
 ) -> raw::Attributes {
-    let declared = own.declared_type.as_ref();
-    let inherited = declared.and_then(|_| types.iter().find(|simple| simple.name.as_ref() == declared)).and_then(pick);
+    let inherited = own.declared_type.as_deref().and_then(|name| types.get(name)).and_then(pick);
     let Some(inherited) = inherited.cloned() else { return own };
     raw::Attributes {
         unit: own.unit.or(inherited.unit),
@@ -86,12 +99,12 @@ fn with_type(
     }
 }
 
-fn require_enumeration(declared: &str, place: &str, types: &[raw::SimpleType]) -> Result<()> {
-    let known =
-        || types.iter().filter(|simple| simple.enumeration.is_some()).filter_map(|simple| simple.name.as_deref());
-    if known().any(|name| name == declared) {
+fn require_enumeration(declared: &str, place: &str, types: &Types<'_>) -> Result<()> {
+    if types.get(declared).is_some_and(|simple| simple.enumeration.is_some()) {
         return Ok(());
     }
-    let allowed = format!("an enumeration of TypeDefinitions ({})", known().collect::<Vec<_>>().join(", "));
+    let mut known: Vec<_> = types.0.iter().filter(|(_, simple)| simple.enumeration.is_some()).map(|it| *it.0).collect();
+    known.sort_unstable();
+    let allowed = format!("an enumeration of TypeDefinitions ({})", known.join(", "));
     Err::<(), Error>(attribute(place, "declaredType", declared, allowed))
 }

@@ -1,0 +1,180 @@
+//! Values at which programs break, runs that must end, and what must hold of any harvester.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper fails a test, too")]
+
+use std::sync::mpsc;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use videg_model::{ContactLaw, Harvester, ModelError, NoiseModel, Parameters, Quantity, Side};
+
+/// A run that takes longer than this hangs: thousands of times what any takes.
+const WATCH: Duration = Duration::from_secs(300);
+
+/// Most events in a second of simulated time: `EVENT_BUDGET` of the model.
+pub const BUDGET: u64 = 1_000_000;
+
+/// What is being run, for the watchdog to name.
+#[derive(Clone, Default)]
+pub struct Label(Arc<Mutex<String>>);
+
+impl Label {
+    pub fn set(&self, what: String) {
+        *self.0.lock().unwrap() = what;
+    }
+}
+
+/// Runs `body` under a watchdog, which names what hangs.
+pub fn watched(body: impl FnOnce(&Label) + Send + 'static) {
+    let (label, (done, ended)) = (Label::default(), mpsc::channel());
+    let of_body = label.clone();
+    let thread = std::thread::spawn(move || {
+        body(&of_body);
+        done.send(()).unwrap();
+    });
+    match ended.recv_timeout(WATCH) {
+        Err(mpsc::RecvTimeoutError::Timeout) => panic!("no end after {WATCH:?}: {}", label.0.lock().unwrap()),
+        Ok(()) | Err(mpsc::RecvTimeoutError::Disconnected) => {
+            if let Err(cause) = thread.join() {
+                eprintln!("while running {}", label.0.lock().unwrap());
+                std::panic::resume_unwind(cause);
+            }
+        }
+    }
+}
+
+/// Bounds, their neighbours, and what no bound can be of.
+pub fn values(quantity: &Quantity) -> Vec<f64> {
+    let Quantity { min, max, .. } = *quantity;
+    let numbers = [0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e308, -1e308, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    [min, min.next_up(), min.next_down(), max, max.next_down(), max.next_up()].into_iter().chain(numbers).collect()
+}
+
+pub fn with(parameters: &Parameters, quantity: &Quantity, value: f64) -> Parameters {
+    let mut changed = *parameters;
+    (quantity.set)(&mut changed, value);
+    changed
+}
+
+/// Harvesters of all kinds, by name, to which hostile values are given.
+pub fn kinds() -> Vec<(&'static str, Parameters)> {
+    let impulsive = Parameters::default();
+    let compliant = Parameters { contact_law: ContactLaw::Compliant, ..impulsive };
+    let held = Parameters { phase_noise: 1.0, noise_hold: 1e-4, ..impulsive };
+    vec![
+        ("impulsive", impulsive),
+        ("elastic", Parameters { restitution: 1.0, ..impulsive }),
+        ("chattering", Parameters { amplitude: 5.0, restitution: 0.3, frequency: 1.0, ..impulsive }),
+        ("with held noise", held),
+        ("with a Wiener phase", Parameters { noise_model: NoiseModel::Wiener, ..held }),
+        ("compliant", compliant),
+        ("compliant with reaction", Parameters { reaction: true, ..compliant }),
+        ("compliant with feedback", Parameters { electrostatic_feedback: true, ..compliant }),
+        ("compliant with noise", Parameters { contact_law: ContactLaw::Compliant, ..held }),
+    ]
+}
+
+/// How long to run, s: shorter where hold intervals are, of which each is worked out.
+pub fn duration(parameters: &Parameters) -> f64 {
+    if parameters.phase_noise > 0.0 { (2e4 * parameters.noise_hold).min(2.0) } else { 2.0 }
+}
+
+/// Every output of a harvester, by name.
+pub fn outputs(harvester: &Harvester) -> Vec<(&'static str, f64)> {
+    let (totals, energies) = (harvester.totals(), harvester.energies());
+    let mut outputs = vec![
+        ("cylinder position", harvester.cylinder_position()),
+        ("cylinder velocity", harvester.cylinder_velocity()),
+        ("cylinder acceleration", harvester.cylinder_acceleration()),
+        ("ball position", harvester.ball_position()),
+        ("ball velocity", harvester.ball_velocity()),
+        ("relative displacement", harvester.relative_displacement()),
+        ("last speed", totals.last_speed),
+        ("voltage gain", totals.voltage_gain),
+        ("energy of Eq. (13)", totals.energy),
+        ("kinetic energy of the ball", energies.ball),
+        ("kinetic energy of the cylinder", energies.cylinder),
+        ("elastic energy", energies.elastic),
+        ("impact loss", energies.impact_loss),
+        ("work of the excitation", energies.excitation),
+        ("electrical work", energies.electrical),
+        ("work of the walls", energies.wall),
+        ("contact time", harvester.contact_time()),
+        ("next impact", harvester.next_impact().unwrap_or(0.0)),
+        ("next knot", harvester.next_knot().unwrap_or(0.0)),
+    ];
+    for side in [Side::Left, Side::Right] {
+        let deflection = harvester.deflection(side);
+        outputs.extend([
+            ("deflection", deflection.value),
+            ("rate of a deflection", deflection.rate),
+            ("capacitance", harvester.capacitance(side)),
+            ("rate of a capacitance", harvester.capacitance_rate(side)),
+            ("voltage", harvester.voltage(side)),
+        ]);
+    }
+    outputs
+}
+
+pub fn assert_finite(harvester: &Harvester, what: &str) {
+    for (name, value) in outputs(harvester) {
+        assert!(value.is_finite(), "{what}: {name} = {value} at {} s", harvester.time());
+    }
+}
+
+/// That the books of the ball's energy close, relative to what may have gone through them: a wall that moves on its own gives
+/// and takes its energy over and over.
+pub fn assert_balanced(harvester: &Harvester, parameters: &Parameters, what: &str) {
+    let e = harvester.energies();
+    let start = 0.5 * parameters.ball_mass * parameters.ball_velocity * parameters.ball_velocity;
+    let residual = e.ball + e.elastic + e.impact_loss - (start + e.wall + e.electrical);
+    let swing = 2.0 * parameters.cylinder_amplitude() * std::f64::consts::TAU * parameters.frequency;
+    let fastest = parameters.cylinder_velocity.abs() + swing + harvester.cylinder_velocity().abs();
+    let of_wall = 0.5 * parameters.ball_mass * fastest * fastest;
+    let moved = e.ball + e.elastic + e.impact_loss + start + e.wall.abs() + e.electrical.abs() + of_wall;
+    let tolerance = 1e-9 + digits_of_time(harvester, parameters, fastest);
+    let time = harvester.time();
+    assert!(residual.abs() <= tolerance * moved, "{what}: the books miss {residual} of {moved} J at {time} s");
+}
+
+/// What the digits of time are worth: events are put at doubles, by the rounding of which a wall turns on, or a contact at
+/// `speed`, m/s.
+fn digits_of_time(harvester: &Harvester, parameters: &Parameters, speed: f64) -> f64 {
+    let (time, speed) = (harvester.time().abs(), speed + parameters.ball_velocity.abs());
+    let deflection = harvester.membrane().deflection(speed);
+    let of_contact = if deflection > 0.0 { speed / deflection } else { 0.0 };
+    let rate = match parameters.contact_law {
+        ContactLaw::Impulsive => std::f64::consts::TAU * parameters.frequency,
+        ContactLaw::Compliant => of_contact,
+    };
+    16.0 * (time.next_up() - time) * rate
+}
+
+/// Runs a harvester from `start`, s, in a few steps: every output stays finite, the books close and the events keep to the
+/// budget; or an error says why it ends.
+pub fn run(parameters: &Parameters, start: f64, what: &str) -> Result<Harvester, ModelError> {
+    let mut harvester = Harvester::new(parameters, start)?;
+    assert_finite(&harvester, what);
+    let until = duration(parameters);
+    for part in [1e-9, 1e-3, 0.25, 0.5, 1.0] {
+        let before = harvester.totals().events();
+        let advanced = harvester.advance(start + part * until);
+        assert!(harvester.totals().events() - before <= 3 * BUDGET, "{what}: more events than the budget");
+        advanced?;
+        assert_finite(&harvester, what);
+        assert_balanced(&harvester, parameters, what);
+    }
+    Ok(harvester)
+}
+
+/// That a run which ends early says so in words that name a thing, its value and a bound.
+pub fn assert_explained(error: &ModelError, what: &str) {
+    let text = error.to_string();
+    let explained = match error {
+        ModelError::Bounds { name, min, max, .. } => text.contains(name) && text.contains(&format!("[{min}, {max}]")),
+        ModelError::Order { name, bound_name, .. } => text.contains(name) && text.contains(bound_name),
+        ModelError::TooManyEvents { limit, .. } => text.contains(&limit.to_string()),
+        ModelError::PullIn { .. } => text.contains("pull-in"),
+        _ => false,
+    };
+    assert!(explained, "{what}: {text}");
+}

@@ -1,0 +1,39 @@
+//! Text from elsewhere on its way to a terminal: no control characters, and of an error one line that can be read.
+
+/// Longest error that is shown, characters.
+const LONGEST: usize = 2000;
+
+/// `text` as one line of readable length.
+pub fn one_line(text: &str) -> String {
+    let lines: Vec<_> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let line = plain(&lines.join(" | "));
+    let count = line.chars().count();
+    if count <= LONGEST {
+        return line;
+    }
+    let begin: String = line.chars().take(LONGEST).collect();
+    format!("{begin}... (and {} more characters)", count - LONGEST)
+}
+
+/// `text` with its control characters spelled out, but for ends of lines: none reaches the terminal as a command.
+pub fn plain(text: &str) -> String {
+    let spell = |c: char| if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(spell).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_one_line_without_control_characters() {
+        assert_eq!(one_line("a\n  b\r\n\n\u{1b}[2Jc\u{7}"), "a | b | \\u{1b}[2Jc\\u{7}");
+        let long = one_line(&"x".repeat(LONGEST + 7));
+        assert!(long.ends_with("x... (and 7 more characters)"), "{long}");
+    }
+
+    #[test]
+    fn lines_and_letters_stay_as_they_are() {
+        assert_eq!(plain("gr\u{fc}n\nblau\t"), "gr\u{fc}n\nblau\\t");
+    }
+}

@@ -1,0 +1,121 @@
+//! Names of entries: each stays inside the folder, and no two name one file, on any operating system.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use crate::fmi::error::Refusal;
+
+/// Longest name, bytes: of a whole path, macOS takes 1024.
+const LONGEST: usize = 1000;
+/// What Windows takes for a device in every folder, whatever the extension; and COM0 to LPT9.
+const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
+
+/// Paths so far, as file systems see them that do not tell case apart.
+#[derive(Debug, Default)]
+pub(super) struct Names(HashMap<String, Known>);
+
+#[derive(Debug, PartialEq)]
+struct Known {
+    path: String,
+    is_folder: bool,
+}
+
+impl Names {
+    /// Takes the name of a further entry; a folder's ends with a slash.
+    pub fn add(&mut self, name: &str) -> Result<(), Refusal> {
+        if let Some(why) = fault(name) {
+            return Err(Refusal::Path { entry: name.chars().take(100).collect(), why });
+        }
+        let parts: Vec<_> = name.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
+        for end in 1..=parts.len() {
+            let path = parts[..end].join("/");
+            let key = path.to_lowercase();
+            let found = Known { path, is_folder: end < parts.len() || name.ends_with('/') };
+            match self.0.entry(key) {
+                Entry::Vacant(place) => {
+                    place.insert(found);
+                }
+                // Many entries share their folders.
+                Entry::Occupied(known) if found.is_folder && *known.get() == found => {}
+                Entry::Occupied(known) => {
+                    let (entry, other) = (name.to_owned(), known.get().path.clone());
+                    return Err(Refusal::Collision { entry, other });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why a name does not stay inside the folder, or is not a name everywhere.
+fn fault(name: &str) -> Option<&'static str> {
+    let bytes = name.as_bytes();
+    if name.is_empty() || name.contains('\0') {
+        Some("its name is empty or holds a zero byte")
+    } else if name.len() > LONGEST {
+        Some("its name has more than 1000 bytes")
+    } else if name.contains('\\') {
+        Some("its name holds a backslash; FMI uses forward slashes")
+    } else if name.starts_with('/') {
+        Some("its name is absolute")
+    } else if bytes.get(1) == Some(&b':') && bytes.first().is_some_and(u8::is_ascii_alphabetic) {
+        Some("its name begins with a drive letter")
+    } else if name.split('/').any(|part| part == "..") {
+        Some("its name holds \"..\"")
+    } else if name.contains(|c: char| c.is_control() || c == ':') {
+        Some("its name holds a control character or a colon")
+    } else if name.split('/').any(is_device) {
+        Some("its name is that of a device on Windows")
+    } else if name.split('/').any(|part| part != "." && part.ends_with(['.', ' '])) {
+        Some("its name ends in a dot or blank, which Windows drops")
+    } else {
+        None
+    }
+}
+
+fn is_device(part: &str) -> bool {
+    let stem = part.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
+    let is_port = |rest: &str| matches!(rest.as_bytes(), [b'0'..=b'9']);
+    DEVICES.contains(&stem.as_str()) || ["com", "lpt"].iter().any(|port| stem.strip_prefix(port).is_some_and(is_port))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(names: &[&str]) -> Option<String> {
+        let mut all = Names::default();
+        names.iter().find_map(|name| all.add(name).err()).map(|reason| reason.to_string())
+    }
+
+    #[test]
+    fn usual_names_are_taken() {
+        let names =
+            ["a/", "a/b/", "a/b/c.txt", "a/b/d", "e.f/g", "./h", "console.c", "com10", "a.b..c", "\u{e4}\u{301}"];
+        assert_eq!(refusal(&names), None);
+    }
+
+    #[test]
+    fn two_entries_for_one_file_are_refused() {
+        for (names, told) in [
+            (["a/Read.me", "a/read.ME"], "entry \"a/read.ME\" would take the place of \"a/Read.me\""),
+            (["\u{c4}", "\u{e4}"], "would take the place of \"\u{c4}\""),
+            (["a", "a/b"], "entry \"a/b\" would take the place of \"a\""),
+            (["a/b", "a"], "entry \"a\" would take the place of \"a\""),
+            (["a/b", "A/c"], "entry \"A/c\" would take the place of \"a\""),
+            (["a/b", "a//b"], "entry \"a//b\" would take the place of \"a/b\""),
+            (["b", "./b"], "entry \"./b\" would take the place of \"b\""),
+        ] {
+            let found = refusal(&names).unwrap_or_default();
+            assert!(found.contains(told), "{names:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn names_that_are_none_on_some_system_are_refused() {
+        for name in ["NUL", "a/con.txt", "aux .h", "Com1", "a/LPT9.log", "a.", "a /b", "a:stream", "a\nb", "a\u{7f}"] {
+            assert!(refusal(&[name]).is_some(), "{name:?}");
+        }
+        assert!(refusal(&[&"x/".repeat(501)]).unwrap().ends_with("its name has more than 1000 bytes"));
+    }
+}

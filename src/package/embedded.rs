@@ -1,0 +1,157 @@
+//! FMUs inside the program, for one that goes without its source tree: the feature `embedded-fmus`.
+//!
+//! They are packaged before the program is compiled, for as many platforms as it will be handed over with. So one file
+//! does all that the program does in its source tree but building for other targets.
+
+use std::path::{Path, PathBuf};
+
+use super::entries::{Entries, put};
+use super::error::{PackageError, Result};
+use super::{AddedBinary, FMUS, FmuPackage, Options, locate};
+
+/// Bytes of an archive in the folder that `VIDEG_FMUS` named when the program was compiled.
+#[cfg(feature = "embedded-fmus")]
+macro_rules! archive {
+    ($name:literal) => {
+        include_bytes!(concat!(
+            env!(
+                "VIDEG_FMUS",
+                "the feature embedded-fmus needs VIDEG_FMUS: the absolute path of a folder with both .fmu"
+            ),
+            "/",
+            $name
+        ))
+    };
+}
+
+/// The archives, in the order of [`FMUS`].
+#[cfg(feature = "embedded-fmus")]
+const ARCHIVES: Option<[&[u8]; FMUS.len()]> =
+    Some([archive!("VibroImpactHarvester.fmu"), archive!("HarvestingCircuit.fmu")]);
+#[cfg(not(feature = "embedded-fmus"))]
+const ARCHIVES: Option<[&[u8]; FMUS.len()]> = None;
+
+/// The model descriptions that this program was compiled with, in the order of [`FMUS`].
+const DESCRIPTIONS: [&[u8]; FMUS.len()] = [
+    include_bytes!("../../modelDescription/VibroImpactHarvester.xml"),
+    include_bytes!("../../modelDescription/HarvestingCircuit.xml"),
+];
+
+/// The archives inside the program, if it has any and is to use them.
+pub(super) fn archives(options: &Options) -> Option<[&'static [u8]; FMUS.len()]> {
+    ARCHIVES.filter(|_| takes_embedded(options, locate::around_program().as_deref()))
+}
+
+/// Whether the program lies in no source tree, none was named, and nothing is to be built for other targets.
+fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
+    around_program.is_none() && options.workspace.is_none() && options.targets.is_empty()
+}
+
+/// Writes the archives into `output`, with the added libraries, which take the place of those inside.
+///
+/// # Errors
+/// When an archive is broken or belongs to another version of the program, or a file cannot be read or written.
+pub(super) fn write(archives: [&[u8]; FMUS.len()], added: &[AddedBinary], output: &Path) -> Result<Vec<PathBuf>> {
+    let parts = FMUS.iter().zip(archives).zip(DESCRIPTIONS);
+    parts
+        .map(|((fmu, archive), description)| {
+            let path = output.join(format!("{}.fmu", fmu.identifier));
+            let entries = entries(fmu, archive, description, added)?;
+            if added.is_empty() {
+                // Packed again, the same entries may get other bytes.
+                put(&path, archive)?;
+            } else {
+                entries.write(&path)?;
+            }
+            Ok(path)
+        })
+        .collect()
+}
+
+fn entries(fmu: &FmuPackage, archive: &[u8], description: &[u8], added: &[AddedBinary]) -> Result<Entries> {
+    let refuse = |why: String| PackageError::Embedded { identifier: fmu.identifier, why };
+    let mut entries = Entries::read(archive).map_err(|cause| refuse(format!("is broken: {cause}")))?;
+    if entries.bytes("modelDescription.xml") != Some(description) {
+        return Err(refuse("has another model description; package the FMUs and compile videg again".to_owned()));
+    }
+    for binary in added.iter().filter(|binary| binary.identifier == fmu.identifier) {
+        entries.add_file(&binary.platform.entry(fmu.identifier), &binary.path);
+    }
+    Ok(entries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::package::Platform;
+
+    /// A library that does not go through a packer in one piece.
+    fn library() -> Vec<u8> {
+        (0..200_000_u32).flat_map(|k| k.wrapping_mul(k).to_le_bytes()).collect()
+    }
+
+    /// An archive as it is packaged, as bytes.
+    fn packaged(description: &[u8]) -> Vec<u8> {
+        let folder = tempfile::tempdir().unwrap();
+        let mut entries = Entries::default();
+        entries.add_bytes("modelDescription.xml", description.to_vec());
+        std::fs::write(folder.path().join("library"), library()).unwrap();
+        entries.add_file("binaries/linux64/VibroImpactHarvester.so", &folder.path().join("library"));
+        entries.write(&folder.path().join("it.fmu")).unwrap();
+        std::fs::read(folder.path().join("it.fmu")).unwrap()
+    }
+
+    #[test]
+    fn archives_come_out_with_the_bytes_that_went_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let archives = DESCRIPTIONS.map(packaged);
+        let written = write(archives.each_ref().map(Vec::as_slice), &[], folder.path()).unwrap();
+        let names = FMUS.map(|fmu| folder.path().join(format!("{}.fmu", fmu.identifier)));
+        assert_eq!(written, names);
+        for (path, archive) in written.iter().zip(&archives) {
+            assert!(&std::fs::read(path).unwrap() == archive, "{} differs", path.display());
+        }
+    }
+
+    #[test]
+    fn an_added_library_joins_those_inside_or_takes_the_place_of_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let other = folder.path().join("library");
+        std::fs::write(&other, "added").unwrap();
+        let archive = packaged(DESCRIPTIONS[0]);
+        for (platform, wanted) in [("linux64", b"added".to_vec()), ("win64", library())] {
+            let platform = Platform::of_folder(platform).unwrap();
+            let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: other.clone() };
+            let path = folder.path().join("it.fmu");
+            entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap().write(&path).unwrap();
+            let found = Entries::read(&std::fs::read(path).unwrap()).unwrap();
+            assert!(
+                found.bytes("binaries/linux64/VibroImpactHarvester.so") == Some(&wanted[..]),
+                "{}",
+                platform.folder
+            );
+            assert_eq!(found.bytes(&platform.entry(FMUS[0].identifier)), Some(&b"added"[..]));
+        }
+    }
+
+    #[test]
+    fn an_archive_of_other_sources_is_refused() {
+        let archive = packaged(b"<other/>");
+        let error = entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[]).unwrap_err().to_string();
+        assert!(
+            error.starts_with("the VibroImpactHarvester.fmu inside videg has another model description"),
+            "{error}"
+        );
+        let error = entries(&FMUS[1], b"no zip", DESCRIPTIONS[1], &[]).unwrap_err().to_string();
+        assert!(error.starts_with("the HarvestingCircuit.fmu inside videg is broken: "), "{error}");
+    }
+
+    #[test]
+    fn a_source_tree_or_a_target_comes_before_what_is_inside() {
+        let tree = Path::new("tree");
+        assert!(takes_embedded(&Options::default(), None));
+        assert!(!takes_embedded(&Options::default(), Some(tree)));
+        assert!(!takes_embedded(&Options { workspace: Some(tree.to_path_buf()), ..Options::default() }, None));
+        assert!(!takes_embedded(&Options { targets: vec!["win64".to_owned()], ..Options::default() }, None));
+    }
+}

@@ -1,0 +1,246 @@
+//! Files that appear whole or not at all: written under another name, forced to the disk, then given their own. Whatever
+//! ends a program in between, and whenever, under its own name is what was there before, or all of what is there now.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Name under which a file is written before it is complete.
+pub fn partial(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// Writes `content` to `path`, whole or not at all. Of what could not be written nothing stays: a full disk needs the room.
+///
+/// # Errors
+/// Another process that writes the same file; a refusal of the file system.
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    fill(path, |file| file.write_all(content.as_ref()))
+}
+
+/// Has `content` write the file at `path`, as [`write()`] does.
+///
+/// # Errors
+/// What `content` says; another process that writes the same file; a refusal of the file system.
+pub fn fill<E: From<io::Error>>(path: &Path, content: impl FnOnce(&mut WholeFile) -> Result<(), E>) -> Result<(), E> {
+    let mut file = WholeFile::create(path)?;
+    match content(&mut file) {
+        Ok(()) => Ok(file.finish()?),
+        Err(error) => {
+            file.discard();
+            Err(error)
+        }
+    }
+}
+
+/// A file that is being written. Dropped before it is finished, what is in it stays under its other name.
+#[derive(Debug)]
+pub struct WholeFile {
+    file: File,
+    part: PathBuf,
+    path: PathBuf,
+}
+
+impl WholeFile {
+    /// Begins a file that will be at `path`; what is there stays until [`WholeFile::finish`].
+    ///
+    /// # Errors
+    /// Another process that writes the same file; a refusal of the file system.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let part = partial(path);
+        let file = lock(&part)?;
+        file.set_len(0)?;
+        Ok(Self { file, part, path: path.to_owned() })
+    }
+
+    /// Name of the file until it is finished.
+    pub fn part(&self) -> &Path {
+        &self.part
+    }
+
+    /// Forces the file to the disk and gives it its name.
+    ///
+    /// # Errors
+    /// A refusal of the file system; nothing is left then but what was there before.
+    pub fn finish(self) -> io::Result<()> {
+        let finished = self.file.sync_all().and_then(|()| std::fs::rename(&self.part, &self.path));
+        if finished.is_err() {
+            self.discard();
+        }
+        finished
+    }
+
+    /// Leaves what was there before.
+    fn discard(self) {
+        // That it could not be written is what the user is told.
+        let _ = std::fs::remove_file(&self.part);
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Why a file that is to be written is not this process's own.
+#[derive(Debug, Error)]
+pub enum LockError {
+    /// It cannot be opened.
+    #[error("{0}")]
+    Open(io::Error),
+    /// Another process writes it.
+    #[error("another process is writing it: wait for that, or choose another folder")]
+    Busy,
+    /// It cannot be locked.
+    #[error("cannot lock it: {0}")]
+    Lock(io::Error),
+}
+
+impl From<LockError> for io::Error {
+    fn from(error: LockError) -> Self {
+        match error {
+            LockError::Open(cause) => cause,
+            LockError::Busy => Self::new(io::ErrorKind::WouldBlock, error),
+            LockError::Lock(ref cause) => Self::new(cause.kind(), error),
+        }
+    }
+}
+
+/// Opens `part`, which no other process has open to write, with what is in it.
+///
+/// # Errors
+/// Another process that writes it; a refusal of the file system.
+pub fn lock(part: &Path) -> Result<File, LockError> {
+    loop {
+        let mut options = OpenOptions::new();
+        let file = options.read(true).write(true).create(true).truncate(false).open(part).map_err(LockError::Open)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(LockError::Busy),
+            // Some file systems of clusters have no locks: there, who starts two of a kind mixes them up.
+            Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
+            Err(TryLockError::Error(cause)) => return Err(LockError::Lock(cause)),
+        }
+        // Who had it locked before may have given it its last name in between.
+        if is_at(&file, part).map_err(LockError::Lock)? {
+            return Ok(file);
+        }
+    }
+}
+
+#[cfg(unix)]
+fn has_no_locks(cause: &io::Error) -> bool {
+    let code = Some(rustix::io::Errno::NOLCK.raw_os_error());
+    cause.kind() == io::ErrorKind::Unsupported || cause.raw_os_error() == code
+}
+
+#[cfg(not(unix))]
+fn has_no_locks(cause: &io::Error) -> bool {
+    cause.kind() == io::ErrorKind::Unsupported
+}
+
+/// Whether `file` is what stands at `path`.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt as _;
+    let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
+    let own = identity(file.metadata()?);
+    match path.metadata() {
+        Ok(there) => Ok(identity(there) == own),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether `file` is what stands at `path`: here, an open file cannot be renamed.
+#[cfg(not(unix))]
+#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
+fn is_at(_file: &File, _path: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_has_its_old_content_until_it_is_finished() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        write(&path, "old").unwrap();
+        let mut file = WholeFile::create(&path).unwrap();
+        file.write_all(b"new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        file.finish().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(names(folder.path()), ["result.json"]);
+    }
+
+    #[test]
+    fn what_could_not_be_written_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        write(&path, "old").unwrap();
+        let full = |file: &mut WholeFile| {
+            file.write_all(b"half")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        };
+        assert_eq!(fill(&path, full).unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(
+            (fs::read_to_string(&path).unwrap().as_str(), names(folder.path())),
+            ("old", vec!["result.json".into()])
+        );
+    }
+
+    #[test]
+    fn rests_of_an_earlier_attempt_do_not_get_into_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        fs::write(partial(&path), "a long rest of an attempt that was killed").unwrap();
+        write(&path, "new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    }
+
+    #[test]
+    fn two_do_not_write_one_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        let first = WholeFile::create(&path).unwrap();
+        let error = WholeFile::create(&path).unwrap_err();
+        assert!(error.to_string().contains("another process is writing it"), "{error}");
+        drop(first);
+        assert!(WholeFile::create(&path).is_ok());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_got_its_last_name_is_not_the_one_that_is_locked() {
+        let folder = tempfile::tempdir().unwrap();
+        let [part, whole] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
+        let file = lock(&part).unwrap();
+        assert!(is_at(&file, &part).unwrap());
+        fs::rename(&part, &whole).unwrap();
+        assert!(!is_at(&file, &part).unwrap());
+        fs::write(&part, "").unwrap();
+        assert!(!is_at(&file, &part).unwrap());
+        assert!(has_no_locks(&io::Error::from(rustix::io::Errno::NOLCK)));
+    }
+}

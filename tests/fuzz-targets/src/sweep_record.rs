@@ -1,0 +1,89 @@
+//! Results of a sweep that was interrupted, cut or damaged: it goes on after whole lines in the order of the runs, keeps
+//! them as they are, and what it adds is what a fresh sweep has there; or it says why not and leaves those lines alone.
+
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+use std::sync::atomic::AtomicBool;
+
+use videg::scenario::CaseFile;
+use videg::sweep::{self, BuiltIn, Engine, Job, Report, Sweep, SweepError, SweepFile, Vary, Watch};
+
+use crate::{Target, sweeps};
+
+pub(crate) const TARGET: Target = Target { name: "sweep_record", check, seeds };
+
+/// Four short runs, the third of which fails.
+const VARY: &str = "membrane.restitution=0.3,0.5,1.5,0.7";
+
+struct Own {
+    sweep: Sweep,
+    engine: Engine,
+    /// The results, lines with their ends.
+    lines: Vec<Vec<u8>>,
+}
+
+static OWN: LazyLock<Own> = LazyLock::new(|| {
+    let case = CaseFile { until: Some(0.5), ..CaseFile::default() };
+    let file = SweepFile { case, vary: vec![Vary::parse(VARY).unwrap()], ..SweepFile::default() };
+    let sweep = sweeps::resolve(file, Vec::new()).unwrap();
+    let engine = Engine::BuiltIn(Box::new(BuiltIn::new(&sweep).unwrap()));
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &sweep, &engine).unwrap();
+    let lines = lines(&fs::read(folder.path().join("sweep.csv")).unwrap());
+    Own { sweep, engine, lines }
+});
+
+struct Nobody;
+
+impl Watch for Nobody {
+    fn show(&mut self, _done: u64, _total: u64) {}
+}
+
+fn run(folder: &Path, sweep: &Sweep, engine: &Engine) -> Result<Report, SweepError> {
+    let job = Job { folder, shard: None, jobs: 1, fresh: false, stop: &AtomicBool::new(false) };
+    sweep::run(sweep, engine, &job, &mut Nobody)
+}
+
+fn lines(bytes: &[u8]) -> Vec<Vec<u8>> {
+    bytes.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect()
+}
+
+fn check(bytes: &[u8]) -> bool {
+    let Own { sweep, engine, lines: whole } = &*OWN;
+    let folder = tempfile::tempdir().unwrap();
+    let [part, path] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
+    fs::write(folder.path().join("sweep.json"), sweep.document()).unwrap();
+    fs::write(&part, bytes).unwrap();
+    let outcome = run(folder.path(), sweep, engine);
+    let results = lines(&fs::read(if path.exists() { &path } else { &part }).unwrap());
+    let kept = results.iter().zip(lines(bytes)).take_while(|(one, other)| **one == *other).count();
+    match outcome {
+        Ok(report) => {
+            let resumed = usize::try_from(report.resumed_from).unwrap();
+            assert!(report.is_complete() && results.len() == whole.len(), "{report:?}");
+            assert!(resumed == 0 || resumed < kept, "{resumed} lines go on from, {kept} are as they were");
+            assert_eq!(results[0], whole[0]);
+            assert_eq!(sweeps::rows(&results.concat()), whole.len() - 1, "a line is not a row");
+            assert_eq!(results[resumed + 1..], whole[resumed + 1..]);
+            for (number, line) in results[1..].iter().enumerate() {
+                assert!(line.starts_with(format!("{number},").as_bytes()), "line {number}");
+            }
+            resumed > 0
+        }
+        // Of another build of the model, or cells in the midst that are not of their type.
+        Err(error @ (SweepError::Content { .. } | SweepError::Parquet { .. })) => {
+            assert!(kept > 1, "{error}");
+            true
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Whole results, and results cut between and within lines.
+fn seeds() -> Vec<Vec<u8>> {
+    let all = OWN.lines.concat();
+    let heading = OWN.lines[0].len();
+    let two = heading + OWN.lines[1].len() + OWN.lines[2].len();
+    [two - 1, two, two + 5, all.len() - 1, all.len()].map(|length| all[..length].to_vec()).to_vec()
+}

@@ -1,0 +1,53 @@
+//! Case files, sweep files, and results of sweeps that somebody else has left.
+
+use super::stage::{Input, refused};
+
+fn case(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
+    refused(what, &["simulate", "--output", "out", "--case-file", "evil.toml"], vec![("evil.toml", text.into())])
+}
+
+fn sweep(what: &'static str, text: &str) -> Input {
+    refused(what, &["sweep", "evil.toml", "--output", "out/sweep"], vec![("evil.toml", text.into())])
+}
+
+fn merge(what: &'static str, files: Vec<(&'static str, Vec<u8>)>) -> Input {
+    refused(what, &["sweep", "merge", "shards", "--output", "out/merged"], files)
+}
+
+/// All of them.
+pub fn inputs() -> Vec<Input> {
+    let endless =
+        refused("a file without end", &["simulate", "--output", "out", "--case-file", "/dev/zero"], Vec::new());
+    vec![
+        case("no TOML", "case = "),
+        case("not UTF-8", b"case = \"\xff\"".as_slice()),
+        case("an unknown key", "untill = 3"),
+        case("a list in place of a number", "[set]\nball.mass = [1, 2]"),
+        case("brackets nested 100,000 deep", format!("case = {}", "[".repeat(100_000))),
+        case("tables nested 100,000 deep", format!("[set]\n{} = 1", vec!["a"; 100_000].join("."))),
+        case("a setting that commands the terminal", "[set]\n\"\\u001b[2J\" = 1"),
+        case("a number out of range", "[set]\nmembrane.restitution = 7"),
+        endless,
+        sweep("an unknown design", "design = 'square'"),
+        sweep("a negative number of points", "points = -1"),
+        sweep("values that are none", "[vary]\na.b = 3"),
+        sweep("a variable that is none", "[vary]\n\"../../canary\" = { from = 0, to = 1, count = 3 }"),
+        sweep("something recorded that is no variable", "record = ['/etc/passwd']"),
+        merge("no shard", Vec::new()),
+        merge("shards of another sweep", vec![("shards/sweep.json", b"{}".to_vec())]),
+        merge("a document that is none", vec![("shards/sweep.json", b"[[[[".to_vec())]),
+        refused(
+            "results of another sweep in the folder",
+            &["sweep", "--vary", "membrane.restitution=0.3:0.9:2", "--until", "1", "--output", "out/results"],
+            vec![
+                ("out/results/sweep.json", b"{\"videg\":\"0\"}".to_vec()),
+                ("out/results/sweep.csv", b"run\n0\n".to_vec()),
+            ],
+        ),
+        refused(
+            "a file in the place of the folder for results",
+            &["simulate", "--until", "1", "--output", "out/kept.txt"],
+            Vec::new(),
+        ),
+    ]
+}

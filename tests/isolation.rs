@@ -1,0 +1,369 @@
+//! Isolated FMUs: the same numbers as in one process, and whatever they do to their own process is told and harms no other.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+use videg::fmi::{Bounds, FmiError, Fmu, Instance, Isolation, Logging, Status};
+use videg::package::{Options, build_all};
+
+#[path = "hostile/toy.rs"]
+mod toy;
+
+fn isolation() -> Isolation {
+    let bounds = Bounds { time: Some(Duration::from_secs(20)), memory: Some(1 << 30) };
+    Isolation { program: env!("CARGO_BIN_EXE_videg").into(), bounds }
+}
+
+fn within(seconds: f64) -> Isolation {
+    Isolation { bounds: Bounds { time: Some(Duration::from_secs_f64(seconds)), memory: None }, ..isolation() }
+}
+
+/// The toy with these macros, isolated.
+fn toy(macros: &[&str]) -> (TempDir, Fmu) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = toy::fmu(folder.path(), "toy.fmu", macros);
+    let fmu = Fmu::open_isolated(&path, &isolation()).unwrap();
+    (folder, fmu)
+}
+
+fn initialised(fmu: &Fmu) -> Instance {
+    let mut instance = fmu.instantiate("toy", Logging::default()).unwrap();
+    instance.setup_experiment(0.0, None, None).unwrap();
+    instance.enter_initialization_mode().unwrap();
+    instance.exit_initialization_mode().unwrap();
+    instance
+}
+
+/// What a step says of an FMU that ends in it.
+fn end_in_step(macros: &[&str]) -> String {
+    let (_folder, fmu) = toy(macros);
+    let mut instance = initialised(&fmu);
+    let error = instance.do_step(1.25, 0.25).unwrap_err();
+    assert!(matches!(error, FmiError::Isolated(_)), "{error}");
+    let again = instance.get_by_name("y").unwrap_err();
+    assert_eq!(again.to_string(), error.to_string(), "later calls tell the same");
+    error.to_string()
+}
+
+#[test]
+fn a_crash_names_fmu_call_time_signal_and_what_was_logged() {
+    let text =
+        end_in_step(&["STEP=LOG(3, \"%s\", \"about to fall\"); puts(\"and printed\"); fflush(stdout); abort();"]);
+    assert!(
+        text.contains("toy.fmu: fmi2DoStep of 'toy' at t = 1.25 s ended its process (signal: 6 (SIGABRT)"),
+        "{text}"
+    );
+    assert!(text.contains("memory limit 1024 MiB"), "{text}");
+    assert!(text.ends_with("the FMU had logged: about to fall; it had printed: and printed"), "{text}");
+}
+
+#[test]
+fn an_exit_is_told_with_its_code() {
+    let text = end_in_step(&["STEP=exit(0);"]);
+    assert!(text.contains("ended its process (exit status: 0"), "{text}");
+}
+
+#[test]
+fn a_call_without_end_is_ended_at_the_time_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = toy::fmu(folder.path(), "toy.fmu", &["STEP=for (;;) LOG(1, \"%s\", \"again\");"]);
+    let fmu = Fmu::open_isolated(&path, &within(0.5)).unwrap();
+    let error = initialised(&fmu).do_step(0.0, 1.0).unwrap_err().to_string();
+    assert!(error.contains("fmi2DoStep of 'toy' at t = 0 s took longer than the time limit of 0.5 s"), "{error}");
+    assert!(error.contains("the FMU had logged: again"), "{error}");
+}
+
+#[test]
+fn memory_is_bounded() {
+    let text = end_in_step(&["STEP=for (;;) memset(malloc(1 << 20), 1, 1 << 20);"]);
+    assert!(text.contains("(signal: 11 (SIGSEGV); memory limit 1024 MiB)"), "{text}");
+}
+
+#[test]
+fn a_library_that_falls_while_it_is_loaded_takes_down_its_process_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = toy::fmu(folder.path(), "toy.fmu", &["LOADING=abort();"]);
+    let error = Fmu::open_isolated(&path, &isolation()).unwrap_err().to_string();
+    assert!(error.contains("toy.fmu: loading the library ended its process (signal: 6 (SIGABRT)"), "{error}");
+}
+
+#[test]
+fn falls_while_it_is_instantiated_freed_and_unloaded_are_told() {
+    let (_folder, fmu) = toy(&["INSTANTIATE=raise(SIGILL);"]);
+    let error = fmu.instantiate("toy", Logging::default()).unwrap_err().to_string();
+    assert!(error.contains("fmi2Instantiate of 'toy' ended its process (signal: 4 (SIGILL)"), "{error}");
+    let (_folder, fmu) = toy(&["FREE=raise(SIGFPE);"]);
+    let error = initialised(&fmu).free().unwrap_err().to_string();
+    assert!(error.contains("fmi2FreeInstance of 'toy' ended its process (signal: 8 (SIGFPE)"), "{error}");
+    drop(initialised(&fmu)); // tells nobody, and harms nobody
+    let (_folder, fmu) = toy(&["UNLOADING=abort();"]);
+    let error = initialised(&fmu).free().unwrap_err().to_string();
+    assert!(error.contains("unloading the library of 'toy' ended its process (signal: 6"), "{error}");
+}
+
+#[test]
+fn what_the_fmu_prints_closes_and_returns_disturbs_no_message() {
+    let (_folder, fmu) = toy(&["STEP=puts(\"noise\"); fflush(stdout); close(0); close(1); close(2); return 77;"]);
+    let mut instance = initialised(&fmu);
+    assert_eq!(instance.do_step(0.0, 1.0).unwrap_err().status(), Some(Status::Unknown(77)));
+    assert_eq!(instance.do_step(0.0, 1.0).unwrap_err().status(), Some(Status::Unknown(77)));
+    instance.free().unwrap();
+}
+
+#[test]
+fn closing_every_pipe_is_told() {
+    let text = end_in_step(&["STEP=for (int i = 0; i < 64; ++i) close(i); pause();"]);
+    assert!(text.contains("closed the pipes of its process, which was ended"), "{text}");
+}
+
+#[test]
+fn messages_on_the_pipe_that_are_none_are_told() {
+    let write = "STEP=for (int i = 3; i < 64; ++i) write(i, \"\\xff\\xff\\xff\\xff garbage\", 12); pause();";
+    let text = end_in_step(&[write]);
+    assert!(text.contains("(what it sent: a message of 4294967295 bytes is announced, allowed are"), "{text}");
+}
+
+#[test]
+fn a_child_that_holds_the_pipes_open_delays_nothing() {
+    let begun = Instant::now();
+    let text = end_in_step(&["STEP=if (!fork()) { setsid(); sleep(5); _exit(0); } _exit(3);"]);
+    assert!(text.contains("(exit status: 3"), "{text}");
+    assert!(begun.elapsed() < Duration::from_secs(5), "waited for the child");
+}
+
+#[test]
+fn ill_formed_messages_are_kept_bounded_and_in_order() {
+    let step = "STEP=LOG(1, NULL); LOG(1, \"%s\", NULL); LOG(77, \"\\xff\\xfe\"); \
+                char *long_text = malloc(1 << 20); memset(long_text, 'x', 1 << 20); long_text[(1 << 20) - 1] = 0; LOG(1, long_text);";
+    let (_folder, fmu) = toy(&[step]);
+    let (sender, receiver) = mpsc::channel();
+    let mut instance = fmu.instantiate("toy", Logging::to(move |record| sender.send(record.clone()).unwrap())).unwrap();
+    instance.setup_experiment(0.0, None, None).unwrap();
+    instance.do_step(0.0, 1.0).unwrap();
+    let found: Vec<_> = receiver.try_iter().map(|record| record.message).collect();
+    assert_eq!(found, [String::new(), String::new(), "\u{fffd}\u{fffd}".to_owned(), "x".repeat(4096)]);
+    assert_eq!(instance.messages().iter().map(|record| record.message.clone()).collect::<Vec<_>>(), found);
+}
+
+#[test]
+fn states_go_by_number_and_back() {
+    let (_folder, fmu) = toy(&[]);
+    let mut instance = initialised(&fmu);
+    let y = |instance: &Instance| instance.get_by_name("y").unwrap().to_string();
+    instance.do_step(0.0, 1.0).unwrap();
+    let mut state = instance.save_state().unwrap();
+    instance.do_step(1.0, 1.0).unwrap();
+    assert_eq!(y(&instance), "2");
+    instance.restore_state(&state).unwrap();
+    assert_eq!(y(&instance), "1");
+    instance.do_step(2.0, 1.0).unwrap();
+    instance.save_state_into(&mut state).unwrap();
+    let bytes = instance.serialize_state(&state).unwrap();
+    instance.do_step(0.0, 0.5).unwrap();
+    let other = instance.deserialize_state(&bytes).unwrap();
+    instance.restore_state(&other).unwrap();
+    assert_eq!(y(&instance), "3");
+    drop(instance); // before its states
+}
+
+#[test]
+fn a_state_of_absurd_size_is_refused() {
+    for isolated in [true, false] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = toy::fmu(folder.path(), "toy.fmu", &["SIZE=(size_t)1 << 62"]);
+        let fmu = if isolated { Fmu::open_isolated(&path, &isolation()) } else { Fmu::open(&path) }.unwrap();
+        let instance = initialised(&fmu);
+        let state = instance.save_state().unwrap();
+        let error = instance.serialize_state(&state).unwrap_err().to_string();
+        let wanted = "the FMU asks for 4611686018427387904 bytes, allowed are 268435456";
+        assert!(error.contains(wanted), "{error}");
+    }
+}
+
+#[test]
+fn a_fatal_error_of_one_instance_concerns_no_other() {
+    let (_folder, fmu) = toy(&["STEP=if (time > 0) return 4;"]);
+    let (mut one, mut other) = (initialised(&fmu), initialised(&fmu));
+    assert_eq!(one.do_step(1.0, 1.0).unwrap_err().status(), Some(Status::Fatal));
+    assert!(matches!(one.do_step(1.0, 1.0).unwrap_err(), FmiError::Dead { .. }));
+    other.do_step(0.0, 1.0).unwrap();
+}
+
+#[test]
+fn nothing_is_left_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let temporary = folder.path().join("temporary");
+    std::fs::create_dir(&temporary).unwrap();
+    let path = toy::fmu(folder.path(), "toy.fmu", &["STEP=FILE *f = fopen(\"left.txt\", \"w\"); fclose(f); abort();"]);
+    let output = Command::new(env!("CARGO_BIN_EXE_videg"))
+        .args(["fmu", "check"])
+        .arg(&path)
+        .env("TMPDIR", &temporary)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0, "the unpacked folder is gone");
+    assert!(!folder.path().join("left.txt").exists(), "it works in its own folder");
+}
+
+#[test]
+fn a_worker_whose_host_is_killed_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let mark = folder.path().join("pid");
+    let step = format!(
+        "STEP=FILE *f = fopen(\"{}\", \"w\"); fprintf(f, \"%d\", getpid()); fclose(f); for (;;);",
+        mark.display()
+    );
+    let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
+    let mut host = Command::new(env!("CARGO_BIN_EXE_videg")).args(["fmu", "check"]).arg(&path).spawn().unwrap();
+    let pid = wait_for(|| std::fs::read_to_string(&mark).ok().filter(|text| !text.is_empty()));
+    assert!(Path::new("/proc/self").exists());
+    host.kill().unwrap();
+    host.wait().unwrap();
+    let process = PathBuf::from("/proc").join(&pid);
+    let is_gone = || std::fs::read_to_string(process.join("stat")).map_or(true, |stat| stat.contains(") Z "));
+    wait_for(|| is_gone().then_some(()));
+}
+
+/// The workers of a process.
+fn workers(host: u32) -> Vec<String> {
+    let children = std::fs::read_to_string(format!("/proc/{host}/task/{host}/children")).unwrap_or_default();
+    let is_worker = |pid: &&str| {
+        std::fs::read_to_string(format!("/proc/{pid}/cmdline")).is_ok_and(|line| line.contains("fmu-worker"))
+    };
+    children.split_whitespace().filter(is_worker).map(str::to_owned).collect()
+}
+
+#[test]
+fn a_co_simulation_whose_worker_is_killed_keeps_the_series_up_to_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let host = Command::new(env!("CARGO_BIN_EXE_videg"))
+        .args(["cosim", "--isolate", "--until", "300", "--output", "out"])
+        .current_dir(folder.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let part = folder.path().join("out/timeseries.csv.part");
+    wait_for(|| std::fs::metadata(&part).ok().filter(|file| file.len() > 10_000));
+    for worker in workers(host.id()) {
+        assert!(Command::new("kill").args(["-KILL", &worker]).status().unwrap().success());
+    }
+    let output = host.wait_with_output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("of 'harvester' at t = ") && stderr.contains("(signal: 9 (SIGKILL)"), "{stderr}");
+    assert!(stderr.contains("the time series up to there is in out/timeseries.csv.part"), "{stderr}");
+    assert!(std::fs::read_to_string(part).unwrap().lines().count() > 10);
+}
+
+fn wait_for<T>(mut what: impl FnMut() -> Option<T>) -> T {
+    let end = Instant::now() + Duration::from_secs(100);
+    loop {
+        if let Some(found) = what() {
+            return found;
+        }
+        assert!(Instant::now() < end, "it takes too long");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn videg(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_videg")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+#[test]
+fn a_sweep_goes_on_after_a_run_that_took_its_process_down() {
+    let folder = tempfile::tempdir().unwrap();
+    let crash = "STEP=static int n; if (time > 0.35) { LOG(3, \"%s\", \"too late\"); raise(SIGFPE); }";
+    toy::fmu(folder.path(), "toy.fmu", &[crash]);
+    let sweep = ["sweep", "--fmu", "toy.fmu", "--vary", "gain=1,2,3", "--record", "y", "--output", "out"];
+    let output = videg(folder.path(), &[&sweep[..], &["--until", "1"]].concat());
+    assert_eq!(output.status.code(), Some(1), "all runs failed: {output:?}");
+    let results = std::fs::read_to_string(folder.path().join("out/sweep.csv")).unwrap();
+    let told = "toy.fmu: fmi2DoStep of 'sweep' at t = 0.4 s ended its process (signal: 8 (SIGFPE)";
+    assert_eq!(results.matches(told).count(), 3, "{results}");
+    let output = videg(folder.path(), &[&sweep[..], &["--until", "0.3", "--fresh"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
+/// Every file of two runs, but for what tells them apart.
+fn same_files(one: &Path, other: &Path, names: &[&str]) {
+    for name in names {
+        let read = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
+        assert!(read(one) == read(other), "{name} differs");
+    }
+}
+
+#[test]
+fn our_fmus_give_the_same_bytes_isolated_or_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let cosim = ["cosim", "--circuit", "fmu", "--until", "3", "--adaptive", "1e-3", "--output"];
+    for (output, option) in [("here", "--no-isolate"), ("isolated", "--isolate")] {
+        let run = videg(folder.path(), &[&cosim[..], &[output, option]].concat());
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+    }
+    same_files(&folder.path().join("here"), &folder.path().join("isolated"), &["timeseries.csv", "figure.svg"]);
+    let fmu =
+        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let check = |option| videg(folder.path(), &["fmu", "check", fmu.to_str().unwrap(), option]);
+    let (here, isolated) = (check("--no-isolate"), check("--isolate"));
+    assert_eq!((here.status.code(), isolated.status.code()), (Some(0), Some(0)));
+    assert_eq!(here.stdout, isolated.stdout);
+    let sweep = ["sweep", "--fmu", fmu.to_str().unwrap(), "--vary", "membrane.restitution=0.3:0.9:3", "--until", "2"];
+    for (output, option) in [("sweep-here", "--no-isolate"), ("sweep-isolated", "--isolate")] {
+        let run =
+            videg(folder.path(), &[&sweep[..], &["--record", "ball.position", "--output", output, option]].concat());
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+    }
+    same_files(
+        &folder.path().join("sweep-here"),
+        &folder.path().join("sweep-isolated"),
+        &["sweep.csv", "sweep.parquet"],
+    );
+}
+
+/// Whether a check of this FMU runs a worker.
+fn is_isolated(path: &Path, arguments: &[&str]) -> bool {
+    let mut arguments = [&["fmu", "check", path.to_str().unwrap()][..], arguments].concat();
+    arguments.extend(["--memory-limit", "1"]); // with which no worker gets anywhere
+    videg(path.parent().unwrap(), &arguments).status.code() == Some(2)
+}
+
+#[test]
+fn only_fmus_of_this_project_run_in_this_process_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let ours =
+        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let changed = folder.path().join("changed.fmu");
+    change_library(&ours, &changed);
+    let foreign = toy::fmu(folder.path(), "toy.fmu", &[]);
+    for (path, isolated) in [(&ours, false), (&changed, true), (&foreign, true)] {
+        assert_eq!(is_isolated(path, &[]), isolated, "{}", path.display());
+        assert!(is_isolated(path, &["--isolate"]));
+        assert!(!is_isolated(path, &["--no-isolate"]), "{}", path.display());
+    }
+}
+
+/// Copies an FMU with a byte more at the end of its library.
+fn change_library(from: &Path, to: &Path) {
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(from).unwrap()).unwrap();
+    let mut entries = Vec::new();
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index(index).unwrap();
+        let name = entry.name().unwrap().into_owned();
+        let mut bytes = Vec::new();
+        std::io::Read::read_to_end(&mut entry, &mut bytes).unwrap();
+        if name.starts_with("binaries/") {
+            bytes.push(0);
+        }
+        entries.push((name, bytes));
+    }
+    let entries: Vec<_> = entries.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect();
+    std::fs::write(to, toy::zipped(&entries)).unwrap();
+}

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# A release made on this machine, as far as that goes: libraries for Linux and Windows, one that stands in for macOS, merged into
+# FMUs, checked, put inside the program, packed, summed up, and run without source tree and Cargo. Then `cargo install`, as
+# README.md has it. Installs what is missing to build for Windows (mingw-w64, the Rust target).
+#
+# Environment: OLD_GLIBC=1 builds for Linux as released, which takes zig and a second build of everything.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+work=$built/release-test
+rm -rf "$work"
+mkdir -p "$work/libraries"
+version=$(release/version.sh)
+
+echo "libraries"
+if ! command -v x86_64-w64-mingw32-gcc >/dev/null; then
+    as_root=()
+    [[ $(id -u) -eq 0 ]] || as_root=(sudo)
+    "${as_root[@]}" apt-get install --quiet=2 --yes --no-install-recommends gcc-mingw-w64-x86-64 >/dev/null
+fi
+[[ -d $(rustc --print sysroot)/lib/rustlib/x86_64-pc-windows-gnu/lib ]] || rustup target add x86_64-pc-windows-gnu
+release/libraries.sh win64 "$work/libraries"
+program=host
+if [[ -n ${OLD_GLIBC:-} ]]; then
+    PATH="$(release/zig.sh):$PATH"
+    program=linux-x86_64
+    release/libraries.sh linux64 "$work/libraries"
+else
+    release/libraries.sh host "$work/libraries"
+fi
+mkdir "$work/libraries/darwin64"
+for fmu in VibroImpactHarvester HarvestingCircuit; do
+    python3 tests/release/fake_macho.py "$work/libraries/darwin64/lib$fmu.dylib"
+done
+
+echo "FMUs for all platforms"
+cargo build --quiet --release --locked --bin videg
+export VIDEG=$built/release/videg
+release/fmus.sh "$work/libraries" "$work/fmu"
+release/check-fmus.sh "$work/fmu" linux64 win64 darwin64
+if release/check-fmus.sh "$work/fmu" linux64 win64 2>"$work/refused"; then
+    echo "an FMU with a library too many was not refused" >&2
+    exit 1
+fi
+rm "$work/libraries/win64/HarvestingCircuit.dll"
+if release/fmus.sh "$work/libraries" "$work/incomplete" 2>"$work/refused"; then
+    echo "FMUs with a library missing were packaged" >&2
+    exit 1
+fi
+cat "$work/refused"
+
+echo "program with these FMUs inside"
+cp "$VIDEG" "$work/plain"
+release/program.sh "$program" "$work/fmu" "$work/program"
+python3 release/notices.py >"$work/THIRD-PARTY.md"
+release/pack.sh linux-x86_64 "$work/program/videg" "$work/fmu" "$work/THIRD-PARTY.md" "$work/packed"
+cp "$work"/fmu/*.fmu "$work/packed/"
+release/checksums.sh "$work/packed"
+(cd "$work/packed" && sha256sum --check --quiet SHA256SUMS)
+PLAIN=$work/plain release/standalone.sh "$work/packed/videg-$version-linux-x86_64.tar.gz"
+ls -l "$work/packed" "$work/program" "$work/plain"
