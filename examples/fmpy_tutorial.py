@@ -8,7 +8,8 @@
 # `matplotlib`. `./test.sh setup` installs the versions that this page was made with into `.venv`; `source .venv/bin/activate`
 # turns them on.
 #
-# The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree.
+# The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree,
+# where `videg` stands for `cargo run --release --` unless it is on the PATH (`export PATH=$PWD/target/release:$PATH`).
 #
 # ## Build the FMUs
 

@@ -5,7 +5,8 @@
 #
 # You take the capacitances of the harvester into a circuit of your own in ngspice, see what it gains, and hold it against the
 # embedded solver. It takes ngspice (Debian: `apt install ngspice libngspice0`) and, for the sweep at the end, Python with
-# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree.
+# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree, where
+# `videg` stands for `cargo run --release --` unless it is on the PATH (`export PATH=$PWD/target/release:$PATH`).
 #
 # The mechanics do not feel the circuit under the paper's contact law, so C(t) can be computed first and the circuit later, as often
 # as you like.
