@@ -27,7 +27,7 @@ static OWN: LazyLock<Own> = LazyLock::new(|| {
     let case = CaseFile { until: Some(0.5), ..CaseFile::default() };
     let file = SweepFile { case, vary: vec![Vary::parse(VARY).unwrap()], ..SweepFile::default() };
     let sweep = sweeps::resolve(file, Vec::new()).unwrap();
-    let engine = Engine::BuiltIn(Box::new(BuiltIn::new(&sweep).unwrap()));
+    let engine = Engine::BuiltIn(Box::new(BuiltIn::new(&sweep).unwrap().unwrap()));
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &sweep, &engine).unwrap();
     let lines = lines(&fs::read(folder.path().join("sweep.csv")).unwrap());
