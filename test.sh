@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy fuzz scale conformance browser book)
+readonly STAGES=(setup lint unit valgrind fmpy scale conformance browser book)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -17,7 +17,7 @@ readonly REQUIREMENTS=(
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
 # Not among those that run by default: they take long, install Wine and cross compilers, or need a nightly compiler.
-readonly EXTRA_STAGES=(conformance-slow portability soak sanitizers release coverage)
+readonly EXTRA_STAGES=(conformance-slow portability soak fuzz sanitizers release coverage)
 
 usage() {
     cat <<'EOF'
@@ -29,7 +29,6 @@ Runs the stages named, or all of them in this order:
   unit         the tests of all Rust packages
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
-  fuzz         each fuzz target for 20 s, where there is a nightly compiler; kept inputs run in the stage unit anyway
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
@@ -43,6 +42,7 @@ Only when named:
                conformance with fmi-sim, too, which takes ten minutes to build
   soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
+  fuzz         each fuzz target for 20 s, from inputs that the stage unit replays anyway; needs a nightly compiler
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
   release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
                licences of the dependencies; installs mingw and builds cargo-deny
@@ -221,10 +221,7 @@ has_nightly() {
 
 # A record of its own: the one in git is of long runs.
 stage_fuzz() {
-    if ! has_nightly; then
-        echo "no nightly compiler: nothing is fuzzed, kept inputs are replayed in the stage unit"
-        return
-    fi
+    has_nightly || fail "no nightly compiler, which fuzzing needs (rustup toolchain install nightly)"
     PATH="$PWD/target/tools/bin:$PATH" has_command cargo-fuzz ||
         run cargo install --quiet --locked --root target/tools cargo-fuzz --version 0.13.2
     run env RECORD=/dev/null fuzz/run.sh 20
