@@ -3,7 +3,8 @@
 interface.py record   writes the variables of the model descriptions into release/interface.txt: part of a release
 interface.py check    fails if one of them is gone or another thing now, while the version says that nothing broke
 
-A variable is its name, value reference, type, causality and unit. New ones break nothing.
+A variable is its name, value reference, type, causality and unit. New ones break nothing at the end of the table. In the middle
+they move the value references of those behind them, which masters may have compiled in.
 """
 
 import sys
@@ -38,6 +39,23 @@ def promised(text: str) -> list[str]:
     return [major] if major != "0" else [major, minor]
 
 
+def sort_out(missing: list[str], now: list[str]) -> tuple[list[str], list[str]]:
+    """Of the lines that are missing: what became of those with another value reference alone, and the rest."""
+    references = {}
+    for line in now:
+        fmu, name, reference, rest = line.split(" ", 3)
+        references[fmu, name, rest] = reference
+    moved, gone = [], []
+    for line in missing:
+        fmu, name, reference, rest = line.split(" ", 3)
+        found = references.get((fmu, name, rest))
+        if found is None:
+            gone.append(line)
+        else:
+            moved.append(f"  {fmu} {name} had value reference {reference}, now {found}\n")
+    return moved, gone
+
+
 def check() -> None:
     if not RECORD.exists():
         print("nothing released yet, so no variable is promised")
@@ -47,10 +65,15 @@ def check() -> None:
     if promised(before) != promised(version()):
         print(f"version {version()} may break what {before} promised")
         return
-    gone = sorted(set(recorded) - set(variables()))
+    now = variables()
+    moved, gone = sort_out([line for line in recorded if line not in now], now)
+    message = f"interface.py: version {version()} breaks what {before} promised"
     if gone:
-        lines = "\n".join(f"  {line}" for line in gone)
-        sys.exit(f"interface.py: version {version()} breaks what {before} promised; these variables are gone or changed:\n{lines}")
+        message += "; these variables are gone or changed:\n" + "".join(f"  {line}\n" for line in gone)
+    if moved:
+        message += "; value references moved, new variables go to the end of the table:\n" + "".join(moved)
+    if gone or moved:
+        sys.exit(message.rstrip("\n"))
     print(f"all {len(recorded)} variables of version {before} are as they were")
 
 

@@ -16,8 +16,6 @@ tar -xzf "$archive" -C "$work" --strip-components 1
 cat >"$work/jobs.sh" <<'END'
 set -eu
 root=$1
-# An empty folder in place of the source tree, for this process and those that it starts.
-mount -t tmpfs none "$root"
 [ -z "$(ls -A "$root")" ] || { echo "the source tree is still there" >&2; exit 1; }
 ! command -v cargo >/dev/null || { echo "cargo is still there" >&2; exit 1; }
 mkdir user
@@ -48,8 +46,16 @@ if [ -f ../plain ]; then
     esac
 fi
 END
+# An empty folder in place of the source tree, for this process and those that it starts.
+# shellcheck disable=SC2016 # The inner shell takes its own arguments.
+hide='mount -t tmpfs none "$1" && shift && exec "$@"'
+jobs=(env -i PATH=/usr/bin:/bin HOME="$work" sh jobs.sh "$root")
 as_root=(unshare --map-root-user --mount)
-"${as_root[@]}" true 2>/dev/null || as_root=(sudo unshare --mount)
+if ! "${as_root[@]}" true 2>/dev/null; then
+    as_root=(sudo unshare --mount)
+    # Back to the user, who could not remove the files of root afterwards.
+    jobs=(setpriv --reuid "$(id -u)" --regid "$(id -g)" --clear-groups "${jobs[@]}")
+fi
 cd "$work"
-"${as_root[@]}" env -i PATH=/usr/bin:/bin HOME="$work" sh jobs.sh "$root"
+"${as_root[@]}" sh -c "$hide" sh "$root" "${jobs[@]}"
 echo "$(basename "$archive") works without its source tree"

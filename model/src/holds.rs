@@ -183,7 +183,12 @@ mod tests {
     use core::f64::consts::TAU;
     use proptest::prelude::*;
 
+    /// Few where Miri interprets them, which takes far longer.
+    const CASES: u32 = if cfg!(miri) { 2 } else { 256 };
+
     proptest! {
+        #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
+
         #[test]
         fn a_block_adds_up_the_closed_forms_of_its_hold_intervals(
             intensity in 0.0_f64..20.0, frequency in 0.5_f64..50.0, hold in prop_oneof![1e-6_f64..1e-4, 1e-3..2e-2],

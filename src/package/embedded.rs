@@ -32,9 +32,9 @@ const ARCHIVES: Option<[&[u8]; FMUS.len()]> =
 const ARCHIVES: Option<[&[u8]; FMUS.len()]> = None;
 
 /// The model descriptions that this program was compiled with, in the order of [`FMUS`].
-const DESCRIPTIONS: [&[u8]; FMUS.len()] = [
-    include_bytes!("../../modelDescription/VibroImpactHarvester.xml"),
-    include_bytes!("../../modelDescription/HarvestingCircuit.xml"),
+const DESCRIPTIONS: [&str; FMUS.len()] = [
+    include_str!("../../modelDescription/VibroImpactHarvester.xml"),
+    include_str!("../../modelDescription/HarvestingCircuit.xml"),
 ];
 
 /// The archives inside the program, if it has any and is to use them.
@@ -68,16 +68,22 @@ pub(super) fn write(archives: [&[u8]; FMUS.len()], added: &[AddedBinary], output
         .collect()
 }
 
-fn entries(fmu: &FmuPackage, archive: &[u8], description: &[u8], added: &[AddedBinary]) -> Result<Entries> {
+fn entries(fmu: &FmuPackage, archive: &[u8], description: &str, added: &[AddedBinary]) -> Result<Entries> {
     let refuse = |why: String| PackageError::Embedded { identifier: fmu.identifier, why };
     let mut entries = Entries::read(archive).map_err(|cause| refuse(format!("is broken: {cause}")))?;
-    if entries.bytes("modelDescription.xml") != Some(description) {
+    if !entries.bytes("modelDescription.xml").is_some_and(|found| same_text(found, description.as_bytes())) {
         return Err(refuse("has another model description; package the FMUs and compile videg again".to_owned()));
     }
     for binary in added.iter().filter(|binary| binary.identifier == fmu.identifier) {
         entries.add_file(&binary.platform.entry(fmu.identifier), &binary.path);
     }
     Ok(entries)
+}
+
+/// Whether two descriptions, GUID included, differ in nothing but how their lines end, which a checkout may change.
+fn same_text(a: &[u8], b: &[u8]) -> bool {
+    let lines = |text| <[u8]>::split(text, |&byte| byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
+    lines(a).eq(lines(b))
 }
 
 #[cfg(test)]
@@ -91,10 +97,10 @@ mod tests {
     }
 
     /// An archive as it is packaged, as bytes.
-    fn packaged(description: &[u8]) -> Vec<u8> {
+    fn packaged(description: &str) -> Vec<u8> {
         let folder = tempfile::tempdir().unwrap();
         let mut entries = Entries::default();
-        entries.add_bytes("modelDescription.xml", description.to_vec());
+        entries.add_bytes("modelDescription.xml", description.as_bytes().to_vec());
         std::fs::write(folder.path().join("library"), library()).unwrap();
         entries.add_file("binaries/linux64/VibroImpactHarvester.so", &folder.path().join("library"));
         entries.write(&folder.path().join("it.fmu")).unwrap();
@@ -135,8 +141,20 @@ mod tests {
     }
 
     #[test]
+    fn line_ends_of_a_checkout_make_no_other_description() {
+        let unix = DESCRIPTIONS[0].replace("\r\n", "\n");
+        let windows = unix.replace('\n', "\r\n");
+        for (inside, compiled) in [(&unix, &windows), (&windows, &unix)] {
+            entries(&FMUS[0], &packaged(inside), compiled, &[]).unwrap();
+        }
+        let other_guid = windows.replacen("guid=\"{", "guid=\"{0", 1);
+        assert_ne!(other_guid, windows);
+        entries(&FMUS[0], &packaged(&other_guid), &unix, &[]).unwrap_err();
+    }
+
+    #[test]
     fn an_archive_of_other_sources_is_refused() {
-        let archive = packaged(b"<other/>");
+        let archive = packaged("<other/>");
         let error = entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[]).unwrap_err().to_string();
         assert!(
             error.starts_with("the VibroImpactHarvester.fmu inside videg has another model description"),

@@ -85,7 +85,7 @@ def page(files: list[File], gaps: dict[str, str]) -> tuple[str, list[str]]:
     for package in PACKAGES:
         inside = [file for file in files if file.name.startswith(f"{package}/src/")]
         lines, missed = sum(len(file.lines) for file in inside), sum(len(file.missed) for file in inside)
-        reached = f"{percent(lines, missed):.1f} %" if lines else "types and constants only"
+        reached = f"{percent(lines, missed):.1f} %" if lines else "no lines to cover"
         text += f"| `{package}` | {lines} | {missed} | {reached} |\n"
         if percent(lines, missed) < BOUND:
             failures.append(f"{package} reaches {percent(lines, missed):.1f} % of its lines, wanted are {BOUND:g} %")

@@ -11,7 +11,7 @@ const EVIL: &str =
 
 #[test]
 fn commands_in_the_name_of_a_case_reach_no_netlist() {
-    if Ngspice::find(None).is_err() && std::env::var_os("CI").is_none() {
+    if Ngspice::find(None).is_err() && std::env::var_os("VIDEG_ALL_TOOLS").is_none() {
         return;
     }
     super::stage::build();

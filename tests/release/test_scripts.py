@@ -4,17 +4,24 @@ import hashlib
 import shutil
 import subprocess
 import tarfile
+import tomllib
+import xml.etree.ElementTree as ElementTree
 import zipfile
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-CHANGELOG = """# Changelog
+VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+MAJOR, MINOR, PATCH = map(int, VERSION.split("."))
+# A patch later, and one that may break things.
+LATER = f"{MAJOR}.{MINOR}.{PATCH + 1}"
+BREAKING = f"{MAJOR + 1}.0.0" if MAJOR else f"0.{MINOR + 1}.0"
+CHANGELOG = f"""# Changelog
 
 ## [Unreleased]
 
-## [0.1.0] - 2026-01-31
+## [{VERSION}] - 2026-01-31
 
 ### Added
 
@@ -53,21 +60,21 @@ def replace(file: Path, old: str, new: str) -> None:
 
 
 def test_the_version_is_that_of_the_workspace_and_the_same_everywhere(tree: Path) -> None:
-    assert run(tree, "version.sh").stdout == "0.1.0\n"
-    for arguments in ([], ["v0.1.0"]):
+    assert run(tree, "version.sh").stdout == f"{VERSION}\n"
+    for arguments in ([], [f"v{VERSION}"]):
         found = run(tree, "version.sh", "check", *arguments)
-        assert (found.returncode, found.stdout) == (0, "version 0.1.0 everywhere\n"), found.stderr
+        assert (found.returncode, found.stdout) == (0, f"version {VERSION} everywhere\n"), found.stderr
 
 
 @pytest.mark.parametrize(
     ("file", "old", "new", "message"),
     [
-        ("model/Cargo.toml", "version.workspace = true", 'version = "0.2.0"', "package videg-model has version 0.2.0"),
-        ("Cargo.toml", 'path = "circuit", version = "0.1.0"', 'path = "circuit", version = "0.0.9"', "asks for videg-circuit ^0.0.9"),
-        ("modelDescription/HarvestingCircuit.xml", 'version="0.1.0"', 'version="0.0.9"', "not in modelDescription/HarvestingCircuit.xml"),
-        ("modelDescription/VibroImpactHarvester.xml", "videg 0.1.0", "videg 0.0.9", "VibroImpactHarvester.xml names another generationTool"),
-        ("CHANGELOG.md", "## [Unreleased]\n", "", 'the first section is "## [0.1.0] - 2026-01-31"'),
-        ("CHANGELOG.md", " - 2026-01-31", "", 'the section "## [0.1.0]" has not the form'),
+        ("model/Cargo.toml", "version.workspace = true", f'version = "{BREAKING}"', f"package videg-model has version {BREAKING}"),
+        ("Cargo.toml", f'path = "circuit", version = "{VERSION}"', 'path = "circuit", version = "0.0.9"', "asks for videg-circuit ^0.0.9"),
+        ("modelDescription/HarvestingCircuit.xml", f'version="{VERSION}"', 'version="0.0.9"', "not in modelDescription/HarvestingCircuit.xml"),
+        ("modelDescription/VibroImpactHarvester.xml", f"videg {VERSION}", "videg 0.0.9", "VibroImpactHarvester.xml names another generationTool"),
+        ("CHANGELOG.md", "## [Unreleased]\n", "", f'the first section is "## [{VERSION}] - 2026-01-31"'),
+        ("CHANGELOG.md", " - 2026-01-31", "", f'the section "## [{VERSION}]" has not the form'),
     ],
 )
 def test_a_place_with_another_version_is_named(tree: Path, file: str, old: str, new: str, message: str) -> None:
@@ -77,20 +84,20 @@ def test_a_place_with_another_version_is_named(tree: Path, file: str, old: str, 
 
 
 def test_a_tag_is_taken_for_this_version_with_its_notes_and_no_changes_left_over(tree: Path) -> None:
-    found = run(tree, "version.sh", "check", "v0.2.0")
-    assert found.returncode == 1 and "the tag is v0.2.0, wanted is v0.1.0" in found.stderr
+    found = run(tree, "version.sh", "check", f"v{BREAKING}")
+    assert found.returncode == 1 and f"the tag is v{BREAKING}, wanted is v{VERSION}" in found.stderr
     replace(tree / "CHANGELOG.md", "## [Unreleased]\n", "## [Unreleased]\n\n- New.\n")
-    found = run(tree, "version.sh", "check", "v0.1.0")
+    found = run(tree, "version.sh", "check", f"v{VERSION}")
     assert found.returncode == 1 and 'there are changes under "Unreleased"' in found.stderr
-    replace(tree / "CHANGELOG.md", "## [0.1.0]", "## [0.1.1]")
-    found = run(tree, "version.sh", "check", "v0.1.0")
-    assert found.returncode == 1 and 'nothing under "## [0.1.0]"' in found.stderr
+    replace(tree / "CHANGELOG.md", f"## [{VERSION}]", f"## [{LATER}]")
+    found = run(tree, "version.sh", "check", f"v{VERSION}")
+    assert found.returncode == 1 and f'nothing under "## [{VERSION}]"' in found.stderr
 
 
 def test_the_notes_of_a_version_are_its_section_of_the_changelog(tree: Path) -> None:
-    assert run(tree, "notes.sh", "0.1.0").stdout == "### Added\n\n- One thing.\n"
+    assert run(tree, "notes.sh", VERSION).stdout == "### Added\n\n- One thing.\n"
     assert run(tree, "notes.sh", "0.0.1").stdout == "- Another.\n"
-    for version in ("Unreleased", "0.1", "1.0.0"):
+    for version in ("Unreleased", f"{MAJOR}.{MINOR}", LATER):
         found = run(tree, "notes.sh", version)
         assert found.returncode == 1 and f'nothing under "## [{version}]"' in found.stderr, found.stdout
 
@@ -140,18 +147,18 @@ WANTED = [
 
 def test_an_archive_holds_program_fmus_and_licences(tree: Path) -> None:
     archive = packed(tree, "linux-x86_64", "videg")
-    assert archive.name == "videg-0.1.0-linux-x86_64.tar.gz"
+    assert archive.name == f"videg-{VERSION}-linux-x86_64.tar.gz"
     with tarfile.open(archive) as files:
         modes = {member.name: member.mode for member in files.getmembers()}
-    inside = "videg-0.1.0-linux-x86_64"
+    inside = f"videg-{VERSION}-linux-x86_64"
     assert modes == {f"{inside}/{name}": 0o644 for name in WANTED} | {f"{inside}/videg": 0o755}
 
 
 def test_an_archive_for_windows_is_a_zip_file(tree: Path) -> None:
     archive = packed(tree, "windows-x86_64", "videg.exe")
-    assert archive.name == "videg-0.1.0-windows-x86_64.zip"
+    assert archive.name == f"videg-{VERSION}-windows-x86_64.zip"
     names = zipfile.ZipFile(archive).namelist()
-    assert names == [f"videg-0.1.0-windows-x86_64/{name}" for name in [*WANTED, "videg.exe"]]
+    assert names == [f"videg-{VERSION}-windows-x86_64/{name}" for name in [*WANTED, "videg.exe"]]
 
 
 @pytest.mark.parametrize(
@@ -190,16 +197,56 @@ def test_a_variable_that_was_released_changes_only_with_the_version(tree: Path) 
     replace(description, 'name="load.resistance"', 'name="load.ohms"')
     found = interface(tree, "check")
     assert found.returncode == 1 and "  HarvestingCircuit load.resistance " in found.stderr, found.stderr
-    replace(tree / "Cargo.toml", 'version = "0.1.0"', 'version = "0.1.1"')
+    set_version(tree, LATER)
     assert interface(tree, "check").returncode == 1
-    replace(tree / "Cargo.toml", 'version = "0.1.1"', 'version = "0.2.0"')
+    set_version(tree, BREAKING)
     assert interface(tree, "check").returncode == 0
 
 
-def test_a_new_variable_breaks_nothing(tree: Path) -> None:
+def set_version(tree: Path, version: str) -> None:
+    before = subprocess.run([tree / "release/version.sh"], check=True, capture_output=True, text=True).stdout.strip()
+    replace(tree / "Cargo.toml", f'version = "{before}"', f'version = "{version}"')
+
+
+def insert_variable(description: Path, place: int) -> None:
+    """A new variable in front of another one, with value references anew, as the exporter would count them."""
+    document = ElementTree.parse(description)
+    variables = document.getroot().find("ModelVariables")
+    new = ElementTree.Element("ScalarVariable", name="new.thing", causality="output")
+    ElementTree.SubElement(new, "Real", unit="V")
+    variables.insert(place, new)
+    for reference, variable in enumerate(variables):
+        variable.set("valueReference", str(reference))
+    document.write(description)
+
+
+def test_a_new_variable_breaks_nothing_at_the_end_and_much_in_the_middle(tree: Path) -> None:
     interface(tree, "record")
-    record = tree / "release/interface.txt"
-    lines = record.read_text().splitlines(keepends=True)
-    assert any(line.startswith("VibroImpactHarvester left.capacitance ") for line in lines)
-    record.write_text("".join(line for line in lines if " left.capacitance " not in line))
+    description = tree / "modelDescription/HarvestingCircuit.xml"
+    original, count = description.read_text(), sum(1 for _ in ElementTree.parse(description).iter("ScalarVariable"))
+    insert_variable(description, count)
     assert interface(tree, "check").returncode == 0
+    description.write_text(original)
+    insert_variable(description, count - 2)
+    found = interface(tree, "check")
+    assert found.returncode == 1 and "new variables go to the end of the table" in found.stderr, found.stderr
+    last = list(ElementTree.fromstring(original).iter("ScalarVariable"))[-1].get("name")
+    assert f"  HarvestingCircuit {last} had value reference {count - 1}, now {count}\n" in found.stderr, found.stderr
+    assert found.stderr.count(" had value reference ") == 2
+
+
+def git(tree: Path, *arguments: str) -> None:
+    author = ["-c", "user.name=Somebody", "-c", "user.email=somebody@example.org", "-c", "commit.gpgSign=false"]
+    subprocess.run(["git", *author, *arguments], cwd=tree, check=True, capture_output=True)
+
+
+def test_a_commit_is_released_only_from_its_branch(tree: Path) -> None:
+    git(tree, "init", "--initial-branch", "main")
+    git(tree, "commit", "--allow-empty", "--message", "First")
+    git(tree, "checkout", "--detach")
+    assert run(tree, "on-branch.sh", "main").returncode == 0
+    git(tree, "commit", "--allow-empty", "--message", "Beside")
+    found = run(tree, "on-branch.sh", "main")
+    assert found.returncode == 1 and "is not on main" in found.stderr, found.stderr
+    found = run(tree, "on-branch.sh", "origin/main")
+    assert found.returncode == 1 and "there is no branch origin/main" in found.stderr, found.stderr
