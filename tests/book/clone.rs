@@ -68,7 +68,7 @@ impl Clone {
         places.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
         let mut command = Command::new(program);
         command.current_dir(self.path()).stdin(Stdio::null()).env("PATH", std::env::join_paths(places).unwrap());
-        command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or("cargo".into()));
+        command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or(env!("CARGO").into()));
         // What a reader has: a terminal of this width, and no variables of `cargo test`.
         command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg").env("FIGURES", "figures");
         command.env("MATPLOTLIBRC", self.programs.path()).env("SOURCE_DATE_EPOCH", "0");
