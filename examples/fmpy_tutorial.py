@@ -160,7 +160,7 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
 #
 # ## Go back in time
 #
-# The whole state is saved and restored in some 20 ns. A master may thus try a step and undo it:
+# The whole state can be saved and restored. A master may thus try a step and undo it:
 
 # %%
 state = slave.getFMUstate()

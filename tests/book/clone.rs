@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
 
-use crate::{python, root};
+use crate::{patch, python, root};
 
 /// `cargo run` becomes the tool that was built for the tests; the rest of Cargo works in the source tree itself, where its
 /// `target` is.
@@ -18,7 +18,12 @@ fi
 cd "$VIDEG_ROOT" && exec "$VIDEG_CARGO" "$@"
 "#;
 
-/// The folder. What commands write there is gone with it.
+/// Not copied: Cargo's own folder and the Python of the tests are links, so that nothing is built or installed twice;
+/// results and history are left out.
+const LINKED: [&str; 2] = ["target", ".venv"];
+const LEFT_OUT: [&str; 2] = ["out", ".git"];
+
+/// The folder. What commands write there is gone with it, but for what is built into `target`.
 pub struct Clone {
     folder: TempDir,
     programs: TempDir,
@@ -30,8 +35,11 @@ impl Clone {
         let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         for entry in std::fs::read_dir(root()).unwrap() {
             let entry = entry.unwrap();
-            if entry.file_name() != "out" {
-                symlink(entry.path(), folder.path().join(entry.file_name())).unwrap();
+            let (name, copy) = (entry.file_name(), folder.path().join(entry.file_name()));
+            if LINKED.iter().any(|linked| name == *linked) {
+                symlink(entry.path(), copy).unwrap();
+            } else if !LEFT_OUT.iter().any(|left_out| name == *left_out) {
+                patch::copy(&entry.path(), &copy).unwrap();
             }
         }
         for (name, text) in files {
@@ -60,7 +68,7 @@ impl Clone {
         places.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
         let mut command = Command::new(program);
         command.current_dir(self.path()).stdin(Stdio::null()).env("PATH", std::env::join_paths(places).unwrap());
-        command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or("cargo".into()));
+        command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or(env!("CARGO").into()));
         // What a reader has: a terminal of this width, and no variables of `cargo test`.
         command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg").env("FIGURES", "figures");
         command.env("MATPLOTLIBRC", self.programs.path()).env("SOURCE_DATE_EPOCH", "0");
@@ -76,4 +84,14 @@ impl Clone {
         let printed = printed.replace(&here, "...").replace(&*root().to_string_lossy(), "...");
         (output.status.success(), printed)
     }
+}
+
+#[test]
+fn what_commands_write_stays_out_of_the_source_tree() {
+    let clone = Clone::new(std::iter::empty());
+    let (done, printed) =
+        clone.shell("echo changed > docs/SUMMARY.md && echo new > model/new.txt && cat docs/SUMMARY.md");
+    assert!(done && printed == "changed\n", "{printed}");
+    assert!(!root().join("model/new.txt").exists());
+    assert!(std::fs::read_to_string(root().join("docs/SUMMARY.md")).unwrap().starts_with("# Summary"));
 }

@@ -12,6 +12,28 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("UPDATE_", "writes what the tests compare with"),
 ];
 
+/// What may run here: none of these installs anything, or works for hours. Whatever else stands on a page needs a mark.
+const PROGRAMS: &[&str] = &[
+    "videg",
+    "cargo run",
+    "cargo build",
+    ".venv/bin/python",
+    "python",
+    "python3",
+    "fmpy",
+    "ngspice",
+    "cc",
+    "./master",
+    "cat",
+    "cd",
+    "cmp",
+    "cp",
+    "echo",
+    "head",
+    "ls",
+    "mkdir",
+];
+
 /// A command of a transcript, and what the page shows behind it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Step {
@@ -54,6 +76,13 @@ pub fn elsewhere(command: &str) -> Option<&'static str> {
     ELSEWHERE.iter().find(|(prefix, _)| command.starts_with(prefix)).map(|(_, reason)| *reason)
 }
 
+/// The part of a command that is a call of no program that may run here, if there is one.
+pub fn stranger(command: &str) -> Option<&str> {
+    let known =
+        |part: &str| PROGRAMS.iter().any(|program| part == *program || part.starts_with(&format!("{program} ")));
+    command.split("&&").map(str::trim).find(|part| !known(part))
+}
+
 /// The arguments of the tool in a command that is a call of it.
 pub fn arguments(command: &str) -> Option<Vec<&str>> {
     let rest = command.strip_prefix("videg ").or(command.strip_prefix("cargo run --release -- "))?;
@@ -76,4 +105,12 @@ fn commands_stand_without_comments_and_on_one_line() {
     assert_eq!(arguments("videg sweep a.toml && videg x"), Some(vec!["sweep", "a.toml"]));
     assert_eq!(arguments("cargo run --release -- cosim"), Some(vec!["cosim"]));
     assert_eq!((arguments("cargo bench"), elsewhere("cargo bench --bench x")), (None, Some("a benchmark")));
+}
+
+#[test]
+fn only_known_programs_run() {
+    assert_eq!(stranger("cd out && videg cosim --until 1"), None);
+    assert_eq!(stranger("videg ssp && fuzz/run.sh 3600"), Some("fuzz/run.sh 3600"));
+    assert_eq!(stranger("cargo install --path ."), Some("cargo install --path ."));
+    assert_eq!(stranger("videgs"), Some("videgs"));
 }

@@ -3,7 +3,7 @@
 //!
 //! | block | what happens to it |
 //! |---|---|
-//! | `console` | commands after `$ ` run one by one in a folder that looks like a fresh clone; what they print is compared |
+//! | `console` | commands after `$ ` run one by one in a copy of the source tree; what they print is compared |
 //! | `sh`, `bash` | commands to choose from: the tool takes their arguments, and each runs to the end with exit code 0 |
 //! | `python` | all blocks of a chapter run in order in one interpreter; a `text` block behind one is what it prints |
 //! | `rust` | a documentation test: `src/book.rs` and `fmu/export/src/lib.rs` list the chapters |
@@ -13,9 +13,11 @@
 //! A comment before a block says more: `<!-- file: NAME -->` writes it into a file before the chapter begins;
 //! `<!-- not run: REASON -->` leaves it alone, and with `not run "PART" "OTHER": REASON` only those of its lines that
 //! contain one of these.
-//! In what is printed, `...` stands for any words of a line, and alone on a line for any lines.
+//! Only programs that are known not to install anything or work for hours run at all (`console.rs`); others need such a comment.
+//! In what is printed, `...` stands for any words of a line, and alone on a line for any lines, of which some must be shown.
+//! Numbers with a point or an exponent are compared to 0.1 %, all else exactly.
 
-#![cfg(unix)] // A folder of symbolic links stands for a clone.
+#![cfg(unix)] // A shell runs the commands.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 mod block;

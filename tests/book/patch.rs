@@ -48,7 +48,7 @@ fn packages(diff: &str) -> BTreeMap<&'static str, Option<&str>> {
     found
 }
 
-/// What Cargo needs of the source tree. Files that are there already and equal keep their time.
+/// What Cargo needs of the source tree.
 fn copy_sources(to: &Path) -> std::io::Result<()> {
     for name in [
         "Cargo.toml",
@@ -68,10 +68,11 @@ fn copy_sources(to: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+/// Makes `to` what `from` is, but for folders `target`. Files that are there already and equal keep their time.
+pub fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
     if !from.is_dir() {
         let (content, there) = (std::fs::read(from)?, std::fs::read(to).ok());
-        return if there.as_ref() == Some(&content) { Ok(()) } else { std::fs::write(to, content) };
+        return if there == Some(content) { Ok(()) } else { std::fs::copy(from, to).map(drop) };
     }
     std::fs::create_dir_all(to)?;
     let names: Vec<PathBuf> =
