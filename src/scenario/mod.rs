@@ -3,8 +3,8 @@
 mod file;
 mod preset;
 
-pub(crate) use file::{read_file, toml_error};
 pub use file::{CaseFile, value_text};
+pub(crate) use file::{read_file, toml_error};
 
 use serde::Serialize;
 use thiserror::Error;

@@ -65,6 +65,13 @@ fn many_entries() -> Vec<u8> {
     zipped(&entries)
 }
 
+/// Names that come to 279,000 folders.
+fn many_folders() -> Vec<u8> {
+    let names: Vec<_> = (0..9000).map(|k| format!("{k}/{}", "x/".repeat(30))).collect();
+    let entries: Vec<_> = names.iter().map(|name| (name.as_str(), &b""[..])).collect();
+    zipped(&entries)
+}
+
 fn truncated() -> Vec<u8> {
     let mut bytes = with("resources/a", b"some text");
     bytes.truncate(bytes.len() / 2);
@@ -93,6 +100,8 @@ pub fn inputs() -> Vec<Input> {
         check("a bomb: 32 MiB of zeros", with("resources/zeros", &vec![0; 32 << 20])),
         check("a bomb that announces 10 bytes", understated()),
         check("10001 entries", many_entries()),
+        check("9000 entries in 279,000 folders", many_folders()),
+        check("a name of 499 parts", with(&"x/".repeat(499), b"")),
         check("a zip64 directory", zip64()),
         check("a symbolic link", linked()),
         check("two entries that share their bytes", overlapping()),
