@@ -2,8 +2,8 @@
 
 use std::io::{Cursor, Write as _};
 
-use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 use super::stage::{Input, refused};
 use super::toy::{DESCRIPTION, library_name, zipped};
@@ -79,9 +79,14 @@ fn truncated() -> Vec<u8> {
 }
 
 fn flipped() -> Vec<u8> {
-    let text = DESCRIPTION.as_bytes();
-    let mut bytes = zipped(&[("modelDescription.xml", text), (&library_name(), b"a library, or nearly so")]);
-    let at = bytes.windows(9).position(|window| window == b"a library").unwrap_or(200);
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, text) in [("modelDescription.xml", DESCRIPTION), (&library_name(), "a library, or nearly so")] {
+        writer.start_file(name, stored).unwrap();
+        writer.write_all(text.as_bytes()).unwrap();
+    }
+    let mut bytes = writer.finish().unwrap().into_inner();
+    let at = bytes.windows(9).position(|window| window == b"a library").unwrap();
     bytes[at] ^= 0x55;
     bytes
 }

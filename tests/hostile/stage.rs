@@ -19,6 +19,11 @@ pub struct Input {
     pub code: i32,
 }
 
+/// What commands that hide in inputs would make: in them it stands for an absolute path that is looked at afterwards.
+pub const CANARY: &str = "CANARY";
+/// Where names that are absolute lead.
+const ROOT_CANARY: &str = "/canary";
+
 /// How an input is given.
 pub enum Given {
     /// A command with these words, in a folder with these files.
@@ -105,7 +110,9 @@ pub fn run(input: &Input) -> Told {
     }
     let before = snapshot(&root);
     let mut command = videg();
-    command.args(input.words()).current_dir(&work).env("TMPDIR", &temporary);
+    let canary = root.join("canary").display().to_string();
+    let words: Vec<_> = input.words().iter().map(|word| word.replace(CANARY, &canary)).collect();
+    command.args(&words).current_dir(&work).env("TMPDIR", &temporary);
     let output = limited(&mut command, input.what);
     check_folder(input.what, &root, &before);
     told(input, &output, &root)
@@ -132,6 +139,7 @@ fn check_folder(what: &str, root: &Path, before: &BTreeMap<PathBuf, Option<Vec<u
     for (path, bytes) in before {
         assert!(after.get(path) == Some(bytes), "{what}: {} is not what it was", path.display());
     }
+    assert!(!Path::new(ROOT_CANARY).exists(), "{what}: {ROOT_CANARY} was written");
     let results = root.join("work/out");
     for path in after.keys().filter(|path| !before.contains_key(*path)) {
         assert!(path.starts_with(&results), "{what}: {} was written", path.display());

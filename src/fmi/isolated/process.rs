@@ -269,3 +269,52 @@ fn keep_printed(mut stderr: ChildStderr) -> Arc<Mutex<Printed>> {
     });
     printed
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    /// A worker that says `bytes`, does `what`, and ends.
+    fn worker(bytes: &[u8], what: &str) -> (tempfile::TempDir, Process) {
+        let folder = tempfile::tempdir().unwrap();
+        let (said, program) = (folder.path().join("said"), folder.path().join("worker"));
+        std::fs::write(&said, bytes).unwrap();
+        std::fs::write(&program, format!("#!/bin/sh\ncat '{}'\n{what}\n", said.display())).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let process = Process::start(&program, folder.path()).unwrap();
+        (folder, process)
+    }
+
+    fn done(call: u64, given: Given) -> Vec<u8> {
+        frame(&Reply::Done { call, status: 0, given }).unwrap()
+    }
+
+    #[test]
+    fn an_answer_that_came_in_time_is_heard_by_a_host_that_was_stopped() {
+        let (_folder, mut process) = worker(&frame(&Reply::Loaded).unwrap(), "exit 3");
+        while !process.has_ended().unwrap() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let mut deadline = Deadline::after(Some(Duration::ZERO));
+        assert!(matches!(process.next(&mut deadline, SPARE), Ok(Reply::Loaded)));
+        assert!(matches!(process.next(&mut deadline, SPARE), Err(How::TooLong)));
+        assert!(matches!(process.ended(), How::Ended(status) if status.code() == Some(3)));
+    }
+
+    #[test]
+    fn an_answer_to_another_call_is_none() {
+        let (_folder, mut process) = worker(&done(7, Given::Nothing), "sleep 100");
+        let how = process.call(&Request::Free, None, |_| ()).unwrap_err();
+        assert!(matches!(&how, How::Garbled(what) if what == "the answer to call 7 in answer to call 1"), "{how:?}");
+    }
+
+    #[test]
+    fn an_answer_longer_than_its_call_lets_it_takes_no_memory() {
+        let (_folder, mut process) = worker(&done(1, Given::Bytes(vec![0; 1 << 20])), "sleep 100");
+        let how = process.call(&Request::Free, None, |_| ()).unwrap_err();
+        assert!(matches!(&how, How::Garbled(what) if what.ends_with("allowed are 65536")), "{how:?}");
+        assert!(process.heard.len() < 4 * SPARE, "{} bytes are kept", process.heard.len());
+    }
+}
