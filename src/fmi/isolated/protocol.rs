@@ -326,7 +326,7 @@ mod tests {
     fn garbage_is_an_error_and_takes_no_memory() {
         let vast = u32::MAX.to_le_bytes().to_vec();
         let vector = [&[13, 0, 0, 0, 4, 0, 0, 1][..], &[0xff; 8], &[0x7f]].concat(); // Done with 2^63 Reals
-        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 0, 0], vector] {
+        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 1, 0], vector] {
             assert!(receive::<Reply>(&mut &*garbage).is_err());
             assert!(unframe::<Reply>(&mut garbage, LONGEST).is_err());
         }
