@@ -193,9 +193,10 @@ fn told(input: &Input, output: &Output, root: &Path) -> Told {
 
 /// `text` without what differs from run to run or with each parameter of the model: folders, numbers of threads, GUIDs.
 fn without_folders(text: &str, root: &Path) -> String {
+    let text = text.replace(&root.join("canary").display().to_string(), CANARY);
     let root = root.display().to_string();
     let folders = ["/work/", "/tmp/"];
-    let text = folders.iter().fold(text.to_owned(), |text, part| text.replace(&format!("{root}{part}"), ""));
+    let text = folders.iter().fold(text, |text, part| text.replace(&format!("{root}{part}"), ""));
     let text = match text.split_once("'main' (") {
         Some((before, after)) => format!("{before}'main'{}", after.split_once(')').map_or("", |(_, after)| after)),
         None => text,
