@@ -69,12 +69,40 @@ fn an_exit_is_told_with_its_code() {
 }
 
 #[test]
+fn a_lower_bound_of_the_user_on_memory_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let step = "STEP=struct { unsigned long current, most; } bound; getrlimit(9, &bound); \
+                LOG(3, \"%s\", bound.most == 900000UL * 1024 ? \"as the user said\" : \"raised\"); abort();";
+    let path = toy::fmu(folder.path(), "toy.fmu", &[step]);
+    let check = format!(
+        "ulimit -v 900000; exec {} fmu check {} --memory-limit 2048",
+        env!("CARGO_BIN_EXE_videg"),
+        path.display()
+    );
+    let output = Command::new("sh").args(["-c", &check]).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.contains("the FMU had logged: as the user said"), "{stderr}");
+}
+
+#[test]
+fn a_copy_that_the_fmu_makes_of_its_process_neither_answers_nor_listens() {
+    let (_folder, fmu) = toy(&["STEP=if (!fork()) time = 1000;"]);
+    let mut instance = initialised(&fmu);
+    for step in 1..=20 {
+        instance.do_step(f64::from(step - 1), 1.0).unwrap();
+        assert_eq!(instance.get_by_name("y").unwrap().to_string(), step.to_string());
+    }
+    instance.free().unwrap();
+}
+
+#[test]
 fn a_call_without_end_is_ended_at_the_time_limit() {
     let folder = tempfile::tempdir().unwrap();
     let path = toy::fmu(folder.path(), "toy.fmu", &["STEP=for (;;) LOG(1, \"%s\", \"again\");"]);
-    let fmu = Fmu::open_isolated(&path, &within(0.5)).unwrap();
+    // It holds for loading as well, which takes its time on a busy machine.
+    let fmu = Fmu::open_isolated(&path, &within(3.0)).unwrap();
     let error = initialised(&fmu).do_step(0.0, 1.0).unwrap_err().to_string();
-    assert!(error.contains("fmi2DoStep of 'toy' at t = 0 s took longer than the time limit of 0.5 s"), "{error}");
+    assert!(error.contains("fmi2DoStep of 'toy' at t = 0 s took longer than the time limit of 3 s"), "{error}");
     assert!(error.contains("the FMU had logged: again"), "{error}");
 }
 
@@ -130,10 +158,12 @@ fn messages_on_the_pipe_that_are_none_are_told() {
 
 #[test]
 fn a_child_that_holds_the_pipes_open_delays_nothing() {
+    let (_folder, fmu) = toy(&["STEP=if (!fork()) { setsid(); sleep(100); _exit(0); } _exit(3);"]);
+    let mut instance = initialised(&fmu);
     let begun = Instant::now();
-    let text = end_in_step(&["STEP=if (!fork()) { setsid(); sleep(5); _exit(0); } _exit(3);"]);
+    let text = instance.do_step(0.0, 1.0).unwrap_err().to_string();
     assert!(text.contains("(exit status: 3"), "{text}");
-    assert!(begun.elapsed() < Duration::from_secs(5), "waited for the child");
+    assert!(begun.elapsed() < Duration::from_secs(50), "waited for the child");
 }
 
 #[test]
@@ -323,7 +353,7 @@ fn our_fmus_give_the_same_bytes_isolated_or_not() {
     same_files(
         &folder.path().join("sweep-here"),
         &folder.path().join("sweep-isolated"),
-        &["sweep.csv", "sweep.parquet"],
+        &["sweep.csv"], // the others say how it was run
     );
 }
 

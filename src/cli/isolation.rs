@@ -3,22 +3,18 @@
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 
 use super::packaging;
 use crate::fmi::{Bounds, Fmu, Isolation};
 use crate::package;
 
-/// Time that a call may take unless something else is asked for, s.
-const TIME: f64 = 60.0;
 /// Longest time limit, s.
 const LONGEST: f64 = 1e9;
-/// Memory that a process may take unless something else is asked for, MiB.
-const MEMORY: u32 = 4096;
 
 /// How FMUs are run.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct IsolationOptions {
     /// Run each instance of an FMU in a process of its own, which is all that it can take down [default: of FMUs that are
     /// not of this project]
@@ -27,23 +23,18 @@ pub struct IsolationOptions {
     /// Run the FMU in this process: faster, for FMUs that you trust
     #[arg(long)]
     no_isolate: bool,
-    /// Longest time that a call of an isolated FMU may take, s; 0: any
-    #[arg(long, value_name = "S", default_value_t = TIME, value_parser = parse_time, allow_negative_numbers = true)]
-    time_limit: f64,
-    /// Memory (address space) that the process of an isolated FMU may take, MiB; 0: any. Not on Windows
-    #[arg(long, value_name = "MIB", default_value_t = MEMORY)]
-    memory_limit: u32,
+    /// Longest time that a call of an isolated FMU may take, s; 0: any [default: 60]
+    #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
+    time_limit: Option<f64>,
+    /// Memory (address space) that the process of an isolated FMU may take, MiB; 0: any. Not on macOS and Windows
+    /// [default: 4096]
+    #[arg(long, value_name = "MIB")]
+    memory_limit: Option<u32>,
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {
     let time = text.trim().parse().ok().filter(|time| (0.0..=LONGEST).contains(time));
     time.ok_or_else(|| format!("a time from 0 to {LONGEST:e} s is expected"))
-}
-
-impl Default for IsolationOptions {
-    fn default() -> Self {
-        Self { isolate: false, no_isolate: false, time_limit: TIME, memory_limit: MEMORY }
-    }
 }
 
 impl IsolationOptions {
@@ -58,14 +49,57 @@ impl IsolationOptions {
 
     /// Packages the FMUs of this project, with progress, and opens the one with this identifier.
     pub fn open_own(&self, identifier: &str) -> anyhow::Result<Fmu> {
+        if !self.isolate && (self.time_limit.is_some() || self.memory_limit.is_some()) {
+            bail!("--time-limit and --memory-limit need --isolate here: the FMUs of videg run in its own process");
+        }
         let path = packaging::path(identifier)?;
         if self.isolate { Ok(Fmu::open_isolated(path, &self.isolation()?)?) } else { Ok(Fmu::open(path)?) }
     }
 
     fn isolation(&self) -> anyhow::Result<Isolation> {
         let program = std::env::current_exe().context("cannot find this program's own file")?;
-        let time = (self.time_limit > 0.0).then(|| Duration::from_secs_f64(self.time_limit));
-        let memory = (self.memory_limit > 0).then(|| u64::from(self.memory_limit) << 20);
-        Ok(Isolation { program, bounds: Bounds { time, memory } })
+        Ok(Isolation { program, bounds: self.bounds() })
+    }
+
+    /// What an FMU of the user may take, or those of this project if there is none; nothing is said if it is not isolated.
+    pub fn bounds_of(&self, fmu: Option<&Fmu>) -> Option<Bounds> {
+        fmu.map_or(self.isolate, Fmu::is_isolated).then(|| self.bounds())
+    }
+
+    fn bounds(&self) -> Bounds {
+        let Bounds { time, memory } = Bounds::default();
+        Bounds {
+            time: self.time_limit.map_or(time, |s| (s > 0.0).then(|| Duration::from_secs_f64(s))),
+            memory: self.memory_limit.map_or(memory, |mib| (mib > 0).then(|| u64::from(mib) << 20)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Alone {
+        #[command(flatten)]
+        _options: IsolationOptions,
+    }
+
+    #[test]
+    fn the_defaults_are_those_that_help_shows() {
+        let Bounds { time, memory } = IsolationOptions::default().bounds();
+        let help = Alone::command().render_long_help().to_string();
+        for shown in [time.unwrap().as_secs(), memory.unwrap() >> 20] {
+            assert!(help.contains(&format!("[default: {shown}]")), "{shown}: {help}");
+        }
+    }
+
+    #[test]
+    fn bounds_on_what_is_not_isolated_are_refused() {
+        let options = IsolationOptions { time_limit: Some(1.0), ..IsolationOptions::default() };
+        let error = options.open_own("VibroImpactHarvester").err().unwrap().to_string();
+        assert!(error.starts_with("--time-limit and --memory-limit need --isolate here"), "{error}");
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::options::{Window, parse_window};
 use super::{output, settings};
-use crate::fmi::ModelDescription;
+use crate::fmi::{Bounds, ModelDescription};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Design, Request, SweepFile, Times, Vary};
 
@@ -60,12 +60,13 @@ pub struct What {
 
 impl What {
     /// The sweep of the model that `description` is of, with what `file` says and the `fingerprint` of an FMU that is
-    /// not our own.
+    /// not our own and what it may take.
     pub fn request<'a>(
         &self,
         file: SweepFile,
         description: &'a ModelDescription,
         fingerprint: Option<String>,
+        isolation: Option<Bounds>,
     ) -> anyhow::Result<Request<'a>> {
         let is_harvester = description.variable("gain.voltage").is_ok();
         let model = &description.model_name;
@@ -80,6 +81,7 @@ impl What {
         Ok(Request {
             description,
             fmu: fingerprint,
+            isolation,
             settings: if is_harvester { mechanical(description, &scenario)? } else { scenario.changes().to_vec() },
             times: Times {
                 until: scenario.until,

@@ -26,7 +26,7 @@ const FREE_BYTES: u64 = 1 << 20;
 pub struct Limits {
     /// Size of the file, bytes.
     pub archive_bytes: u64,
-    /// Number of entries.
+    /// Number of entries, and of files and folders that they come to.
     pub entries: usize,
     /// Size of all entries unpacked, bytes.
     pub unpacked_bytes: u64,
@@ -185,7 +185,7 @@ impl Archive {
     }
 
     fn vet_entries(&mut self) -> Result<()> {
-        let mut names = Names::default();
+        let mut names = Names::new(self.limits.entries);
         for index in 0..self.zip.len() {
             let path = || self.path.clone();
             let broken = |cause| FmiError::NotAnArchive { path: path(), cause };

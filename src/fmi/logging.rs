@@ -81,6 +81,18 @@ pub struct LogRecord {
     pub message: String,
 }
 
+impl LogRecord {
+    /// The record with texts no longer than those that come from an FMU in this process.
+    pub(super) fn cut(mut self) -> Self {
+        // A byte that is no text becomes a sign of three.
+        const LONGEST: usize = 3 * MAX_MESSAGE;
+        for text in [&mut self.instance, &mut self.category, &mut self.message] {
+            text.truncate(text.floor_char_boundary(LONGEST));
+        }
+        self
+    }
+}
+
 impl fmt::Display for LogRecord {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "[{}] {}: {}", self.category, self.status, self.message.trim_end())
@@ -263,6 +275,15 @@ mod tests {
         send(&environment, c"plain", c"not read");
         let wanted = if super::READS_FIRST_ARGUMENT { "100 % real" } else { "%s" };
         assert_eq!(environment.all(), [record(wanted), record("%s at %g"), record("plain")]);
+    }
+
+    #[test]
+    fn records_of_another_process_are_cut_at_a_character() {
+        let cut = record(&"\u{20ac}".repeat(10_000)).cut();
+        assert_eq!(cut, record(&"\u{20ac}".repeat(4096)));
+        let cut = record(&format!("a{}", "\u{20ac}".repeat(10_000))).cut();
+        assert_eq!(cut, record(&format!("a{}", "\u{20ac}".repeat(4095))));
+        assert_eq!(record("short").cut(), record("short"));
     }
 
     #[test]

@@ -42,6 +42,18 @@ pub(super) fn archives(options: &Options) -> Option<[&'static [u8]; FMUS.len()]>
     ARCHIVES.filter(|_| takes_embedded(options, locate::around_program().as_deref()))
 }
 
+/// Whether the FMU `identifier` inside the program has a library of these bytes.
+pub(super) fn holds(identifier: &str, library: &[u8]) -> bool {
+    let archives = ARCHIVES.iter().flatten().zip(&FMUS);
+    let mut own = archives.filter(|(_, fmu)| fmu.identifier == identifier);
+    own.any(|(archive, _)| has_library(archive, library))
+}
+
+fn has_library(archive: &[u8], library: &[u8]) -> bool {
+    let Ok(entries) = Entries::read(archive) else { return false };
+    entries.names().any(|name| name.starts_with("binaries/") && entries.bytes(name) == Some(library))
+}
+
 /// Whether the program lies in no source tree, none was named, and nothing is to be built for other targets.
 fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
     around_program.is_none() && options.workspace.is_none() && options.targets.is_empty()
@@ -117,6 +129,15 @@ mod tests {
         for (path, archive) in written.iter().zip(&archives) {
             assert!(&std::fs::read(path).unwrap() == archive, "{} differs", path.display());
         }
+    }
+
+    #[test]
+    fn a_library_inside_is_known_by_its_bytes() {
+        let archive = packaged(DESCRIPTIONS[0]);
+        assert!(has_library(&archive, &library()));
+        assert!(!has_library(&archive, &library()[1..]), "another library");
+        assert!(!has_library(&archive, DESCRIPTIONS[0]), "no library");
+        assert!(!has_library(b"no zip", &library()));
     }
 
     #[test]

@@ -100,12 +100,13 @@ impl Default for Options {
     }
 }
 
-/// Whether `library` has the bytes of the library of the FMU `identifier` that goes with this program: that beside it, or
-/// that of the source tree that it is of.
+/// Whether `library` has the bytes of the library of the FMU `identifier` that goes with this program: that beside it,
+/// that of the source tree that it is of, or that inside it.
 pub fn is_own(identifier: &str, library: &Path) -> bool {
     let Some(fmu) = FMUS.iter().find(|fmu| fmu.identifier == identifier) else { return false };
     let Ok(bytes) = std::fs::read(library) else { return false };
     locate::own_libraries(fmu).iter().any(|own| std::fs::read(own).is_ok_and(|own| own == bytes))
+        || embedded::holds(identifier, &bytes)
 }
 
 /// Where FMUs are written by default, for a source tree.

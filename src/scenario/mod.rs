@@ -46,16 +46,16 @@ pub enum ScenarioError {
         /// What is allowed.
         bound: String,
     },
-    /// The case file cannot be read.
-    #[error("cannot read the case file {path}: {cause}")]
+    /// The case or sweep file cannot be read.
+    #[error("cannot read {path}: {cause}")]
     Unreadable {
         /// The file.
         path: String,
         /// What the system said.
         cause: std::io::Error,
     },
-    /// The case file says something that it cannot.
-    #[error("case file {path}: {reason}")]
+    /// The case or sweep file says something that it cannot.
+    #[error("{path}: {reason}")]
     BadFile {
         /// The file.
         path: String,

@@ -51,7 +51,11 @@ impl Points {
         let count = match (design, asked) {
             (Design::Grid, asked) => {
                 let product = axes.iter().try_fold(1_u64, |product, axis| product.checked_mul(axis.len()));
-                let product = product.unwrap_or(u64::MAX);
+                let Some(product) = product else {
+                    let reason =
+                        format!("the grid has more than {} points; it may have from 1 to {MAX_RUNS}", u64::MAX);
+                    return Err(SweepError::option("vary", "", reason));
+                };
                 if let Some(asked) = asked.filter(|asked| *asked != product) {
                     return bad(asked.to_string(), format!("the grid has {product}; a grid needs no --points"));
                 }

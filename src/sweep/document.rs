@@ -7,6 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::column::Column;
 use super::times::Times;
 use super::{Design, Vary};
+use crate::fmi::Bounds;
 use crate::scenario::Setting;
 
 /// The document `sweep.json`: the same bytes for the same sweep.
@@ -19,6 +20,9 @@ pub(super) struct Document<'a> {
     /// SHA-256 of the archive, if the model is not the harvester of this project.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fmu: Option<&'a str>,
+    /// What a run may take, if each has a process of its own: whether it fails hangs on that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub isolation: Option<Limits>,
     pub settings: Vec<Setting>,
     #[serde(flatten)]
     pub times: Times,
@@ -34,6 +38,19 @@ pub(super) struct Document<'a> {
     /// SHA-256 of the above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
+}
+
+/// Bounds on an isolated FMU as they stand in the document; none: any.
+#[derive(Serialize)]
+pub(super) struct Limits {
+    time_limit_s: Option<f64>,
+    memory_limit_bytes: Option<u64>,
+}
+
+impl From<Bounds> for Limits {
+    fn from(bounds: Bounds) -> Self {
+        Self { time_limit_s: bounds.time.map(|time| time.as_secs_f64()), memory_limit_bytes: bounds.memory }
+    }
 }
 
 /// What is needed of the document to put results together.

@@ -10,7 +10,7 @@ use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};
 use crate::cosim::Averages;
-use crate::fmi::{FmiError, Kind, ModelDescription, Value, ValueError, Variable};
+use crate::fmi::{Bounds, FmiError, Kind, ModelDescription, Value, ValueError, Variable};
 use crate::scenario::Setting;
 
 /// Variables from which averages follow, and their types.
@@ -24,6 +24,8 @@ pub struct Request<'a> {
     pub description: &'a ModelDescription,
     /// SHA-256 of the FMU, if the model is not the harvester of this project.
     pub fmu: Option<String>,
+    /// What a run may take, if the FMU is isolated.
+    pub isolation: Option<Bounds>,
     /// Variables that are the same in all runs; the last of a name wins.
     pub settings: Vec<Setting>,
     /// Times of a run.
@@ -107,6 +109,7 @@ impl Sweep {
             model: &description.model_name,
             guid: &description.guid,
             fmu: request.fmu.as_deref(),
+            isolation: request.isolation.map(Into::into),
             settings: settings.iter().map(as_setting).collect(),
             times: request.times,
             design,
@@ -230,7 +233,9 @@ fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -
 fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {
     let variable = description.variable(&setting.name)?;
     if !variable.is_settable() {
-        let reason = format!("it is a {}, which cannot be set", variable.causality.as_str());
+        let causality = variable.causality.as_str();
+        let article = if causality.starts_with(['i', 'o']) { "an" } else { "a" };
+        let reason = format!("it is {article} {causality}, which cannot be set");
         return Err(SweepError::option("set", &setting.name, reason));
     }
     let value = Value::parse(description, variable, &setting.value).map_err(FmiError::from)?;

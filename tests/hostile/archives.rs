@@ -2,8 +2,8 @@
 
 use std::io::{Cursor, Write as _};
 
-use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 use super::stage::{Input, refused};
 use super::toy::{DESCRIPTION, library_name, zipped};
@@ -65,6 +65,13 @@ fn many_entries() -> Vec<u8> {
     zipped(&entries)
 }
 
+/// Names that come to 279,000 folders.
+fn many_folders() -> Vec<u8> {
+    let names: Vec<_> = (0..9000).map(|k| format!("{k}/{}", "x/".repeat(30))).collect();
+    let entries: Vec<_> = names.iter().map(|name| (name.as_str(), &b""[..])).collect();
+    zipped(&entries)
+}
+
 fn truncated() -> Vec<u8> {
     let mut bytes = with("resources/a", b"some text");
     bytes.truncate(bytes.len() / 2);
@@ -72,9 +79,14 @@ fn truncated() -> Vec<u8> {
 }
 
 fn flipped() -> Vec<u8> {
-    let text = DESCRIPTION.as_bytes();
-    let mut bytes = zipped(&[("modelDescription.xml", text), (&library_name(), b"a library, or nearly so")]);
-    let at = bytes.windows(9).position(|window| window == b"a library").unwrap_or(200);
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, text) in [("modelDescription.xml", DESCRIPTION), (&library_name(), "a library, or nearly so")] {
+        writer.start_file(name, stored).unwrap();
+        writer.write_all(text.as_bytes()).unwrap();
+    }
+    let mut bytes = writer.finish().unwrap().into_inner();
+    let at = bytes.windows(9).position(|window| window == b"a library").unwrap();
     bytes[at] ^= 0x55;
     bytes
 }
@@ -93,6 +105,8 @@ pub fn inputs() -> Vec<Input> {
         check("a bomb: 32 MiB of zeros", with("resources/zeros", &vec![0; 32 << 20])),
         check("a bomb that announces 10 bytes", understated()),
         check("10001 entries", many_entries()),
+        check("9000 entries in 279,000 folders", many_folders()),
+        check("a name of 499 parts", with(&"x/".repeat(499), b"")),
         check("a zip64 directory", zip64()),
         check("a symbolic link", linked()),
         check("two entries that share their bytes", overlapping()),

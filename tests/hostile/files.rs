@@ -10,6 +10,14 @@ fn sweep(what: &'static str, text: &str) -> Input {
     refused(what, &["sweep", "evil.toml", "--output", "out/sweep"], vec![("evil.toml", text.into())])
 }
 
+/// The document of a sweep of two runs with this seed.
+fn document(seed: u32) -> Vec<u8> {
+    let version = env!("CARGO_PKG_VERSION");
+    let column = r#"{"name": "run", "type": "integer", "optional": false}"#;
+    let text = format!(r#"{{"videg": "{version}", "case": "base", "runs": 2, "seed": {seed}, "columns": [{column}]}}"#);
+    text.into_bytes()
+}
+
 fn merge(what: &'static str, files: Vec<(&'static str, Vec<u8>)>) -> Input {
     refused(what, &["sweep", "merge", "shards", "--output", "out/merged"], files)
 }
@@ -34,7 +42,12 @@ pub fn inputs() -> Vec<Input> {
         sweep("a variable that is none", "[vary]\n\"../../canary\" = { from = 0, to = 1, count = 3 }"),
         sweep("something recorded that is no variable", "record = ['/etc/passwd']"),
         merge("no shard", Vec::new()),
-        merge("shards of another sweep", vec![("shards/sweep.json", b"{}".to_vec())]),
+        refused(
+            "shards of two sweeps",
+            &["sweep", "merge", "shards", "others", "--output", "out/merged"],
+            vec![("shards/sweep.json", document(1)), ("others/sweep.json", document(2))],
+        ),
+        merge("a document without runs", vec![("shards/sweep.json", b"{}".to_vec())]),
         merge("a document that is none", vec![("shards/sweep.json", b"[[[[".to_vec())]),
         refused(
             "results of another sweep in the folder",

@@ -7,7 +7,7 @@ fn check(what: &'static str, macros: &[&str], options: &[&'static str]) -> Input
     Input { what, given: Given::Library(macros, options.to_vec()), code: 2 }
 }
 
-const LIMIT: [&str; 2] = ["--time-limit", "1"];
+const LIMIT: [&str; 2] = ["--time-limit", "3"];
 const SMALL: [&str; 2] = ["--memory-limit", "1024"];
 
 /// All of them.

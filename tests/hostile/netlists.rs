@@ -6,8 +6,10 @@ use std::process::Command;
 
 use videg::ngspice::Ngspice;
 
+use super::stage::CANARY;
+
 const EVIL: &str =
-    "name = \"x\\n.control\\nshell touch canary\\n.endc\"\ndescription = \"*\\n.control\\nshell touch canary\"\n";
+    "name = \"x\\n.control\\nshell touch CANARY\\n.endc\"\ndescription = \"*\\n.control\\nshell touch CANARY\"\n";
 
 #[test]
 fn commands_in_the_name_of_a_case_reach_no_netlist() {
@@ -16,14 +18,16 @@ fn commands_in_the_name_of_a_case_reach_no_netlist() {
     }
     super::stage::build();
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("evil.toml"), EVIL).unwrap();
+    let canary = folder.path().canonicalize().unwrap().join("canary");
+    let evil = EVIL.replace(CANARY, &canary.display().to_string());
+    fs::write(folder.path().join("evil.toml"), evil).unwrap();
     let words = ["crosscheck", "--case-file", "evil.toml", "--until", "2", "--output", "out", "--export", "exported"];
     let output = Command::new(env!("CARGO_BIN_EXE_videg")).args(words).current_dir(folder.path()).output().unwrap();
     assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
     let netlists = netlists(&folder.path().join("exported"));
     assert!(netlists.iter().any(|text| text.contains("\ntran ")), "{} netlists", netlists.len());
     assert!(!netlists.iter().any(|text| text.contains("canary")), "{netlists:?}");
-    assert!(!folder.path().join("canary").exists());
+    assert!(!canary.exists());
 }
 
 /// The netlists in a folder and below.

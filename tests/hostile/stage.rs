@@ -19,6 +19,11 @@ pub struct Input {
     pub code: i32,
 }
 
+/// What commands that hide in inputs would make: in them it stands for an absolute path that is looked at afterwards.
+pub const CANARY: &str = "CANARY";
+/// Where names that are absolute lead.
+const ROOT_CANARY: &str = "/canary";
+
 /// How an input is given.
 pub enum Given {
     /// A command with these words, in a folder with these files.
@@ -105,7 +110,9 @@ pub fn run(input: &Input) -> Told {
     }
     let before = snapshot(&root);
     let mut command = videg();
-    command.args(input.words()).current_dir(&work).env("TMPDIR", &temporary);
+    let canary = root.join("canary").display().to_string();
+    let words: Vec<_> = input.words().iter().map(|word| word.replace(CANARY, &canary)).collect();
+    command.args(&words).current_dir(&work).env("TMPDIR", &temporary);
     let output = limited(&mut command, input.what);
     check_folder(input.what, &root, &before);
     told(input, &output, &root)
@@ -132,6 +139,7 @@ fn check_folder(what: &str, root: &Path, before: &BTreeMap<PathBuf, Option<Vec<u
     for (path, bytes) in before {
         assert!(after.get(path) == Some(bytes), "{what}: {} is not what it was", path.display());
     }
+    assert!(!Path::new(ROOT_CANARY).exists(), "{what}: {ROOT_CANARY} was written");
     let results = root.join("work/out");
     for path in after.keys().filter(|path| !before.contains_key(*path)) {
         assert!(path.starts_with(&results), "{what}: {} was written", path.display());
@@ -185,9 +193,10 @@ fn told(input: &Input, output: &Output, root: &Path) -> Told {
 
 /// `text` without what differs from run to run or with each parameter of the model: folders, numbers of threads, GUIDs.
 fn without_folders(text: &str, root: &Path) -> String {
+    let text = text.replace(&root.join("canary").display().to_string(), CANARY);
     let root = root.display().to_string();
     let folders = ["/work/", "/tmp/"];
-    let text = folders.iter().fold(text.to_owned(), |text, part| text.replace(&format!("{root}{part}"), ""));
+    let text = folders.iter().fold(text, |text, part| text.replace(&format!("{root}{part}"), ""));
     let text = match text.split_once("'main' (") {
         Some((before, after)) => format!("{before}'main'{}", after.split_once(')').map_or("", |(_, after)| after)),
         None => text,

@@ -7,12 +7,18 @@ use crate::fmi::error::Refusal;
 
 /// Longest name, bytes: of a whole path, macOS takes 1024.
 const LONGEST: usize = 1000;
+/// Deepest path, parts.
+const DEEPEST: usize = 32;
 /// What Windows takes for a device in every folder, whatever the extension; and COM0 to LPT9.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
 
 /// Paths so far, as file systems see them that do not tell case apart.
-#[derive(Debug, Default)]
-pub(super) struct Names(HashMap<String, Known>);
+#[derive(Debug)]
+pub(super) struct Names {
+    known: HashMap<String, Known>,
+    /// How many files and folders there may be.
+    allowed: usize,
+}
 
 #[derive(Debug, PartialEq)]
 struct Known {
@@ -21,17 +27,28 @@ struct Known {
 }
 
 impl Names {
+    /// None yet, of at most `allowed` files and folders: a few long names come to very many folders.
+    pub fn new(allowed: usize) -> Self {
+        Self { known: HashMap::new(), allowed }
+    }
+
     /// Takes the name of a further entry; a folder's ends with a slash.
     pub fn add(&mut self, name: &str) -> Result<(), Refusal> {
         if let Some(why) = fault(name) {
             return Err(Refusal::Path { entry: name.chars().take(100).collect(), why });
         }
         let parts: Vec<_> = name.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
+        if parts.len() > DEEPEST {
+            let why = "its name has more than 32 parts";
+            return Err(Refusal::Path { entry: name.chars().take(100).collect(), why });
+        }
         for end in 1..=parts.len() {
             let path = parts[..end].join("/");
             let key = path.to_lowercase();
             let found = Known { path, is_folder: end < parts.len() || name.ends_with('/') };
-            match self.0.entry(key) {
+            let is_full = self.known.len() >= self.allowed;
+            match self.known.entry(key) {
+                Entry::Vacant(_) if is_full => return Err(Refusal::Paths { allowed: self.allowed }),
                 Entry::Vacant(place) => {
                     place.insert(found);
                 }
@@ -84,7 +101,7 @@ mod tests {
     use super::*;
 
     fn refusal(names: &[&str]) -> Option<String> {
-        let mut all = Names::default();
+        let mut all = Names::new(100);
         names.iter().find_map(|name| all.add(name).err()).map(|reason| reason.to_string())
     }
 
@@ -109,6 +126,17 @@ mod tests {
             let found = refusal(&names).unwrap_or_default();
             assert!(found.contains(told), "{names:?}: {found}");
         }
+    }
+
+    #[test]
+    fn deep_names_and_many_folders_are_refused() {
+        assert_eq!(refusal(&[&"x/".repeat(32)]), None);
+        assert!(refusal(&[&"x/".repeat(33)]).unwrap().ends_with("its name has more than 32 parts"));
+        let names: Vec<_> = (0..4).map(|k| format!("{k}/{}", "x/".repeat(29))).collect();
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        assert_eq!(refusal(&names[..3]), None, "90 folders");
+        let found = refusal(&names).unwrap_or_default();
+        assert_eq!(found, "the archive has more than 100 files and folders");
     }
 
     #[test]

@@ -21,6 +21,12 @@ pub enum Refusal {
         /// Bound.
         allowed: usize,
     },
+    /// Its names come to too many files and folders.
+    #[error("the archive has more than {allowed} files and folders")]
+    Paths {
+        /// Bound.
+        allowed: usize,
+    },
     /// The archive uses the zip64 directory.
     #[error("the archive has a zip64 directory, which only archives beyond 65535 entries or 4 GiB need")]
     Zip64,

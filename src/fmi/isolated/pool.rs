@@ -60,10 +60,11 @@ impl Pool {
         let ended = |process: &Process, how| {
             FmiError::Isolated(Box::new(self.ending("loading the library", how, Vec::new(), process.printed())))
         };
-        match process.ask(&self.opening, self.isolation.bounds.time, |_| ()) {
+        match process.open(&self.opening, self.isolation.bounds.time) {
             Ok(Reply::Loaded) => Ok(process),
+            Ok(Reply::Unable(cause)) => Err(FmiError::Worker { program: program.clone(), cause }),
             Ok(Reply::Refused(reason)) => Err(FmiError::Refusal(reason)),
-            Ok(other) => Err(ended(&process, How::Garbled(format!("{other:?} in answer to the library")))),
+            Ok(other) => Err(ended(&process, How::Garbled(format!("{} in answer to the library", other.name())))),
             Err(how) => Err(ended(&process, how)),
         }
     }

@@ -3,16 +3,15 @@
 use std::collections::VecDeque;
 use std::io::{self, Read};
 use std::path::Path;
-use std::process::{Child, ChildStderr, Command, Stdio};
+use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-use serde::Serialize;
 
 use super::WORKER_VERB;
 use super::ending::How;
 use super::pipes::{Heard, Pipes};
-use super::protocol::{Reply, frame, unframe};
+use super::protocol::{Given, Opening, Reply, Request, SPARE, build, frame, unframe};
+use crate::fmi::logging::LogRecord;
 
 /// How often a silent worker is looked at: what it started may hold its pipes open beyond its death.
 const LOOK: Duration = Duration::from_millis(100);
@@ -27,6 +26,10 @@ pub(super) struct Process {
     pipes: Pipes,
     /// What it sent and nobody has read yet.
     heard: Vec<u8>,
+    /// How many calls there were.
+    calls: u64,
+    /// Whether it is reaped, or about to be.
+    is_over: bool,
     printed: Arc<Mutex<Printed>>,
 }
 
@@ -52,36 +55,62 @@ impl Process {
         let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
         let printed = keep_printed(child.stderr.take().ok_or_else(missing)?);
         let pipes = Pipes::new(requests, replies)?;
-        Ok(Self { child, pipes, heard: Vec::new(), printed })
+        Ok(Self { child, pipes, heard: Vec::new(), calls: 0, is_over: false, printed })
     }
 
-    /// Sends a message and returns the answer, which must come within `limit`; `log` gets the records on the way. After an
-    /// error the worker is gone.
+    /// Tells the worker what it is for and returns what it says to that. After an error the worker is gone.
     ///
     /// # Errors
     /// What happened to it.
-    pub fn ask(
+    pub fn open(&mut self, opening: &Opening, limit: Option<Duration>) -> Result<Reply, How> {
+        let framed = frame(&build()).and_then(|first| Ok([first, frame(opening)?].concat()));
+        self.ask(framed, SPARE, &mut Deadline::after(limit), |_| ())
+    }
+
+    /// Has a call carried out, which must be done within `limit`; its status, and what else it gave. `log` gets the
+    /// records on the way. After an error the worker is gone.
+    ///
+    /// # Errors
+    /// What happened to it.
+    pub fn call(
         &mut self,
-        message: &impl Serialize,
+        request: &Request,
         limit: Option<Duration>,
-        mut log: impl FnMut(Reply),
+        log: impl FnMut(LogRecord),
+    ) -> Result<(i32, Given), How> {
+        self.calls += 1;
+        let framed = frame(&(self.calls, request));
+        match self.ask(framed, request.longest_answer(), &mut Deadline::after(limit), log)? {
+            Reply::Done { call, status, given } if call == self.calls => Ok((status, given)),
+            Reply::Done { call, .. } => {
+                Err(self.end(How::Garbled(format!("the answer to call {call} in answer to call {}", self.calls))))
+            }
+            other => Err(self.end(How::Garbled(format!("{} in answer to a call", other.name())))),
+        }
+    }
+
+    fn ask(
+        &mut self,
+        framed: io::Result<Vec<u8>>,
+        longest: usize,
+        deadline: &mut Deadline,
+        mut log: impl FnMut(LogRecord),
     ) -> Result<Reply, How> {
-        let end = limit.and_then(|limit| Instant::now().checked_add(limit));
-        let bytes = frame(message).map_err(|cause| How::Refused(cause.to_string()))?;
-        self.send(&bytes, end).map_err(|how| self.end(how))?;
+        let bytes = framed.map_err(|cause| How::Refused(cause.to_string())).map_err(|how| self.end(how))?;
+        self.send(&bytes, deadline).map_err(|how| self.end(how))?;
         loop {
-            match self.next(end) {
-                Ok(record @ Reply::Log(_)) => log(record),
+            match self.next(deadline, longest) {
+                Ok(Reply::Log(record)) => log(record),
                 Ok(answer) => return Ok(answer),
                 Err(how) => return Err(self.end(how)),
             }
         }
     }
 
-    fn send(&mut self, mut bytes: &[u8], end: Option<Instant>) -> Result<(), How> {
+    fn send(&mut self, mut bytes: &[u8], deadline: &mut Deadline) -> Result<(), How> {
         while !bytes.is_empty() {
-            match self.pipes.write(bytes, wait(end)?) {
-                Ok(0) => self.look()?,
+            match self.pipes.write(bytes, deadline.wait()?) {
+                Ok(0) if self.has_ended()? => return Ok(()),
                 Ok(count) => bytes = &bytes[count..],
                 // It is gone, and has said why: see what it sent last.
                 Err(_) => return Ok(()),
@@ -90,59 +119,91 @@ impl Process {
         Ok(())
     }
 
-    fn next(&mut self, end: Option<Instant>) -> Result<Reply, How> {
+    fn next(&mut self, deadline: &mut Deadline, longest: usize) -> Result<Reply, How> {
         loop {
-            let message = unframe(&mut self.heard).map_err(|cause| How::Garbled(cause.to_string()))?;
-            if let Some(message) = message {
+            if let Some(message) = self.heard(longest)? {
                 return Ok(message);
             }
-            match self.pipes.read(&mut self.heard, wait(end)?) {
+            match self.pipes.read(&mut self.heard, deadline.wait()?) {
                 Ok(Heard::Something) => {}
-                Ok(Heard::Nothing) => self.look()?,
+                Ok(Heard::Nothing) if self.has_ended()? => {
+                    // It may have answered after that look at the pipe, and ended before the look at it.
+                    let _ = self.pipes.read(&mut self.heard, Duration::ZERO);
+                    let last = self.heard(longest)?;
+                    return last.map_or_else(|| Err(self.ended()), Ok);
+                }
+                Ok(Heard::Nothing) => {}
                 Ok(Heard::End) => return Err(How::Silent),
                 Err(cause) => return Err(How::Refused(cause.to_string())),
             }
         }
     }
 
-    /// Whether it lives.
-    fn look(&mut self) -> Result<(), How> {
-        match self.child.try_wait() {
-            Ok(None) => Ok(()),
-            Ok(Some(status)) => Err(How::Ended(status)),
-            Err(cause) => Err(How::Refused(cause.to_string())),
+    /// The next message, if it has come as a whole.
+    fn heard(&mut self, longest: usize) -> Result<Option<Reply>, How> {
+        // Log records come with any call.
+        unframe(&mut self.heard, longest.max(SPARE)).map_err(|cause| How::Garbled(cause.to_string()))
+    }
+
+    /// Whether it has ended. It is not reaped by that: its number stays its own, and that of its group.
+    #[cfg(unix)]
+    fn has_ended(&mut self) -> Result<bool, How> {
+        use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
+        if self.is_over {
+            return Ok(true);
         }
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        match waitid(WaitId::Pid(Pid::from_child(&self.child)), options) {
+            Ok(status) => Ok(status.is_some()),
+            Err(rustix::io::Errno::INTR) => Ok(false),
+            Err(cause) => Err(How::Refused(io::Error::from(cause).to_string())),
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn has_ended(&mut self) -> Result<bool, How> {
+        self.child.try_wait().map(|status| status.is_some()).map_err(|cause| How::Refused(cause.to_string()))
     }
 
     /// Ends it; what became of it is `how`, or its own end where that comes first.
     fn end(&mut self, how: How) -> How {
-        let own = if matches!(how, How::Silent) { self.farewell() } else { None };
-        self.kill();
-        own.map_or(how, How::Ended)
+        if matches!(how, How::Silent) && self.farewell() {
+            return self.ended();
+        }
+        let _ = self.kill();
+        how
     }
 
-    /// The exit status of a worker that has closed its pipes, if it ends by itself.
-    fn farewell(&mut self) -> Option<std::process::ExitStatus> {
+    /// Its own end, and that of its group.
+    fn ended(&mut self) -> How {
+        self.kill().map_or_else(|cause| How::Refused(cause.to_string()), How::Ended)
+    }
+
+    /// Whether a worker that has closed its pipes ends by itself.
+    fn farewell(&mut self) -> bool {
         let end = Instant::now() + FAREWELL;
         while Instant::now() < end {
-            match self.child.try_wait() {
-                Ok(None) => std::thread::sleep(Duration::from_millis(1)),
-                Ok(status) => return status,
-                Err(_) => return None,
+            match self.has_ended() {
+                Ok(false) => std::thread::sleep(Duration::from_millis(1)),
+                Ok(true) => return true,
+                Err(_) => return false,
             }
         }
-        None
+        false
     }
 
-    /// Ends the worker and its group.
-    fn kill(&mut self) {
-        #[cfg(unix)]
-        {
-            let group = rustix::process::Pid::from_child(&self.child);
-            let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    /// Ends the worker and its group, once: when it is reaped, their numbers may be given to others.
+    fn kill(&mut self) -> io::Result<ExitStatus> {
+        if !self.is_over {
+            self.is_over = true;
+            #[cfg(unix)]
+            {
+                let group = rustix::process::Pid::from_child(&self.child);
+                let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+            }
+            let _ = self.child.kill();
         }
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        self.child.wait()
     }
 
     /// The end of what it printed.
@@ -162,15 +223,31 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
-        self.kill();
+        let _ = self.kill();
     }
 }
 
-/// How long to wait before the next look.
-fn wait(end: Option<Instant>) -> Result<Duration, How> {
-    let Some(end) = end else { return Ok(LOOK) };
-    let left = end.saturating_duration_since(Instant::now());
-    if left.is_zero() { Err(How::TooLong) } else { Ok(left.min(LOOK)) }
+/// The time at which a worker must have answered.
+struct Deadline {
+    end: Option<Instant>,
+    is_past: bool,
+}
+
+impl Deadline {
+    fn after(limit: Option<Duration>) -> Self {
+        Self { end: limit.and_then(|limit| Instant::now().checked_add(limit)), is_past: false }
+    }
+
+    /// How long to wait before the next look. There is one look after the end: the answer may have come while this
+    /// process was stopped.
+    fn wait(&mut self) -> Result<Duration, How> {
+        let Some(end) = self.end else { return Ok(LOOK) };
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() && std::mem::replace(&mut self.is_past, true) {
+            return Err(How::TooLong);
+        }
+        Ok(left.min(LOOK))
+    }
 }
 
 /// Reads what a worker prints, so that it never waits for a reader, and keeps the end.
@@ -191,4 +268,53 @@ fn keep_printed(mut stderr: ChildStderr) -> Arc<Mutex<Printed>> {
         shared.lock().unwrap_or_else(PoisonError::into_inner).is_over = true;
     });
     printed
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    /// A worker that says `bytes`, does `what`, and ends.
+    fn worker(bytes: &[u8], what: &str) -> (tempfile::TempDir, Process) {
+        let folder = tempfile::tempdir().unwrap();
+        let (said, program) = (folder.path().join("said"), folder.path().join("worker"));
+        std::fs::write(&said, bytes).unwrap();
+        std::fs::write(&program, format!("#!/bin/sh\ncat '{}'\n{what}\n", said.display())).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let process = Process::start(&program, folder.path()).unwrap();
+        (folder, process)
+    }
+
+    fn done(call: u64, given: Given) -> Vec<u8> {
+        frame(&Reply::Done { call, status: 0, given }).unwrap()
+    }
+
+    #[test]
+    fn an_answer_that_came_in_time_is_heard_by_a_host_that_was_stopped() {
+        let (_folder, mut process) = worker(&frame(&Reply::Loaded).unwrap(), "exit 3");
+        while !process.has_ended().unwrap() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let mut deadline = Deadline::after(Some(Duration::ZERO));
+        assert!(matches!(process.next(&mut deadline, SPARE), Ok(Reply::Loaded)));
+        assert!(matches!(process.next(&mut deadline, SPARE), Err(How::TooLong)));
+        assert!(matches!(process.ended(), How::Ended(status) if status.code() == Some(3)));
+    }
+
+    #[test]
+    fn an_answer_to_another_call_is_none() {
+        let (_folder, mut process) = worker(&done(7, Given::Nothing), "sleep 100");
+        let how = process.call(&Request::Free, None, |_| ()).unwrap_err();
+        assert!(matches!(&how, How::Garbled(what) if what == "the answer to call 7 in answer to call 1"), "{how:?}");
+    }
+
+    #[test]
+    fn an_answer_longer_than_its_call_lets_it_takes_no_memory() {
+        let (_folder, mut process) = worker(&done(1, Given::Bytes(vec![0; 1 << 20])), "sleep 100");
+        let how = process.call(&Request::Free, None, |_| ()).unwrap_err();
+        assert!(matches!(&how, How::Garbled(what) if what.ends_with("allowed are 65536")), "{how:?}");
+        assert!(process.heard.len() < 4 * SPARE, "{} bytes are kept", process.heard.len());
+    }
 }

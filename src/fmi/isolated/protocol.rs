@@ -10,12 +10,27 @@ use crate::fmi::logging::LogRecord;
 
 /// Largest serialised state that is passed on, bytes.
 pub(in crate::fmi) const LONGEST_STATE: usize = 256 << 20;
+/// What a message may have besides values, bytes: the longest log record, for one.
+pub(super) const SPARE: usize = 1 << 16;
 /// Longest message, bytes: a state and what goes with it.
-const LONGEST: usize = LONGEST_STATE + (1 << 16);
+pub(super) const LONGEST: usize = LONGEST_STATE + SPARE;
+/// Longest Strings that a call may give altogether, bytes.
+const LONGEST_TEXTS: usize = 16 << 20;
 /// Bytes of the length in front of a message.
 const HEAD: usize = 4;
 
-/// First message to the worker.
+/// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
+pub(super) fn build() -> String {
+    let sources = [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs")];
+    // FNV-1a
+    let hash = sources
+        .concat()
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{} with messages {hash:016x}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Second message to the worker.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Opening {
     /// The process that asks: when it is gone, the worker goes.
@@ -37,7 +52,10 @@ pub(super) enum Plain {
     Reset,
 }
 
-/// Each further message to the worker: a call. States go by numbers from 1 on; 0 is none.
+/// Each further message to the worker: a request and the number of the call, from 1 on.
+pub(super) type Call = (u64, Request);
+
+/// What is asked for. States go by numbers from 1 on; 0 is none.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
     Instantiate {
@@ -133,17 +151,49 @@ pub(super) enum Request {
     },
 }
 
+impl Request {
+    /// Longest answer, bytes.
+    pub fn longest_answer(&self) -> usize {
+        let values = match self {
+            Self::GetReal { references }
+            | Self::GetInteger { references }
+            | Self::GetBoolean { references }
+            | Self::GetOutputDerivatives { references, .. } => 8 * references.len(),
+            Self::DirectionalDerivative { unknowns, .. } => 8 * unknowns.len(),
+            Self::GetString { .. } => LONGEST_TEXTS,
+            Self::SerializeState { size, .. } => usize::try_from(*size).unwrap_or(LONGEST_STATE),
+            _ => 0,
+        };
+        values.saturating_add(SPARE).min(LONGEST)
+    }
+}
+
 /// Each message from the worker.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Reply {
+    /// It cannot begin, and why. The first, so that every build reads it as this.
+    Unable(String),
     /// The library is loaded.
     Loaded,
     /// It is not, and why.
     Refused(String),
     /// A message of the FMU, on the way to the answer.
     Log(LogRecord),
-    /// The answer to a call: the status, and what else the function gave.
-    Done { status: i32, given: Given },
+    /// The answer to the call of this number: the status, and what else the function gave.
+    Done { call: u64, status: i32, given: Given },
+}
+
+impl Reply {
+    /// What it is, in few words: its content may be of any length.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Unable(_) => "that it cannot begin",
+            Self::Loaded => "that the library is loaded",
+            Self::Refused(_) => "that the library is refused",
+            Self::Log(_) => "a log record",
+            Self::Done { .. } => "the answer to a call",
+        }
+    }
 }
 
 /// What a function gave besides its status.
@@ -172,13 +222,13 @@ pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
     Ok(frame)
 }
 
-/// Takes the first message out of `bytes`, if it is there as a whole.
+/// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is there as a whole.
 ///
 /// # Errors
 /// A length that no message has; a message that is none.
-pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>) -> io::Result<Option<T>> {
+pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) -> io::Result<Option<T>> {
     let Some(&head) = bytes.first_chunk::<HEAD>() else { return Ok(None) };
-    let end = HEAD + length(head)?;
+    let end = HEAD + length(head, longest)?;
     let Some(message) = bytes.get(HEAD..end) else { return Ok(None) };
     let message = decode(message)?;
     bytes.drain(..end);
@@ -202,19 +252,19 @@ pub(super) fn receive<T: DeserializeOwned>(reader: &mut impl Read) -> io::Result
     let mut head = Vec::with_capacity(HEAD);
     reader.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
     let Some(&head) = head.first_chunk::<HEAD>() else { return Ok(None) };
-    let length = length(head)?;
+    let length = length(head, LONGEST)?;
     let mut message = Vec::new();
     // Memory is taken as bytes arrive, not as they are announced.
     reader.by_ref().take(length as u64).read_to_end(&mut message)?;
     if message.len() < length { Ok(None) } else { decode(&message).map(Some) }
 }
 
-fn length(head: [u8; HEAD]) -> io::Result<usize> {
+fn length(head: [u8; HEAD], longest: usize) -> io::Result<usize> {
     let length = usize::try_from(u32::from_le_bytes(head)).map_err(io::Error::other)?;
-    if length <= LONGEST {
+    if length <= longest {
         return Ok(length);
     }
-    Err(io::Error::other(format!("a message of {length} bytes is announced, allowed are {LONGEST}")))
+    Err(io::Error::other(format!("a message of {length} bytes is announced, allowed are {longest}")))
 }
 
 fn decode<T: DeserializeOwned>(bytes: &[u8]) -> io::Result<T> {
@@ -232,9 +282,10 @@ mod tests {
     #[test]
     fn numbers_arrive_with_all_their_bits() {
         let values = vec![0.1 + 0.2, -0.0, f64::NAN, f64::INFINITY, -5e-324, f64::from_bits(0x7ff4_0000_0000_0001)];
-        let message = Reply::Done { status: -77, given: Given::Reals(values.clone()) };
+        let message = Reply::Done { call: 3, status: -77, given: Given::Reals(values.clone()) };
         let bytes = frame(&message).unwrap();
-        let Some(Reply::Done { status: -77, given: Given::Reals(found) }) = receive(&mut &*bytes).unwrap() else {
+        let Some(Reply::Done { call: 3, status: -77, given: Given::Reals(found) }) = receive(&mut &*bytes).unwrap()
+        else {
             panic!("another message");
         };
         let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
@@ -247,20 +298,37 @@ mod tests {
         let two = frame(&Reply::Refused("no".to_owned())).unwrap();
         let mut bytes = [one, two].concat();
         let last = bytes.pop().unwrap();
-        assert!(matches!(unframe(&mut bytes).unwrap(), Some(Reply::Loaded)));
-        assert!(unframe::<Reply>(&mut bytes).unwrap().is_none());
+        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Loaded)));
+        assert!(unframe::<Reply>(&mut bytes, LONGEST).unwrap().is_none());
         bytes.push(last);
-        assert!(matches!(unframe(&mut bytes).unwrap(), Some(Reply::Refused(text)) if text == "no"));
+        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Refused(text)) if text == "no"));
         assert!(bytes.is_empty());
+    }
+
+    #[test]
+    fn an_answer_may_be_as_long_as_its_call_lets_it() {
+        let references = vec![0; 1000];
+        let reals = Given::Reals(vec![f64::MIN_POSITIVE; 1000]);
+        let integers = || Given::Integers(vec![i32::MIN; 1000]);
+        let answer = |given| frame(&Reply::Done { call: u64::MAX, status: i32::MIN, given }).unwrap();
+        let is_taken = |mut bytes, request: Request| {
+            unframe::<Reply>(&mut bytes, request.longest_answer()).is_ok_and(|reply| reply.is_some())
+        };
+        assert!(is_taken(answer(reals), Request::GetReal { references: references.clone() }));
+        assert!(is_taken(answer(integers()), Request::GetBoolean { references }));
+        let state = |size| answer(Given::Bytes(vec![0xff; size]));
+        assert!(is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 20 }));
+        assert!(!is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 10 }));
+        assert!(!is_taken(state(1 << 20), Request::Free));
     }
 
     #[test]
     fn garbage_is_an_error_and_takes_no_memory() {
         let vast = u32::MAX.to_le_bytes().to_vec();
-        let vector = [&[12, 0, 0, 0, 3, 0, 1][..], &[0xff; 8], &[0x7f]].concat(); // Done with 2^63 Reals
-        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 0, 0], vector] {
+        let vector = [&[13, 0, 0, 0, 4, 0, 0, 1][..], &[0xff; 8], &[0x7f]].concat(); // Done with 2^63 Reals
+        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 1, 0], vector] {
             assert!(receive::<Reply>(&mut &*garbage).is_err());
-            assert!(unframe::<Reply>(&mut garbage).is_err());
+            assert!(unframe::<Reply>(&mut garbage, LONGEST).is_err());
         }
         assert!(receive::<Reply>(&mut &[7, 0, 0, 0, 0][..]).unwrap().is_none(), "the stream ended");
     }

@@ -10,8 +10,8 @@ use fmi2_abi::{fmi2Component, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use super::Bounds;
 use super::ending::{Ending, How};
 use super::process::Process;
-use super::protocol::{Given, Reply, Request};
-use crate::fmi::logging::Environment;
+use super::protocol::{Given, Request};
+use crate::fmi::logging::{Environment, LogRecord};
 
 /// An instance in a worker.
 pub(super) struct Remote {
@@ -82,19 +82,14 @@ impl Remote {
             return (fmi2Fatal, Given::Nothing);
         }
         let environment = &self.environment;
-        let log = |reply| {
-            if let Reply::Log(record) = reply {
-                environment.take(record);
-            }
-        };
-        match self.process.ask(request, self.bounds.time, log) {
-            Ok(Reply::Done { status, given }) => {
+        let log = |record: LogRecord| environment.take(record.cut());
+        match self.process.call(request, self.bounds.time, log) {
+            Ok((status, given)) => {
                 if status == fmi2Fatal {
                     self.fate = Fate::Over;
                 }
                 (status, given)
             }
-            Ok(other) => (self.end(function, How::Garbled(format!("{other:?} in answer to a call"))), Given::Nothing),
             Err(how) => (self.end(function, how), Given::Nothing),
         }
     }
