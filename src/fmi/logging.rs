@@ -87,7 +87,8 @@ impl LogRecord {
         // A byte that is no text becomes a sign of three.
         const LONGEST: usize = 3 * MAX_MESSAGE;
         for text in [&mut self.instance, &mut self.category, &mut self.message] {
-            text.truncate(text.floor_char_boundary(LONGEST));
+            let end = (0..=LONGEST.min(text.len())).rev().find(|end| text.is_char_boundary(*end));
+            text.truncate(end.unwrap_or(0));
         }
         self
     }

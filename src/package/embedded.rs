@@ -136,7 +136,7 @@ mod tests {
         let archive = packaged(DESCRIPTIONS[0]);
         assert!(has_library(&archive, &library()));
         assert!(!has_library(&archive, &library()[1..]), "another library");
-        assert!(!has_library(&archive, DESCRIPTIONS[0]), "no library");
+        assert!(!has_library(&archive, DESCRIPTIONS[0].as_bytes()), "no library");
         assert!(!has_library(b"no zip", &library()));
     }
 

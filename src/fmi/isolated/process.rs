@@ -125,14 +125,13 @@ impl Process {
                 return Ok(message);
             }
             match self.pipes.read(&mut self.heard, deadline.wait()?) {
-                Ok(Heard::Something) => {}
                 Ok(Heard::Nothing) if self.has_ended()? => {
                     // It may have answered after that look at the pipe, and ended before the look at it.
                     let _ = self.pipes.read(&mut self.heard, Duration::ZERO);
                     let last = self.heard(longest)?;
                     return last.map_or_else(|| Err(self.ended()), Ok);
                 }
-                Ok(Heard::Nothing) => {}
+                Ok(Heard::Something | Heard::Nothing) => {}
                 Ok(Heard::End) => return Err(How::Silent),
                 Err(cause) => return Err(How::Refused(cause.to_string())),
             }
@@ -270,7 +269,8 @@ fn keep_printed(mut stderr: ChildStderr) -> Arc<Mutex<Printed>> {
     printed
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use std::os::unix::fs::PermissionsExt as _;
 
