@@ -107,7 +107,7 @@ impl<'a> Session<'a> {
         match (reason, console::stranger(line)) {
             (Some(reason), _) => self.leave_out(block, line, reason),
             (None, Some(part)) => {
-                self.fail(block, &format!("{part:?} is not among what runs here; say that it is not run"))
+                self.fail(block, &format!("{part:?} is not among what runs here; say that it is not run"));
             }
             (None, None) => return false,
         }

@@ -30,6 +30,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
     let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
     Sweep::new(Request {
+        isolation: None,
         name,
         description: &HARVESTER,
         fmu: None,
