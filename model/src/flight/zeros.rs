@@ -39,12 +39,14 @@ impl Knots {
 
 impl Flight {
     /// The place at `tau`, s, where the angle has this sine and cosine, with derivative number `order`.
+    #[inline]
     pub(super) fn knot(&self, order: usize, tau: f64, sine: [f64; 2]) -> Knot {
         let value = if order == 0 { self.value(tau, sine) } else { self.derivatives(tau, sine)[order] };
         Knot { tau, value, sine }
     }
 
     /// Zeros of derivative number `order` strictly between `begin` and `end`.
+    #[inline] // the order is known where it is called: half of what follows falls away
     pub(super) fn zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
         let [.., c2, c3] = self.coefficients;
         let constant = match order {
@@ -75,6 +77,7 @@ impl Flight {
     }
 
     /// Zeros of a derivative whose polynomial part is constant: sine or cosine have a given value twice in a period.
+    #[inline]
     fn harmonic_zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
         let [_, c1, c2, c3] = self.coefficients;
         let omega = self.omega();
