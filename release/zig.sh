@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what builds for an old C library, below target/tools: cargo-zigbuild from crates.io and zig from PyPI, of the
+# Installs what builds for an old C library, below target/tools: cargo-zigbuild and, as a Python package, zig, of the
 # versions named here, unless they are there already. Prints the folders to put at the beginning of PATH.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
