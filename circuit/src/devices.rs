@@ -67,10 +67,10 @@ impl Devices {
         Self {
             supply: parameters.supply_voltage,
             threshold: parameters.release_voltage(),
-            resistance: parameters.load_resistance.abs(), // -0 is 0
+            resistance: parameters.resistance(),
             conductance: match parameters.release {
-                Release::Zener | Release::Storage => 1.0 / parameters.load_resistance.abs(),
-                Release::Switch => (1.0 / parameters.load_resistance.abs()).min(SWITCH_CONDUCTANCE),
+                Release::Zener | Release::Storage => 1.0 / parameters.resistance(),
+                Release::Switch => (1.0 / parameters.resistance()).min(SWITCH_CONDUCTANCE),
             },
             release: parameters.release,
             saturation,

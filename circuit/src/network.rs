@@ -33,8 +33,7 @@ impl Elements {
                 Release::Switch | Release::Storage => 0.0,
             },
             conductance: match parameters.release {
-                // The absolute value: -0 ohm is 0 ohm.
-                Release::Zener | Release::Switch => 1.0 / parameters.load_resistance.abs(),
+                Release::Zener | Release::Switch => 1.0 / parameters.resistance(),
                 Release::Storage => f64::INFINITY,
             },
             release: parameters.release,

@@ -199,6 +199,11 @@ impl Parameters {
         }
     }
 
+    /// Resistance of the load, ohm: -0 is 0.
+    pub(crate) fn resistance(&self) -> f64 {
+        self.load_resistance.abs()
+    }
+
     /// Voltage at which a node begins to release its charge (V): `U_out` of a storage, else `U_z`.
     pub fn release_voltage(&self) -> f64 {
         match self.release {
