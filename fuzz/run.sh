@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
-# Fuzzes targets one after the other and puts down what that came to. See docs/fuzzing.md.
+# Fuzzes targets and puts down what that came to. See docs/fuzzing.md.
 #
 # fuzz/run.sh [SECONDS] [TARGET...]
 #
 # Each target, or those named, for SECONDS (default 3600), from the kept inputs and the working corpus in fuzz/corpus, which
 # takes what is new. Ends with 1 if something was found; its input then stands in fuzz/artifacts.
 #
-# Environment: RECORD, the file that takes a line for each target (default fuzz/record.csv, from which the table of
-# docs/fuzzing.md is made anew).
+# Environment: JOBS, so many targets at once (default 1); RECORD, the file that takes a line for each target (default
+# fuzz/record.csv, from which the table of docs/fuzzing.md is made anew).
 set -euo pipefail
+shopt -s nullglob
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export PATH="$PWD/target/tools/bin:$PATH"
 
 readonly KEPT=fuzz/record.csv
 record=${RECORD:-$KEPT}
+jobs=${JOBS:-1}
 seconds=3600
 if [[ ${1:-} =~ ^[0-9]+$ ]]; then
     seconds=$1
@@ -38,32 +40,33 @@ build() {
     echo "built in $((SECONDS - started)) s"
 }
 
-# The last number behind a word in what libFuzzer printed.
+# The last number behind a word in what libFuzzer printed, a file.
 last() {
     local found
-    found=$(grep --only-matching --extended-regexp "$1 +[0-9]+" "$scratch/log" | tail -1)
+    found=$(grep --only-matching --extended-regexp "$1 +[0-9]+" "$2" | tail -1)
     echo "${found##* }"
 }
 
 # Runs a target and adds its line; fails if it found something.
 fuzz() {
-    local target=$1 code=0 real user system executions TIMEFORMAT='%0R %0U %0S'
+    local target=$1 code=0 real user system executions log=$scratch/$1.log TIMEFORMAT='%0R %0U %0S'
     local folders=("fuzz/corpus/$target") artifacts=fuzz/artifacts/$target/
     mkdir -p "${folders[0]}" "$artifacts"
     for kind in seeds regressions; do
         [[ ! -d fuzz/$kind/$target ]] || folders+=("fuzz/$kind/$target")
     done
-    { time "$scratch/$target" "${folders[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
-        -print_final_stats=1 -artifact_prefix="$artifacts" >"$scratch/log" 2>&1 || code=$?; } 2>"$scratch/time"
-    read -r real user system <"$scratch/time"
-    executions=$(last 'stat::number_of_executed_units:')
+    # The time that one input may take is time of the wall, which those that run at once share.
+    { time "$scratch/$target" "${folders[@]}" -max_total_time="$seconds" -timeout="$((10 * jobs))" -rss_limit_mb=2048 \
+        -print_final_stats=1 -artifact_prefix="$artifacts" >"$log" 2>&1 || code=$?; } 2>"$scratch/$target.time"
+    read -r real user system <"$scratch/$target.time"
+    executions=$(last 'stat::number_of_executed_units:' "$log")
     if [[ $code -ne 0 ]]; then
-        grep --invert-match '^#[0-9]' "$scratch/log" | tail -60 >&2
-        [[ -n $executions ]] || exit 2 # it did not even run
+        touch "$scratch/$target.failed"
+        grep --invert-match '^#[0-9]' "$log" | tail -60 >&2
+        [[ -n $executions ]] || return 0 # it did not even run
     fi
-    echo "$(date --utc +%F),$commit,$target,$real,$((user + system)),$executions,$(last cov:),$(last ft:),$((code != 0))" |
+    echo "$(date --utc +%F),$commit,$target,$real,$((user + system)),$executions,$(last cov: "$log"),$(last ft: "$log"),$((code != 0))" |
         tee --append "$record"
-    return "$((code != 0))"
 }
 
 mapfile -t all < <(cargo +nightly fuzz list)
@@ -71,12 +74,14 @@ mapfile -t all < <(cargo +nightly fuzz list)
 commit=$(git rev-parse --short=10 HEAD)
 build "$@"
 [[ -s $record ]] || echo date,commit,target,seconds,cpu_seconds,executions,edges,features,findings >"$record"
-failed=()
 for target in "$@"; do
-    fuzz "$target" || failed+=("$target")
+    [[ $(jobs -rp | wc --lines) -lt $jobs ]] || wait -n
+    fuzz "$target" &
 done
+wait
 [[ $record != "$KEPT" ]] || UPDATE_FUZZ_TABLE=1 cargo test --quiet -p videg-fuzz-targets --test record
+failed=("$scratch"/*.failed)
 if [[ ${#failed[@]} -gt 0 ]]; then
-    echo "found something: ${failed[*]}" >&2
+    echo "found something: $(basename --suffix=.failed "${failed[@]}" | paste --serial --delimiters=' ')" >&2
     exit 1
 fi
