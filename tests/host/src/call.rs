@@ -98,10 +98,9 @@ unsafe fn deserialise(
     if a.random.once_in(4) {
         let position = a.random.below(blob.bytes.len());
         blob.bytes[position] ^= a.random.pick(&[1, 2, 64, -128]);
-        blob.damaged = true;
     }
     let size = if a.random.once_in(12) { a.random.below(blob.bytes.len()) } else { blob.bytes.len() };
-    a.wrong_if(blob.damaged || blob.interface != instance.interface || size < blob.bytes.len());
+    a.wrong_if(blob.is_damaged() || blob.interface != instance.interface || size < blob.bytes.len());
     // SAFETY: the array holds at least so many bytes.
     let status = unsafe { f(component, a.array(&blob.bytes), size, a.place(&mut state)) };
     *effect = Effect::Saved(state, Some(blob.known));

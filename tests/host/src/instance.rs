@@ -16,9 +16,21 @@ pub(crate) struct Known {
 /// A serialised state of an instance for this interface; what is damaged must be refused.
 pub(crate) struct Blob {
     pub(crate) bytes: Vec<i8>,
+    /// As the FMU wrote it.
+    written: Vec<i8>,
     pub(crate) known: Known,
     pub(crate) interface: Interface,
-    pub(crate) damaged: bool,
+}
+
+impl Blob {
+    pub(crate) fn new(bytes: Vec<i8>, known: Known, interface: Interface) -> Self {
+        Self { written: bytes.clone(), bytes, known, interface }
+    }
+
+    /// Damage upon damage can leave what was written.
+    pub(crate) fn is_damaged(&self) -> bool {
+        self.bytes != self.written
+    }
 }
 
 /// An instance of an FMU; dropping it frees it.

@@ -201,7 +201,7 @@ fn advance(instance: &mut Instance, function: Function, answer: Answer, blobs: &
             instance.freed.extend((!state.is_null()).then_some(state));
         }
         Effect::Serialised(bytes, Some(known)) => {
-            blobs.push(Blob { bytes, known, interface: instance.interface, damaged: false });
+            blobs.push(Blob::new(bytes, known, instance.interface));
         }
     }
 }
