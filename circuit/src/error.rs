@@ -68,6 +68,16 @@ pub enum Error {
         /// Index of the node: 0 left or shared, 1 right.
         node: usize,
     },
+    /// A count of a state to be restored is one that no run reaches.
+    #[error("{name} = {value} is above {bound}")]
+    Count {
+        /// What is counted.
+        name: &'static str,
+        /// The value given.
+        value: u64,
+        /// Largest value taken.
+        bound: u64,
+    },
     /// More switching instants in one step than a linear ramp can have.
     #[error("step of {step} s from time {time} s has more than {bound} switching instants")]
     TooManyEvents {

@@ -4,6 +4,9 @@ use crate::error::{Error, finite, not_negative, positive};
 use crate::ledger::Ledger;
 use crate::parameters::names;
 
+/// No run has had as many changes of mode, and none will count beyond all numbers from there.
+const MAX_EVENTS: u64 = 1 << 53;
+
 /// What holds a node at the moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Mode {
@@ -119,6 +122,9 @@ impl State {
         not_negative("internal step", self.internal_step, "s")?;
         finite("stored energy at the start", self.initial_energy, "J")?;
         self.ledger.validate()?;
+        if self.events > MAX_EVENTS {
+            return Err(Error::Count { name: "changes of mode", value: self.events, bound: MAX_EVENTS });
+        }
         for node in 0..2 {
             let flags = [self.charging[node], self.holding[node], self.releasing[node]];
             if flags.iter().filter(|flag| **flag).count() > 1 {

@@ -126,6 +126,10 @@ fn a_contradictory_or_broken_state_is_rejected_and_changes_nothing() {
     state.holding[0] = false;
     state.charge[1] = f64::NAN;
     assert!(matches!(circuit.restore(&state), Err(Error::NotFinite { name: "right.charge", .. })));
+    state = circuit.state();
+    state.events = u64::MAX;
+    let error = circuit.restore(&state).unwrap_err().to_string();
+    assert_eq!(error, "changes of mode = 18446744073709551615 is above 9007199254740992");
     assert_eq!(circuit, good);
 }
 

@@ -92,7 +92,7 @@ fn a_snapshot_that_no_harvester_had_is_refused() {
     let good = run_to(&parameters, 2.0).snapshot();
     assert!(Harvester::restore(&parameters, &good).is_ok());
     assert!(good.pulses.iter().any(|pulses| !pulses.is_empty()), "a pulse to damage");
-    let damages: [fn(&mut Snapshot); 11] = [
+    let damages: [fn(&mut Snapshot); 15] = [
         |s| s.time = f64::NAN,
         |s| s.time -= 1.0,
         |s| s.cylinder[1] = f64::INFINITY,
@@ -102,6 +102,10 @@ fn a_snapshot_that_no_harvester_had_is_refused() {
         |s| s.noise_sample = 1 << 60,
         |s| s.noise_walk = f64::NAN,
         |s| s.totals.energy = -1.0,
+        |s| s.totals.impacts = u64::MAX,
+        |s| s.totals.chatters = u64::MAX,
+        |s| s.totals.releases = u64::MAX,
+        |s| s.second_events = u64::MAX,
         |s| s.pulses.iter_mut().flatten().for_each(|pulse| pulse.peak = f64::NAN),
         |s| {
             let pulse = s.pulses.iter().flatten().next().copied();

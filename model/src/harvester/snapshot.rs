@@ -186,6 +186,9 @@ impl Harvester {
     }
 }
 
+/// No run has had as many events, and none will count beyond all numbers from there.
+const MAX_COUNT: u64 = 1 << 53;
+
 impl Snapshot {
     fn validate(&self, parameters: &Parameters, lag: f64) -> Result<(), ModelError> {
         let Self { time, totals, .. } = *self;
@@ -219,6 +222,9 @@ impl Snapshot {
         }
         self.contact.iter().try_for_each(|contact| validate_contact(contact, parameters, time))?;
         check("second", self.second, self.second.is_finite())?;
+        for count in [totals.impacts, totals.chatters, totals.releases, self.second_events] {
+            check("number of events", count as f64, count <= MAX_COUNT)?;
+        }
         self.pulses.iter().try_for_each(|pulses| validate_pulses(pulses, time))
     }
 }
