@@ -15,6 +15,9 @@ use crate::variables::VARIABLES;
 /// importer wait without end for one that it mistook. A fuzzer has less time.
 const MAX_PERIODS: f64 = if cfg!(fuzzing) { 1e4 } else { 1e7 };
 
+/// The same, in hold intervals of the phase noise.
+const MAX_HOLDS: f64 = if cfg!(fuzzing) { 1e5 } else { 1e8 };
+
 /// The harvester as a slave.
 pub struct Harvester {
     pub(crate) parameters: Parameters,
@@ -74,10 +77,20 @@ impl Harvester {
         self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
     }
 
+    fn is_too_long(&self, h: f64) -> bool {
+        let Parameters { frequency, phase_noise, noise_hold, .. } = self.parameters;
+        h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > MAX_HOLDS * noise_hold
+    }
+
     #[cold]
     fn too_long(&self, t: f64, h: f64) -> SlaveError {
-        let longest = MAX_PERIODS / self.parameters.frequency;
-        let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {MAX_PERIODS} periods");
+        let Parameters { frequency, noise_hold, .. } = self.parameters;
+        let (longest, bound) = if h * frequency > MAX_PERIODS {
+            (MAX_PERIODS / frequency, format!("{MAX_PERIODS} periods"))
+        } else {
+            (MAX_HOLDS * noise_hold, format!("{MAX_HOLDS} times excitation.noiseHold"))
+        };
+        let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {bound}");
         SlaveError::discard(t, message)
     }
 
@@ -162,7 +175,7 @@ impl Slave for Harvester {
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        if h * self.parameters.frequency > MAX_PERIODS {
+        if self.is_too_long(h) {
             return Err(self.too_long(t, h));
         }
         self.check_limits(log);

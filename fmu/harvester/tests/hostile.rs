@@ -1,6 +1,8 @@
 //! Values and arguments that make no sense, one by one: a status and a line in the log, never a crash.
 
-use VibroImpactHarvester as _; // links its C functions
+mod common;
+
+use fmi2_export::{Logger, Severity, Slave};
 use fmi2_host::{Fmu, hostile, linked_functions};
 
 #[allow(clippy::unwrap_used)] // a helper fails a test, too
@@ -27,4 +29,25 @@ fn value_references_beyond_the_table_are_refused() {
 #[test]
 fn odd_resource_locations_and_missing_callbacks_do_no_harm() {
     hostile::instantiation(&fmu()).unwrap();
+}
+
+/// Each of them would take minutes and more.
+#[test]
+fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {
+    let quiet: &[(&str, f64)] = &[("excitation.frequency", 5.0)];
+    let noisy = &[quiet[0], ("excitation.phaseNoise", 0.1), ("excitation.noiseHold", 1.0 / 1024.0)];
+    for (settings, h, bound) in [
+        (quiet, 2.1e6, "communicationStepSize = 2100000 s: it must be at most 2000000 s, 10000000 periods"),
+        (noisy, 2.1e6, "communicationStepSize = 2100000 s: it must be at most 2000000 s, 10000000 periods"),
+        (
+            noisy,
+            1e5,
+            "communicationStepSize = 100000 s: it must be at most 97656.25 s, 100000000 times excitation.noiseHold",
+        ),
+    ] {
+        let mut slave = common::initialized(settings);
+        let error = slave.do_step(0.0, h, &Logger::silent()).unwrap_err();
+        assert_eq!((error.severity(), error.to_string().as_str()), (Severity::Discard, bound));
+        common::step(&mut slave, 0.0, 1e-3);
+    }
 }
