@@ -2,11 +2,12 @@
 //! bounds` writes them.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
-use std::fmt::Write as _;
-use std::path::Path;
-
 use videg_circuit::{Circuit, Settings};
+use videg_golden::Golden;
 use videg_model::{ContactLaw, Harvester, ModelError, Parameters};
+
+const GOLDEN: Golden = Golden::new("UPDATE_BOUNDS", "cargo test --test bounds");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/bounds.md");
 
 /// How long a harvester runs with a parameter at its bound, s.
 const UNTIL: f64 = 2.0;
@@ -35,65 +36,46 @@ fn both(kinds: [&str; 2], [one, other]: [String; 2]) -> String {
     if one == other { one } else { format!("{}: {one}; {}: {other}", kinds[0], kinds[1]) }
 }
 
-const HEADING: &str =
-    "| parameter | unit | smallest | largest | at the smallest | at the largest |\n|---|---|---|---|---|---|\n";
+fn table(rows: impl Iterator<Item = String>) -> String {
+    let heading =
+        "| parameter | unit | smallest | largest | at the smallest | at the largest |\n|---|---|---|---|---|---|\n";
+    heading.to_owned() + &rows.collect::<String>()
+}
 
 /// A bound as it is read most easily.
 fn number(bound: f64) -> String {
     if bound == 0.0 || (1e-3..1e4).contains(&bound.abs()) { format!("{bound}") } else { format!("{bound:e}") }
 }
 
-fn harvester_table() -> String {
-    let mut table = format!("\n{HEADING}");
-    for quantity in Parameters::TABLE {
-        let at = |value| {
-            let laws = [ContactLaw::Impulsive, ContactLaw::Compliant].map(|contact_law| {
-                let mut parameters = Parameters { contact_law, ..Parameters::default() };
-                (quantity.set)(&mut parameters, value);
-                of_harvester(&parameters)
-            });
-            both(["impulsive", "compliant"], laws)
-        };
-        let (name, unit, [min, max]) = (quantity.name, quantity.unit, [quantity.min, quantity.max].map(number));
-        let (lowest, highest) = (at(quantity.min), at(quantity.max));
-        writeln!(table, "| `{name}` | {unit} | {min} | {max} | {lowest} | {highest} |").unwrap();
-    }
-    table
+/// What becomes of a run with a parameter at either bound.
+fn row(name: &str, unit: &str, [min, max]: [f64; 2], at: impl Fn(f64) -> String) -> String {
+    format!("| `{name}` | {unit} | {} | {} | {} | {} |\n", number(min), number(max), at(min), at(max))
 }
 
-fn circuit_table() -> String {
-    let mut table = format!("\n{HEADING}");
-    for quantity in Settings::QUANTITIES {
-        let at = |value| {
-            let diodes = [false, true].map(|exponential| {
-                let mut settings = Settings { exponential, ..Settings::default() };
-                (quantity.set)(&mut settings, value);
-                of_circuit(&settings)
-            });
-            both(["ideal", "exponential"], diodes)
-        };
-        let (name, unit, [min, max]) = (quantity.name, quantity.unit, [quantity.min, quantity.max].map(number));
-        let (lowest, highest) = (at(quantity.min), at(quantity.max));
-        writeln!(table, "| `{name}` | {unit} | {min} | {max} | {lowest} | {highest} |").unwrap();
-    }
-    table
+fn harvester_row(quantity: &videg_model::Quantity) -> String {
+    row(quantity.name, quantity.unit, [quantity.min, quantity.max], |value| {
+        let laws = [ContactLaw::Impulsive, ContactLaw::Compliant].map(|contact_law| {
+            let mut parameters = Parameters { contact_law, ..Parameters::default() };
+            (quantity.set)(&mut parameters, value);
+            of_harvester(&parameters)
+        });
+        both(["impulsive", "compliant"], laws)
+    })
 }
 
-fn check(name: &str, table: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/bounds.md");
-    let text = std::fs::read_to_string(&path).unwrap();
-    let begin = text.find(&format!("<!-- {name}: begin")).unwrap();
-    let start = begin + text[begin..].find("-->").unwrap() + 4;
-    let end = text.find(&format!("<!-- {name}: end")).unwrap();
-    if std::env::var_os("UPDATE_BOUNDS").is_some() {
-        std::fs::write(&path, format!("{}{table}\n{}", &text[..start], &text[end..])).unwrap();
-        return;
-    }
-    assert_eq!(text[start..end].trim(), table.trim(), "UPDATE_BOUNDS=1 cargo test --test bounds writes the table");
+fn circuit_row(quantity: &videg_circuit::Quantity) -> String {
+    row(quantity.name, quantity.unit, [quantity.min, quantity.max], |value| {
+        let diodes = [false, true].map(|exponential| {
+            let mut settings = Settings { exponential, ..Settings::default() };
+            (quantity.set)(&mut settings, value);
+            of_circuit(&settings)
+        });
+        both(["ideal", "exponential"], diodes)
+    })
 }
 
 #[test]
 fn the_tables_of_bounds_are_those_of_the_code() {
-    check("harvester", &harvester_table());
-    check("circuit", &circuit_table());
+    GOLDEN.section(PAGE, "harvester", &table(Parameters::TABLE.iter().map(harvester_row)));
+    GOLDEN.section(PAGE, "circuit", &table(Settings::QUANTITIES.iter().map(circuit_row)));
 }

@@ -23,10 +23,16 @@ fn within(seconds: f64) -> Isolation {
     Isolation { bounds: Bounds { time: Some(Duration::from_secs_f64(seconds)), memory: None }, ..isolation() }
 }
 
-/// The toy with these macros, isolated.
-fn toy(macros: &[&str]) -> (TempDir, Fmu) {
+/// The toy with these macros, in a folder of its own.
+fn archive(macros: &[&str]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = toy::fmu(folder.path(), "toy.fmu", macros);
+    (folder, path)
+}
+
+/// The same, isolated.
+fn toy(macros: &[&str]) -> (TempDir, Fmu) {
+    let (folder, path) = archive(macros);
     let fmu = Fmu::open_isolated(&path, &isolation()).unwrap();
     (folder, fmu)
 }
@@ -70,10 +76,9 @@ fn an_exit_is_told_with_its_code() {
 
 #[test]
 fn a_lower_bound_of_the_user_on_memory_stands() {
-    let folder = tempfile::tempdir().unwrap();
     let step = "STEP=struct { unsigned long current, most; } bound; getrlimit(9, &bound); \
                 LOG(3, \"%s\", bound.most == 900000UL * 1024 ? \"as the user said\" : \"raised\"); abort();";
-    let path = toy::fmu(folder.path(), "toy.fmu", &[step]);
+    let (_folder, path) = archive(&[step]);
     let check = format!(
         "ulimit -v 900000; exec {} fmu check {} --memory-limit 2048",
         env!("CARGO_BIN_EXE_videg"),
@@ -97,8 +102,7 @@ fn a_copy_that_the_fmu_makes_of_its_process_neither_answers_nor_listens() {
 
 #[test]
 fn a_call_without_end_is_ended_at_the_time_limit() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = toy::fmu(folder.path(), "toy.fmu", &["STEP=for (;;) LOG(1, \"%s\", \"again\");"]);
+    let (_folder, path) = archive(&["STEP=for (;;) LOG(1, \"%s\", \"again\");"]);
     // It holds for loading as well, which takes its time on a busy machine.
     let fmu = Fmu::open_isolated(&path, &within(3.0)).unwrap();
     let error = initialised(&fmu).do_step(0.0, 1.0).unwrap_err().to_string();
@@ -114,8 +118,7 @@ fn memory_is_bounded() {
 
 #[test]
 fn a_library_that_falls_while_it_is_loaded_takes_down_its_process_only() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = toy::fmu(folder.path(), "toy.fmu", &["LOADING=abort();"]);
+    let (_folder, path) = archive(&["LOADING=abort();"]);
     let error = Fmu::open_isolated(&path, &isolation()).unwrap_err().to_string();
     assert!(error.contains("toy.fmu: loading the library ended its process (signal: 6 (SIGABRT)"), "{error}");
 }
@@ -204,8 +207,7 @@ fn states_go_by_number_and_back() {
 #[test]
 fn a_state_of_absurd_size_is_refused() {
     for isolated in [true, false] {
-        let folder = tempfile::tempdir().unwrap();
-        let path = toy::fmu(folder.path(), "toy.fmu", &["SIZE=(size_t)1 << 62"]);
+        let (_folder, path) = archive(&["SIZE=(size_t)1 << 62"]);
         let fmu = if isolated { Fmu::open_isolated(&path, &isolation()) } else { Fmu::open(&path) }.unwrap();
         let instance = initialised(&fmu);
         let state = instance.save_state().unwrap();
@@ -321,6 +323,11 @@ fn a_sweep_goes_on_after_a_run_that_took_its_process_down() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
+/// An FMU of this project.
+fn harvester(folder: &Path) -> PathBuf {
+    build_all(&Options { output: Some(folder.to_owned()), ..Options::default() }).unwrap().swap_remove(0)
+}
+
 /// Every file of two runs, but for what tells them apart.
 fn same_files(one: &Path, other: &Path, names: &[&str]) {
     for name in names {
@@ -338,8 +345,7 @@ fn our_fmus_give_the_same_bytes_isolated_or_not() {
         assert_eq!(run.status.code(), Some(0), "{run:?}");
     }
     same_files(&folder.path().join("here"), &folder.path().join("isolated"), &["timeseries.csv", "figure.svg"]);
-    let fmu =
-        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let fmu = harvester(folder.path());
     let check = |option| videg(folder.path(), &["fmu", "check", fmu.to_str().unwrap(), option]);
     let (here, isolated) = (check("--no-isolate"), check("--isolate"));
     assert_eq!((here.status.code(), isolated.status.code()), (Some(0), Some(0)));
@@ -350,11 +356,8 @@ fn our_fmus_give_the_same_bytes_isolated_or_not() {
             videg(folder.path(), &[&sweep[..], &["--record", "ball.position", "--output", output, option]].concat());
         assert_eq!(run.status.code(), Some(0), "{run:?}");
     }
-    same_files(
-        &folder.path().join("sweep-here"),
-        &folder.path().join("sweep-isolated"),
-        &["sweep.csv"], // the others say how it was run
-    );
+    let [here, isolated] = ["sweep-here", "sweep-isolated"].map(|name| folder.path().join(name));
+    same_files(&here, &isolated, &["sweep.csv"]); // the others say how it was run
 }
 
 /// Whether a check of this FMU runs a worker.
@@ -367,8 +370,7 @@ fn is_isolated(path: &Path, arguments: &[&str]) -> bool {
 #[test]
 fn only_fmus_of_this_project_run_in_this_process_unasked() {
     let folder = tempfile::tempdir().unwrap();
-    let ours =
-        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let ours = harvester(folder.path());
     let changed = folder.path().join("changed.fmu");
     change_library(&ours, &changed);
     let foreign = toy::fmu(folder.path(), "toy.fmu", &[]);

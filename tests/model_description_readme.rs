@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use videg::fmi::{Causality, Kind, ModelDescription, Variable};
 use videg::package::FMUS;
+use videg_golden::Golden;
 
 const HEAD: &str = "\
 # Model descriptions
@@ -30,11 +31,7 @@ fn the_page_is_that_of_the_model_descriptions() {
         write_table(&mut expected, &description);
     }
     let path = format!("{folder}/README.md");
-    if std::env::var_os("UPDATE_MODEL_DESCRIPTION").is_some() {
-        std::fs::write(&path, &expected).unwrap();
-    }
-    let found = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(found == expected, "{path} is out of date: run `UPDATE_MODEL_DESCRIPTION=1 cargo test --workspace`");
+    Golden::new("UPDATE_MODEL_DESCRIPTION", "cargo test --workspace").file(path, &expected);
 }
 
 fn write_table(text: &mut String, description: &ModelDescription) {

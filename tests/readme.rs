@@ -3,10 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
+use videg_golden::Golden;
+
+const GOLDEN: Golden = Golden::new("UPDATE_README", "cargo test --test readme");
 
 /// Largest relative difference between a number in the README and one computed now. Fig. 15 approaches its orbit so
 /// slowly that a last bit of rounding, which differs between C libraries, moves it by some 5e-4.
@@ -28,7 +30,7 @@ fn run(arguments: &[&str]) -> Value {
 /// which differs between C libraries, takes them elsewhere.
 fn paper_table() -> String {
     let mut table =
-        String::from("\n| where | quantity | paper | videg | deviation | verdict |\n|---|---|---|---|---|---|\n");
+        String::from("| where | quantity | paper | videg | deviation | verdict |\n|---|---|---|---|---|---|\n");
     let result = run(&["reproduce", "--quick", "table2", "table3"]);
     let items = result["items"].as_array().unwrap();
     for finding in items.iter().flat_map(|item| item["findings"].as_array().unwrap()) {
@@ -52,7 +54,7 @@ fn energy_table() -> String {
     let mut circuits = vec![&result];
     circuits.extend(result["comparison"].as_array().unwrap());
     let mut table = String::from(
-        "\n| circuit | W, Eq. (13) | supply | Zener | load | converted | surplus |\n|---|---|---|---|---|---|---|\n",
+        "| circuit | W, Eq. (13) | supply | Zener | load | converted | surplus |\n|---|---|---|---|---|---|---|\n",
     );
     for circuit in circuits {
         let label = circuit.get("label").or(circuit.get("circuit")).and_then(Value::as_str).unwrap();
@@ -69,7 +71,7 @@ fn energy_table() -> String {
 fn crosscheck_table() -> String {
     let result = run(&["crosscheck"]);
     let mut table = String::from(
-        "\n| claim | unit | claimed | embedded | ngspice | in a circuit simulator |\n|---|---|---|---|---|---|\n",
+        "| claim | unit | claimed | embedded | ngspice | in a circuit simulator |\n|---|---|---|---|---|---|\n",
     );
     for check in result["checks"].as_array().unwrap() {
         let Some(says) = check["claim"]["says"].as_str() else { continue };
@@ -107,16 +109,7 @@ fn a_number_that_changed_and_a_word_that_changed_are_seen() {
 }
 
 fn check(name: &str, table: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let text = std::fs::read_to_string(&path).unwrap();
-    let begin = text.find(&format!("<!-- {name}: begin")).unwrap();
-    let start = begin + text[begin..].find("-->").unwrap() + 4;
-    let end = text.find(&format!("<!-- {name}: end")).unwrap();
-    if std::env::var_os("UPDATE_README").is_some() {
-        std::fs::write(&path, format!("{}{table}\n{}", &text[..start], &text[end..])).unwrap();
-        return;
-    }
-    assert!(agree(&text[start..end], table), "the README says\n{}\nvideg says\n{table}", &text[start..end]);
+    GOLDEN.section_as(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"), name, table, agree);
 }
 
 #[test]

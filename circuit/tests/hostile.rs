@@ -3,14 +3,10 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use videg_circuit::{Circuit, Error, Quantity, Settings};
+use videg_circuit::{Circuit, Error, Settings};
 
-/// Bounds, their neighbours, and what no bound can be of.
-fn values(quantity: &Quantity) -> Vec<f64> {
-    let Quantity { min, max, .. } = *quantity;
-    let numbers = [0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e308, -1e308, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
-    [min, min.next_up(), min.next_down(), max, max.next_down(), max.next_up()].into_iter().chain(numbers).collect()
-}
+#[path = "../../tests/support/edges.rs"]
+mod edges;
 
 /// Every circuit that the choices allow, by the names of their items.
 fn kinds() -> Vec<(String, Settings)> {
@@ -29,7 +25,7 @@ fn kinds() -> Vec<(String, Settings)> {
 fn assert_finite(circuit: &Circuit, what: &str) {
     let ledger = circuit.ledger();
     let [left, right] = circuit.voltage();
-    for (name, value) in [
+    let outputs = [
         ("left voltage", left),
         ("right voltage", right),
         ("load voltage", circuit.load_voltage()),
@@ -44,9 +40,8 @@ fn assert_finite(circuit: &Circuit, what: &str) {
         ("supply charge", ledger.supply_charge),
         ("load charge", ledger.load_charge),
         ("converted energy", ledger.converted()),
-    ] {
-        assert!(value.is_finite(), "{what}: {name} = {value} at {} s", circuit.time());
-    }
+    ];
+    edges::assert_finite(&outputs, circuit.time(), what);
 }
 
 /// Two pulses of C(t) with a jump between them.
@@ -86,7 +81,7 @@ fn assert_explained(error: &Error, what: &str) {
 fn each_parameter_at_and_beyond_its_bounds_is_refused_by_name_or_runs() {
     for (kind, base) in kinds() {
         for quantity in Settings::QUANTITIES {
-            for value in values(quantity) {
+            for value in edges::around(quantity.min, quantity.max) {
                 let mut settings = base;
                 (quantity.set)(&mut settings, value);
                 let what = format!("{kind}, {} = {value:e}", quantity.name);

@@ -5,7 +5,7 @@ use std::ffi::{CStr, CString, c_char};
 
 use fmi2_abi::*;
 
-use super::library::Functions;
+use super::library::{Functions, functions_in_scope};
 use super::{Fmu, ModelDescription};
 
 /// A step of this size makes the FMU return the status of the same number.
@@ -25,13 +25,13 @@ struct Component {
 
 pub(super) fn fmu() -> Fmu {
     let description = ModelDescription::parse(include_bytes!("testdata/good.xml"), "test").unwrap();
-    Fmu::of(&functions(), description)
+    Fmu::of(&FUNCTIONS, description)
 }
 
 /// An FMU that is compiled for another guid.
 pub(super) fn stranger() -> Fmu {
     let text = include_str!("testdata/good.xml").replace("{guid}", "{other}");
-    Fmu::of(&functions(), ModelDescription::parse(text.as_bytes(), "test").unwrap())
+    Fmu::of(&FUNCTIONS, ModelDescription::parse(text.as_bytes(), "test").unwrap())
 }
 
 unsafe fn of<'a>(component: fmi2Component) -> &'a mut Component {
@@ -158,17 +158,22 @@ unsafe extern "C" fn free_state(c: fmi2Component, state: *mut fmi2FMUstate) -> f
     fmi2OK
 }
 
-unsafe extern "C" fn state_size(_: fmi2Component, _: fmi2FMUstate, size: *mut usize) -> fmi2Status {
+unsafe extern "C" fn serialized_state_size(_: fmi2Component, _: fmi2FMUstate, size: *mut usize) -> fmi2Status {
     unsafe { *size = 40 };
     fmi2OK
 }
 
-unsafe extern "C" fn serialize(_: fmi2Component, state: fmi2FMUstate, to: *mut fmi2Byte, size: usize) -> fmi2Status {
+unsafe extern "C" fn serialize_state(
+    _: fmi2Component,
+    state: fmi2FMUstate,
+    to: *mut fmi2Byte,
+    size: usize,
+) -> fmi2Status {
     unsafe { state.cast::<fmi2Byte>().copy_to(to, size) };
     fmi2OK
 }
 
-unsafe extern "C" fn deserialize(
+unsafe extern "C" fn deserialize_state(
     c: fmi2Component,
     from: *const fmi2Byte,
     size: usize,
@@ -184,7 +189,7 @@ unsafe extern "C" fn deserialize(
     fmi2OK
 }
 
-unsafe extern "C" fn derivatives_in(
+unsafe extern "C" fn set_real_input_derivatives(
     c: fmi2Component,
     _: *const u32,
     _: usize,
@@ -195,7 +200,7 @@ unsafe extern "C" fn derivatives_in(
     fmi2OK
 }
 
-unsafe extern "C" fn derivatives_out(
+unsafe extern "C" fn get_real_output_derivatives(
     c: fmi2Component,
     _: *const u32,
     _: usize,
@@ -206,7 +211,7 @@ unsafe extern "C" fn derivatives_out(
     fmi2OK
 }
 
-unsafe extern "C" fn real_status(c: fmi2Component, kind: fmi2StatusKind, value: *mut f64) -> fmi2Status {
+unsafe extern "C" fn get_real_status(c: fmi2Component, kind: fmi2StatusKind, value: *mut f64) -> fmi2Status {
     if kind != fmi2LastSuccessfulTime {
         return fmi2Discard;
     }
@@ -223,18 +228,23 @@ unsafe extern "C" fn reset(c: fmi2Component) -> fmi2Status {
     fmi2OK
 }
 
-unsafe extern "C" fn setup(_: fmi2Component, _: i32, _: f64, _: f64, _: i32, _: f64) -> fmi2Status {
+unsafe extern "C" fn setup_experiment(_: fmi2Component, _: i32, _: f64, _: f64, _: i32, _: f64) -> fmi2Status {
     fmi2OK
 }
 
-unsafe extern "C" fn debug(c: fmi2Component, on: fmi2Boolean, n: usize, names: *const fmi2String) -> fmi2Status {
+unsafe extern "C" fn set_debug_logging(
+    c: fmi2Component,
+    on: fmi2Boolean,
+    n: usize,
+    names: *const fmi2String,
+) -> fmi2Status {
     if on == fmi2True && n == 1 {
         unsafe { of(c).text = CStr::from_ptr(*names).to_owned() };
     }
     fmi2OK
 }
 
-unsafe extern "C" fn directional(
+unsafe extern "C" fn get_directional_derivative(
     _: fmi2Component,
     _: *const u32,
     _: usize,
@@ -250,41 +260,10 @@ unsafe extern "C" fn no_status<T>(_: fmi2Component, _: fmi2StatusKind, _: *mut T
     fmi2Discard
 }
 
-fn functions() -> Functions {
-    Functions {
-        get_types_platform: version,
-        get_version: version,
-        set_debug_logging: debug,
-        instantiate,
-        free_instance,
-        setup_experiment: setup,
-        enter_initialization_mode: plain,
-        exit_initialization_mode: plain,
-        terminate: plain,
-        reset,
-        get_real,
-        get_integer,
-        get_boolean,
-        get_string,
-        set_real,
-        set_integer,
-        set_boolean,
-        set_string,
-        get_state,
-        set_state,
-        free_state,
-        serialized_state_size: state_size,
-        serialize_state: serialize,
-        deserialize_state: deserialize,
-        get_directional_derivative: directional,
-        set_real_input_derivatives: derivatives_in,
-        get_real_output_derivatives: derivatives_out,
-        do_step,
-        cancel_step: plain,
-        get_status: no_status,
-        get_real_status: real_status,
-        get_integer_status: no_status,
-        get_boolean_status: no_status,
-        get_string_status: no_status,
-    }
-}
+use self::{
+    no_status as get_status, no_status as get_integer_status, no_status as get_boolean_status,
+    no_status as get_string_status, plain as enter_initialization_mode, plain as exit_initialization_mode,
+    plain as terminate, plain as cancel_step, version as get_types_platform, version as get_version,
+};
+
+const FUNCTIONS: Functions = functions_in_scope!();

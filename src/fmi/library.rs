@@ -56,6 +56,13 @@ macro_rules! functions {
                 })
             }
         }
+
+        /// The table of those functions which go by the names of its fields where this stands.
+        macro_rules! functions_in_scope {
+            () => {
+                $crate::fmi::library::Functions { $($field),* }
+            };
+        }
     };
 }
 
@@ -95,6 +102,7 @@ functions! {
     get_boolean_status: fmi2GetBooleanStatusTYPE = "fmi2GetBooleanStatus",
     get_string_status: fmi2GetStringStatusTYPE = "fmi2GetStringStatus",
 }
+pub(super) use functions_in_scope;
 
 /// Loads the library at `file` and checks that it speaks FMI 2.0 with the default C types. Errors call it `path`.
 ///

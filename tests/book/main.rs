@@ -25,7 +25,6 @@ mod chapter;
 mod clone;
 mod compare;
 mod console;
-mod generated;
 mod interpreter;
 mod links;
 mod notebook;
@@ -35,6 +34,11 @@ mod results;
 mod run;
 
 use std::path::{Path, PathBuf};
+
+use videg_golden::Golden;
+
+/// Outputs in the chapters, reference pages, scripts.
+const GOLDEN: Golden = Golden::new("UPDATE_BOOK", "cargo test --test book -- --include-ignored");
 
 /// Root of the source tree.
 fn root() -> &'static Path {
@@ -53,9 +57,4 @@ fn has_ngspice() -> bool {
     let found = videg::ngspice::Ngspice::find(None).is_ok();
     assert!(found || std::env::var_os("VIDEG_ALL_TOOLS").is_none(), "ngspice is not there");
     found
-}
-
-/// Whether what is out of date is to be written anew.
-fn updating() -> bool {
-    std::env::var_os("UPDATE_BOOK").is_some()
 }

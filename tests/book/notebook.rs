@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::block::Block;
 use crate::chapter::Chapter;
 use crate::console;
-use crate::generated::keep;
+use crate::{GOLDEN, root};
 
 /// Chapters and their scripts.
 const SCRIPTS: [(&str, &str); 2] = [
@@ -17,7 +17,7 @@ const SCRIPTS: [(&str, &str); 2] = [
 #[test]
 fn the_scripts_are_the_tutorials() {
     for (page, script) in SCRIPTS {
-        keep(script, &cells(&Chapter::read(Path::new(page))));
+        GOLDEN.file(root().join(script), &cells(&Chapter::read(Path::new(page))));
     }
 }
 

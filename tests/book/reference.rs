@@ -7,8 +7,7 @@ use videg::package::FMUS;
 use videg_model::{Case, Parameters};
 
 use crate::clone::Clone;
-use crate::generated::keep;
-use crate::root;
+use crate::{GOLDEN, root};
 
 const MADE: &str = "<!-- Made by `UPDATE_BOOK=1 cargo test --test book`; do not edit. -->\n";
 
@@ -17,7 +16,7 @@ const MADE: &str = "<!-- Made by `UPDATE_BOOK=1 cargo test --test book`; do not 
 fn the_page_of_verbs_is_their_help() {
     let mut page = format!("# Verbs and options\n\n{MADE}");
     describe(&mut page, &videg::cli::command(), "videg", &Clone::new(std::iter::empty()));
-    keep("docs/reference/verbs.md", &page);
+    GOLDEN.file(root().join("docs/reference/verbs.md"), &page);
 }
 
 fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clone) {
@@ -61,7 +60,7 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
             }
         }
     }
-    keep("docs/reference/variables.md", &page);
+    GOLDEN.file(root().join("docs/reference/variables.md"), &page);
 }
 
 fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
@@ -116,5 +115,5 @@ fn the_page_of_cases_is_that_of_the_model() {
         "\nWhat videg gets for them stands beside the paper in the README and in `videg reproduce table2 table3`. The chaotic ones, \
          `fig11` to `fig13`, agree in the mean over nearby starts, not one by one.\n",
     );
-    keep("docs/reference/cases.md", &page);
+    GOLDEN.file(root().join("docs/reference/cases.md"), &page);
 }

@@ -12,7 +12,7 @@ use crate::clone::Clone;
 use crate::compare::{agree, says_nothing};
 use crate::console::{self, Step};
 use crate::interpreter::Interpreter;
-use crate::{has_ngspice, links, patch, python, root, updating};
+use crate::{GOLDEN, has_ngspice, links, patch, python, root};
 
 /// Languages whose blocks are files for commands of the chapter.
 const FILES: [&str; 6] = ["c", "spice", "toml", "json", "xml", "csv"];
@@ -137,7 +137,7 @@ impl<'a> Session<'a> {
     }
 
     fn differs(&mut self, block: &Block, what: &str, shown: &str, printed: &str) {
-        if !updating() {
+        if !GOLDEN.updating() {
             self.fail(block, &format!("{what}\nis shown to print\n{shown}\nbut prints\n{printed}"));
         }
     }
@@ -276,7 +276,7 @@ fn every_block_of_every_page_runs_and_prints_what_is_shown() {
         session.run();
         session.failures.iter().for_each(|failure| writeln!(failures, "{failure}\n").unwrap());
         session.left_out.iter().for_each(|what| writeln!(left_out, "  {what}").unwrap());
-        if updating() {
+        if GOLDEN.updating() {
             session.update();
         }
     }

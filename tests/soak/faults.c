@@ -123,10 +123,10 @@ ssize_t write(int fd, const void *bytes, size_t count) {
     }
 }
 
-#define ON_FILE(name, takes_room, parameters, arguments)                                                               \
+#define ON(name, is_watched, takes_room, parameters, arguments)                                                        \
     int name parameters {                                                                                              \
-        REAL(name);                                                                                                   \
-        if (!is_watched_file(fd)) return real arguments;                                                               \
+        REAL(name);                                                                                                    \
+        if (!is_watched) return real arguments;                                                                        \
         enum fate fate = decide(takes_room);                                                                           \
         if (fate == FAIL) return -1;                                                                                   \
         int result = real arguments;                                                                                   \
@@ -134,21 +134,10 @@ ssize_t write(int fd, const void *bytes, size_t count) {
         return result;                                                                                                 \
     }
 
-#define ON_PATH(name, path, takes_room, parameters, arguments)                                                         \
-    int name parameters {                                                                                              \
-        REAL(name);                                                                                                   \
-        if (!is_watched_path(path)) return real arguments;                                                             \
-        enum fate fate = decide(takes_room);                                                                           \
-        if (fate == FAIL) return -1;                                                                                   \
-        int result = real arguments;                                                                                   \
-        if (fate == KILL_HALFWAY) kill(getpid(), SIGKILL);                                                             \
-        return result;                                                                                                 \
-    }
-
-ON_FILE(fsync, 1, (int fd), (fd))
-ON_FILE(fdatasync, 1, (int fd), (fd))
-ON_FILE(ftruncate64, 1, (int fd, off64_t length), (fd, length))
-ON_PATH(rename, to, 0, (const char *from, const char *to), (from, to))
-ON_PATH(linkat, to, 1, (int from_folder, const char *from, int to_folder, const char *to, int flags),
-        (from_folder, from, to_folder, to, flags))
-ON_PATH(unlink, path, 0, (const char *path), (path))
+ON(fsync, is_watched_file(fd), 1, (int fd), (fd))
+ON(fdatasync, is_watched_file(fd), 1, (int fd), (fd))
+ON(ftruncate64, is_watched_file(fd), 1, (int fd, off64_t length), (fd, length))
+ON(rename, is_watched_path(to), 0, (const char *from, const char *to), (from, to))
+ON(linkat, is_watched_path(to), 1, (int from_folder, const char *from, int to_folder, const char *to, int flags),
+   (from_folder, from, to_folder, to, flags))
+ON(unlink, is_watched_path(path), 0, (const char *path), (path))

@@ -12,6 +12,7 @@ use fmi2_export::{
     Causality, EnumerationItem, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Variable,
     model_description,
 };
+use videg_golden::Golden;
 
 fn text() -> String {
     model_description::<Toy>().expect("a sound table")
@@ -20,11 +21,8 @@ fn text() -> String {
 #[test]
 fn the_text_is_as_in_the_golden_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/Toy.xml");
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(path, text()).expect("golden file");
-    }
-    let golden = std::fs::read_to_string(path).expect("golden file");
-    assert_eq!(text(), golden.replace("\r\n", "\n"));
+    let command = "cargo test -p fmi2-export --features model-description --test model_description";
+    Golden::new("UPDATE_GOLDEN", command).file(path, &text());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Contacts under the compliant law.
 
-use super::{Ball, Harvester, within};
+use super::input::within;
+use super::{Ball, Harvester};
 use crate::compliant::{Ending, Law, Phase, Ramp, Recoil, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;

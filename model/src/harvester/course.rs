@@ -14,8 +14,9 @@ pub(super) use self::pace::{Boundary, Place};
 use core::f64::consts::TAU;
 
 use self::pace::Pace;
-use super::events::Event;
-use super::{Harvester, Noise, Search, phase};
+use super::Harvester;
+use super::events::{Event, Search};
+use super::phase::{Noise, phase};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::flight::Flight;
 use crate::holds::BLOCK;

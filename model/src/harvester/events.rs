@@ -2,8 +2,9 @@
 
 use super::course::{Boundary, Place};
 use super::dues::Dues;
+use super::phase::phase;
 use super::tangent::Hit;
-use super::{Ball, Harvester, phase};
+use super::{Ball, Harvester};
 use crate::cylinder::{CylinderState, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};

@@ -6,8 +6,9 @@
 
 use super::dues::Dues;
 use super::events::Search;
+use super::input::{finite, within};
 use super::snapshot::MAX_LAG;
-use super::{Ball, Harvester, finite, within};
+use super::{Ball, Harvester};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;
 use crate::flight::{Flight, Side};

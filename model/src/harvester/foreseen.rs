@@ -1,8 +1,9 @@
 //! The impact that is foreseen, and how its time changes to first order.
 
 use super::events::Event;
+use super::phase::{Noise, phase, xi};
 use super::tangent::{ParameterChange, bounded, grazes};
-use super::{Harvester, Noise, Side, phase, xi};
+use super::{Harvester, Side};
 use crate::cylinder::{CylinderMotion, Drive, DriveChange};
 
 impl Harvester {

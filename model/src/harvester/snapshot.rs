@@ -2,8 +2,9 @@
 
 use super::energy::{Ledger, LedgerChange};
 use super::events::{Event, Search};
+use super::phase::{Noise, phase};
 use super::tangent::Tangent;
-use super::{Ball, Harvester, Noise, Totals, phase};
+use super::{Ball, Harvester, Totals};
 use crate::compliant::{ContactSnapshot, Ramp, Touch};
 use crate::cylinder::{CylinderMotion, Drive};
 use crate::error::ModelError;

@@ -7,6 +7,9 @@ use std::time::Duration;
 
 use videg_model::{ContactLaw, Harvester, ModelError, NoiseModel, Parameters, Quantity, Side};
 
+#[path = "../../../tests/support/edges.rs"]
+mod edges;
+
 /// A run that takes longer than this hangs: thousands of times what any takes.
 const WATCH: Duration = Duration::from_secs(300);
 
@@ -42,11 +45,9 @@ pub fn watched(body: impl FnOnce(&Label) + Send + 'static) {
     }
 }
 
-/// Bounds, their neighbours, and what no bound can be of.
+/// What to give to a parameter.
 pub fn values(quantity: &Quantity) -> Vec<f64> {
-    let Quantity { min, max, .. } = *quantity;
-    let numbers = [0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e308, -1e308, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
-    [min, min.next_up(), min.next_down(), max, max.next_down(), max.next_up()].into_iter().chain(numbers).collect()
+    edges::around(quantity.min, quantity.max)
 }
 
 pub fn with(parameters: &Parameters, quantity: &Quantity, value: f64) -> Parameters {
@@ -116,9 +117,7 @@ pub fn outputs(harvester: &Harvester) -> Vec<(&'static str, f64)> {
 }
 
 pub fn assert_finite(harvester: &Harvester, what: &str) {
-    for (name, value) in outputs(harvester) {
-        assert!(value.is_finite(), "{what}: {name} = {value} at {} s", harvester.time());
-    }
+    edges::assert_finite(&outputs(harvester), harvester.time(), what);
 }
 
 /// That the books of the ball's energy close, relative to what may have gone through them: a wall that moves on its own gives

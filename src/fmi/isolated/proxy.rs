@@ -10,7 +10,7 @@ use fmi2_abi::{
 
 use super::protocol::{Given, Plain, Request};
 use super::remote::{Remote, of};
-use crate::fmi::library::Functions;
+use crate::fmi::library::{Functions, functions_in_scope};
 
 /// # Safety
 /// `items` points to `count` items.
@@ -172,7 +172,7 @@ unsafe extern "C" fn free_state(c: fmi2Component, state: *mut fmi2FMUstate) -> f
     status
 }
 
-unsafe extern "C" fn state_size(c: fmi2Component, state: fmi2FMUstate, size: *mut usize) -> fmi2Status {
+unsafe extern "C" fn serialized_state_size(c: fmi2Component, state: fmi2FMUstate, size: *mut usize) -> fmi2Status {
     // SAFETY: the importer passes a living component and a place for the size.
     let (remote, size) = unsafe { (of(c), &mut *size) };
     let name = "fmi2SerializedFMUstateSize";
@@ -229,7 +229,7 @@ fn keep(state: &mut fmi2FMUstate, status: fmi2Status, number: u64) {
     }
 }
 
-unsafe extern "C" fn directional_derivative(
+unsafe extern "C" fn get_directional_derivative(
     c: fmi2Component,
     unknowns: *const u32,
     unknown_count: usize,
@@ -305,40 +305,10 @@ unsafe extern "C" fn no_text() -> *const c_char {
     ptr::null()
 }
 
-/// The table.
-pub(in crate::fmi) const FUNCTIONS: Functions = Functions {
-    get_types_platform: no_text,
-    get_version: no_text,
-    set_debug_logging,
-    instantiate,
-    free_instance,
-    setup_experiment,
-    enter_initialization_mode,
-    exit_initialization_mode,
-    terminate,
-    reset,
-    get_real,
-    get_integer,
-    get_boolean,
-    get_string,
-    set_real,
-    set_integer,
-    set_boolean,
-    set_string,
-    get_state,
-    set_state,
-    free_state,
-    serialized_state_size: state_size,
-    serialize_state,
-    deserialize_state,
-    get_directional_derivative: directional_derivative,
-    set_real_input_derivatives,
-    get_real_output_derivatives,
-    do_step,
-    cancel_step: never,
-    get_status: no_status,
-    get_real_status,
-    get_integer_status: no_status,
-    get_boolean_status,
-    get_string_status: no_status,
+use self::{
+    never as cancel_step, no_status as get_status, no_status as get_integer_status, no_status as get_string_status,
+    no_text as get_types_platform, no_text as get_version,
 };
+
+/// The table.
+pub(in crate::fmi) const FUNCTIONS: Functions = functions_in_scope!();

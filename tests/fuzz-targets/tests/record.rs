@@ -3,7 +3,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+
+use videg_golden::Golden;
+
+const GOLDEN: Golden = Golden::new("UPDATE_FUZZ_TABLE", "cargo test -p videg-fuzz-targets --test record");
 
 /// What all runs of a target come to.
 #[derive(Default)]
@@ -58,15 +61,6 @@ fn table(record: &str) -> String {
 
 #[test]
 fn the_table_of_the_document_is_what_the_record_adds_up_to() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let table = table(&fs::read_to_string(root.join("fuzz/record.csv")).unwrap());
-    let path = root.join("docs/fuzzing.md");
-    let text = fs::read_to_string(&path).unwrap();
-    let (before, rest) = text.split_once("<!-- record: begin -->\n").unwrap();
-    let (found, after) = rest.split_once("<!-- record: end -->").unwrap();
-    if std::env::var_os("UPDATE_FUZZ_TABLE").is_some() {
-        fs::write(&path, format!("{before}<!-- record: begin -->\n{table}<!-- record: end -->{after}")).unwrap();
-        return;
-    }
-    assert_eq!(found, table, "UPDATE_FUZZ_TABLE=1 cargo test -p videg-fuzz-targets --test record writes it");
+    let record = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/record.csv")).unwrap();
+    GOLDEN.section(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/fuzzing.md"), "record", &table(&record));
 }

@@ -1,0 +1,82 @@
+//! `videg sweep` as a command, and what stands in its folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Two seconds, averaged over the second.
+pub const SHORT: [&str; 2] = ["--until", "2"];
+
+pub const NOISY: [&str; 2] = ["--set", "excitation.phaseNoise=0.5"];
+
+pub fn videg(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+    command.args(arguments);
+    command
+}
+
+/// A sweep of short runs into a folder.
+pub fn sweep(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = videg(&["sweep"]);
+    command.args(SHORT).args(arguments).arg("--output").arg(folder);
+    command
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs a command that must be done.
+pub fn done(command: &mut Command) -> Output {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {}", stderr(&output));
+    output
+}
+
+/// The JSON object of a command that must be done.
+pub fn json(command: &mut Command) -> Value {
+    serde_json::from_slice(&done(command.arg("--json")).stdout).unwrap()
+}
+
+/// What a command that must fail says; its exit code.
+pub fn refused(command: &mut Command) -> (Option<i32>, String) {
+    let output = command.output().unwrap();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{command:?}");
+    let message = stderr(&output);
+    assert_eq!(message.lines().count(), 1, "{message}");
+    (output.status.code(), message)
+}
+
+pub fn folder() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sweep");
+    (folder, path)
+}
+
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+pub fn assert_same_results(one: &Path, other: &Path) {
+    for name in ["sweep.csv", "sweep.json", "sweep.parquet"] {
+        let [a, b] = [one, other].map(|folder| fs::read(folder.join(name)).unwrap());
+        assert!(a == b, "{name} of {} and of {} differ", one.display(), other.display());
+    }
+}
+
+pub fn rows(folder: &Path) -> Vec<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(folder.join("sweep.csv")).unwrap();
+    reader.records().map(|record| record.unwrap().iter().map(str::to_owned).collect()).collect()
+}
+
+pub fn column(folder: &Path, name: &str) -> Vec<String> {
+    let rows = rows(folder);
+    let index = rows[0].iter().position(|heading| heading == name).unwrap();
+    rows[1..].iter().map(|row| row[index].clone()).collect()
+}

@@ -1,0 +1,71 @@
+//! How users say what to sweep, and what they are told when that is wrong.
+
+use std::fs;
+
+use crate::command::{NOISY, done, folder, json, refused, sweep, videg};
+
+#[test]
+fn a_sweep_file_says_what_options_say_and_options_win() {
+    let (guard, folder) = folder();
+    let file = guard.path().join("r.toml");
+    let text = "case = 'fig15'\nuntil = 2\nsamples = 2\nseed = 3\n[set]\nexcitation.phaseNoise = 0.5\n[vary]\n\
+                membrane.restitution = { from = 0.2, to = 0.6, count = 3 }\nball.mass = [0.003, 0.004]\n";
+    fs::write(&file, text).unwrap();
+    done(videg(&["sweep"]).arg(&file).args(["--output"]).arg(&folder).args(["--vary", "ball.mass=0.005"]));
+    let options = ["--vary", "membrane.restitution=0.2:0.6:3", "--vary", "ball.mass=0.005", "--samples", "2"];
+    let options = [&options[..], &NOISY, &["--seed", "3", "--case", "fig15"]].concat();
+    let other = guard.path().join("options");
+    done(&mut sweep(&other, &options));
+    let [a, b] = [&folder, &other].map(|folder| fs::read_to_string(folder.join("sweep.csv")).unwrap());
+    assert_eq!(a, b);
+}
+
+#[test]
+fn bad_input_is_one_line_with_the_thing_the_value_and_the_bound_before_anything_starts() {
+    let (guard, folder) = folder();
+    let file = guard.path().join("bad.toml");
+    fs::write(&file, "pionts = 3\n").unwrap();
+    let bad = file.to_str().unwrap();
+    for (arguments, named) in [
+        (&["--vary", "membrane.restitutoin=0:1:3"][..], "did you mean \"membrane.restitution\"?"),
+        (&["--vary", "membrane.restitution"], "--vary membrane.restitution: allowed is name=from:to:count"),
+        (&["--vary", "membrane.restitution=0:1"], "a grid needs a count"),
+        (&["--vary", "membrane.restitution=high"], "membrane.restitution = \"high\": allowed is a number"),
+        (&["--vary", "membrane.restitution=1.1:2:3"], "membrane.restitution = 1.1 is out of range: allowed is 0 .. 1"),
+        (&["--vary", "load.resistance=1,2"], "load.resistance"),
+        (&["--set", "membrane.restitution=7"], "membrane.restitution = 7 is out of range: allowed is 0 .. 1"),
+        (&["--set", "excitation.seed=7", "--samples", "2"], "--set excitation.seed"),
+        (&["--design", "lhs", "--vary", "membrane.restitution=0:1"], "needs the number of points"),
+        (&["--samples", "0"], "--samples 0: with 1 points it must lie from 1 to 1000000000000"),
+        (&["--samples", "4294967297"], "--samples 4294967297: with 1 points it must lie from 1 to 4294967296"),
+        (&["--record", "nope"], "nope"),
+        (
+            &["--record", "ball.mass", "--record", "ball.mass"],
+            "--record ball.mass: the results have a column of that name",
+        ),
+        (&["--shard", "3/2"], "1 <= i <= n"),
+        (&["--jobs", "0"], "0"),
+        (&["--window", "3,1"], "--window"),
+        (&["--seed-variable", "ball.mass"], "--seed-variable ball.mass: a seed is an Integer"),
+        (&[bad], "pionts"),
+        (&["missing.toml"], "missing.toml"),
+        (&["--fmu", "missing.fmu"], "missing.fmu"),
+        (&["--case", "fig8"], "--case fig8"),
+    ] {
+        let (code, message) = refused(&mut sweep(&folder, arguments));
+        assert_eq!(code, Some(2), "{arguments:?}: {message}");
+        assert!(message.starts_with("videg: ") && message.contains(named), "{arguments:?}: {message}");
+        assert!(!folder.exists(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_check_counts_and_leaves_nothing_behind() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0:1:2000000", "--samples", "3", "--check"];
+    let said = json(&mut sweep(&folder, &what));
+    assert_eq!((&said["points"], &said["samples"], &said["runs"]), (&2_000_000.into(), &3.into(), &6_000_000.into()));
+    let (code, message) = refused(&mut sweep(&folder, &[&what[..], &["--record", "nope"]].concat()));
+    assert!(code == Some(2) && message.contains("nope"), "{message}");
+    assert!(!folder.exists());
+}

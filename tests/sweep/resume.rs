@@ -1,0 +1,195 @@
+//! Sweeps that are interrupted, disturbed or started again.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::command::{NOISY, assert_same_results, done, folder, json, names, refused, stderr, sweep};
+
+/// A sweep far too long to be over before it is met at work: of 1e6 runs, one after the other.
+fn endless(folder: &Path) -> Command {
+    let what = ["--vary", "membrane.restitution=0.2:0.9:1000000", "--jobs", "1"];
+    sweep(folder, &[&what[..], &NOISY].concat())
+}
+
+/// A sweep that takes a second or more, and whose runs differ in length.
+const LONG: [&str; 8] =
+    ["--design", "lhs", "--points", "400", "--samples", "3", "--vary", "membrane.restitution=0.2:0.9"];
+
+fn long(folder: &Path) -> Command {
+    sweep(folder, &[&LONG[..], &NOISY].concat())
+}
+
+/// Lines of results that are being written.
+fn lines_written(folder: &Path) -> usize {
+    fs::read_to_string(folder.join("sweep.csv.part")).map_or(0, |text| text.lines().count())
+}
+
+/// Starts a command and waits until it has written some lines, or is done.
+fn started(mut command: Command, folder: &Path, lines: usize) -> Child {
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while lines_written(folder) < lines && child.try_wait().unwrap().is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(120), "no line after two minutes");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+#[test]
+fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
+    let (_guard, folder) = folder();
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
+    done(&mut long(&whole));
+    let mut random = fastrand::Rng::with_seed(1);
+    for _ in 0..6 {
+        let lines = lines_written(&killed) + random.usize(1..150);
+        let mut command = long(&killed);
+        command.args(["--jobs", "1"]);
+        let mut child = started(command, &killed, lines);
+        child.kill().unwrap();
+        if child.wait().unwrap().success() {
+            break; // It came to its end before it was met, on a machine that is in a hurry.
+        }
+        assert!(!killed.join("sweep.parquet").exists() || killed.join("sweep.csv").exists());
+    }
+    let kept = lines_written(&killed).saturating_sub(1);
+    let said = json(&mut long(&killed));
+    // The last line may have been cut; a sweep that came to its end has no such file any more.
+    let resumed_from = said["resumed_from"].as_u64().unwrap();
+    assert!(resumed_from == 1200 || resumed_from.abs_diff(kept as u64) <= 1, "{said} after {kept}");
+    assert_same_results(&whole, &killed);
+    assert_eq!(names(&killed), ["sweep.csv", "sweep.json", "sweep.parquet"]);
+}
+
+#[test]
+fn results_cut_or_spoilt_anywhere_are_completed_to_the_same_bytes() {
+    let (_guard, folder) = folder();
+    let [whole, cut] = ["whole", "cut"].map(|name| folder.join(name));
+    let what = ["--vary", "membrane.restitution=0.2:0.9:40"];
+    done(&mut sweep(&whole, &what));
+    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
+    let mut random = fastrand::Rng::with_seed(2);
+    for round in 0..12 {
+        fs::remove_dir_all(&cut).ok();
+        fs::create_dir(&cut).unwrap();
+        fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
+        let length = random.usize(0..bytes.len());
+        let mut part = bytes[..length].to_vec();
+        if round % 3 == 0 {
+            part.extend([0; 5000]); // what a power cut may leave
+        }
+        fs::write(cut.join("sweep.csv.part"), part).unwrap();
+        let said = json(&mut sweep(&cut, &what));
+        let lines = bytes[..length].split(|byte| *byte == b'\n').count() - 1;
+        assert_eq!(said["resumed_from"], lines.saturating_sub(1), "cut at {length}");
+        assert_same_results(&whole, &cut);
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let (_guard, folder) = folder();
+        let mut command = endless(&folder);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        while lines_written(&folder) < 2 && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        done(Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]));
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
+        let written = lines_written(&folder) - 1;
+        assert!(written > 0);
+        let expected = format!(
+            "videg: interrupted after {written} of 1000000 runs; the same command without --fresh goes on from there\n"
+        );
+        assert_eq!(stderr(&output), expected);
+    }
+}
+
+#[test]
+fn the_same_command_again_does_nothing_and_another_one_is_refused_with_what_differs() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
+    done(&mut sweep(&folder, &what));
+    let before = fs::read(folder.join("sweep.csv")).unwrap();
+    fs::remove_file(folder.join("sweep.parquet")).unwrap();
+    let said = json(&mut sweep(&folder, &what));
+    assert_eq!((&said["resumed_from"], &said["runs"]), (&4.into(), &4.into()));
+    assert_eq!(names(&folder), ["sweep.csv", "sweep.json", "sweep.parquet"]);
+    for (more, named) in [
+        (&["--seed", "2"][..], "seed is 1, not 2"),
+        (&["--set", "ball.mass=0.004"], "settings is [], not [{\"name\":\"ball.mass\",\"value\":\"0.004\"}]"),
+        (&["--window", "0.5,2"], "window is [1.0], not [0.5]"),
+        (&["--samples", "2"], "samples is 1, not 2"),
+    ] {
+        let (code, message) = refused(&mut sweep(&folder, &[&what[..], more].concat()));
+        assert_eq!(code, Some(2));
+        assert!(message.contains("it belongs to another sweep") && message.contains(named), "{message}");
+    }
+    assert_eq!(fs::read(folder.join("sweep.csv")).unwrap(), before);
+    done(sweep(&folder, &what).args(["--seed", "2", "--fresh"]));
+    done(&mut sweep(&folder, &[&what[..], &["--seed", "2"]].concat()));
+}
+
+#[test]
+fn results_of_another_build_are_not_gone_on_with() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
+    done(&mut sweep(&folder, &what));
+    let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    let mut lines: Vec<_> = text.lines().take(3).map(str::to_owned).collect();
+    lines[2] = lines[2].replace(",0.000", ",0.001");
+    assert_ne!(lines[2], text.lines().nth(2).unwrap());
+    fs::remove_file(folder.join("sweep.csv")).unwrap();
+    fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
+    let (code, message) = refused(&mut sweep(&folder, &what));
+    assert_eq!(code, Some(2));
+    assert!(message.contains("run 1 comes out otherwise here"), "{message}");
+}
+
+#[test]
+fn a_complete_file_that_was_changed_is_not_taken_for_complete() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
+    done(&mut sweep(&folder, &what));
+    let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    fs::write(folder.join("sweep.csv"), text.replace("\n2,2,", "\n9,2,")).unwrap();
+    let (code, message) = refused(&mut sweep(&folder, &what));
+    assert_eq!(code, Some(2));
+    assert!(message.contains("line 4 is not run 2 of runs 0 to 3; --fresh begins anew"), "{message}");
+}
+
+#[test]
+fn two_sweeps_do_not_write_one_file() {
+    let (_guard, folder) = folder();
+    let mut child = started(endless(&folder), &folder, 2);
+    let (code, message) = refused(&mut endless(&folder));
+    assert_eq!(code, Some(2));
+    assert!(message.contains("sweep.csv.part is being written by another process"), "{message}");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+#[test]
+#[cfg(unix)]
+fn a_full_disk_is_named_and_what_was_written_is_gone_on_with() {
+    let (_guard, folder) = folder();
+    let [whole, full] = ["whole", "full"].map(|name| folder.join(name));
+    done(&mut long(&whole));
+    // A limit on the length of files stands for the disk: 16 blocks of 512 or 1024 bytes.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\""]).arg(env!("CARGO_BIN_EXE_videg"));
+    let (code, message) = refused(limited.args(long(&full).get_args()));
+    assert_eq!(code, Some(2));
+    assert!(
+        message.contains("cannot write") && message.contains("the same command without --fresh goes on from there"),
+        "{message}"
+    );
+    let said = json(&mut long(&full));
+    assert!(said["resumed_from"].as_u64().unwrap() > 20, "{said}");
+    assert_same_results(&whole, &full);
+}
