@@ -142,7 +142,7 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
     let isolation = arguments.isolation.bounds_of(fmu.as_ref());
-    let sweep = Sweep::new(arguments.what.request(file, description, fingerprint, isolation)?)?;
+    let sweep = Sweep::new(&arguments.what.request(file, description, fingerprint, isolation)?)?;
     if arguments.check {
         return show_counts(arguments, &sweep, design);
     }
