@@ -123,18 +123,36 @@ pub fn lock(part: &Path) -> Result<File, LockError> {
     loop {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false).open(part).map_err(LockError::Open)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(LockError::Busy),
-            // Some file systems of clusters have no locks: there, who starts two of a kind mixes them up.
-            Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
-            Err(TryLockError::Error(cause)) => return Err(LockError::Lock(cause)),
-        }
         // Who had it locked before may have given it its last name in between.
-        if is_at(&file, part).map_err(LockError::Lock)? {
+        if own(&file, part)? {
             return Ok(file);
         }
     }
+}
+
+/// Locks `file`, which was opened at `part`; whether it is still there.
+///
+/// # Errors
+/// Another process that has locked it; a refusal of the file system.
+pub fn own(file: &File, part: &Path) -> Result<bool, LockError> {
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => return Err(LockError::Busy),
+        // Some file systems of clusters have no locks: there, who starts two of a kind mixes them up.
+        Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
+        Err(TryLockError::Error(cause)) => return Err(LockError::Lock(cause)),
+    }
+    is_at(file, part).map_err(LockError::Lock)
+}
+
+/// Removes the file at `part` if the process that wrote it is no more: nobody has it locked, where there are locks.
+///
+/// # Errors
+/// A process that writes it; no locks; a refusal of the file system.
+pub fn remove_abandoned(part: &Path) -> io::Result<()> {
+    let file = OpenOptions::new().read(true).write(true).open(part)?;
+    file.try_lock()?;
+    if is_at(&file, part)? { std::fs::remove_file(part) } else { Ok(()) }
 }
 
 #[cfg(unix)]

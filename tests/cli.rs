@@ -272,6 +272,50 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
     }
 }
 
+/// A wrong value is that of the file and the key, or of the option, from which it came.
+#[test]
+fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("my.toml");
+    let path = file.to_str().unwrap();
+    let none: &[&str] = &[];
+    for (text, options, said) in [
+        ("set.ball.weight = 1", none, "FILE: set.ball.weight: neither the harvester nor the circuit"),
+        (
+            "set.membrane.restitution = 7",
+            none,
+            "FILE: set.membrane.restitution: membrane.restitution = 7 is out of range",
+        ),
+        ("set.topology = 'star'", none, "FILE: set.topology: topology = star: allowed"),
+        ("until = -1", none, "FILE: until = -1 s: must lie"),
+        ("step = 200", none, "FILE: step = 200 s: must lie above 0 and not above --until = 100 s"),
+        ("until = 10", &["--step", "20"], "--step = 20 s: must lie above 0 and not above FILE: until = 10 s"),
+        ("window = [60, 50]", none, "FILE: window end = 50 s: must lie above its start 60 s"),
+        ("case = 'fig8'", none, "FILE: case = fig8: no such case"),
+        ("case = 'fig8'", &["--case", "fig7"], "--case fig7: no such case"),
+        ("until = -1", &["--until", "-2"], "--until = -2 s: must lie"),
+        ("set.ball.mass = 1", &["--set", "ball.weight=1"], "--set ball.weight: neither"),
+        (
+            "",
+            &["--set", "membrane.restitution=7"],
+            "--set membrane.restitution: membrane.restitution = 7 is out of range",
+        ),
+    ] {
+        std::fs::write(&file, text).unwrap();
+        for verb in ["simulate", "cosim"] {
+            let run = videg(&[&[verb, "--case-file", path], options].concat());
+            assert_eq!(run.code, Some(2), "{verb} {text} {options:?}: {}", run.stderr);
+            let expected = format!("videg: {}", said.replace("FILE", path));
+            assert!(run.stderr.starts_with(&expected), "{verb} {text} {options:?}: {}", run.stderr);
+        }
+    }
+    std::fs::write(&file, "set.contact.law = 'compliant'").unwrap();
+    assert_refused(
+        &["simulate", "--case-file", path, "--law", "impulsive"],
+        &[&format!("--law impulsive: {path}: set.contact.law = compliant says otherwise")],
+    );
+}
+
 fn assert_refused(arguments: &[&str], parts: &[&str]) {
     let Run { code, stdout, stderr } = videg(arguments);
     assert_eq!((code, stdout.as_str()), (Some(2), ""), "{arguments:?}: {stderr}");

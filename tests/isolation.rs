@@ -377,7 +377,90 @@ fn only_fmus_of_this_project_run_in_this_process_unasked() {
     for (path, isolated) in [(&ours, false), (&changed, true), (&foreign, true)] {
         assert_eq!(is_isolated(path, &[]), isolated, "{}", path.display());
         assert!(is_isolated(path, &["--isolate"]));
-        assert!(!is_isolated(path, &["--no-isolate"]), "{}", path.display());
+    }
+    let falls = toy::fmu(folder.path(), "falls.fmu", &["STEP=raise(SIGKILL);"]);
+    let check = |option| videg(folder.path(), &["fmu", "check", falls.to_str().unwrap(), option]).status.code();
+    assert_eq!(
+        (check("--no-isolate"), check("--isolate")),
+        (None, Some(2)),
+        "it takes down the process that it runs in"
+    );
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_limit_that_binds_nothing_is_refused_or_where_the_fmu_is_named_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let one: &[&str] = &["sweep", "--until", "1"];
+    for verb in [one, &["sweep", "--until", "1", "--check"], &["simulate", "--until", "1"], &["cosim", "--until", "1"]]
+    {
+        for limit in [["--time-limit", "5"], ["--memory-limit", "512"]] {
+            let output = videg(folder.path(), &[verb, &limit].concat());
+            let expected =
+                format!("videg: {} needs --isolate here: the FMUs of videg run in its own process", limit[0]);
+            assert!(output.status.code() == Some(2) && said(&output).starts_with(&expected), "{verb:?} {output:?}");
+            let output = videg(folder.path(), &["fmu", "check", "any.fmu", "--no-isolate", limit[0], limit[1]]);
+            let expected = format!("'--no-isolate' cannot be used with '{}", limit[0]);
+            assert!(output.status.code() == Some(2) && said(&output).contains(&expected), "{output:?}");
+        }
+    }
+    let ours =
+        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let check = |more: &[&str]| videg(folder.path(), &[&["fmu", "check", ours.to_str().unwrap()], more].concat());
+    let output = check(&["--time-limit", "5"]);
+    let expected = format!("videg: warning: --time-limit does not bind {}: it is one of videg's", ours.display());
+    assert!(output.status.code() == Some(0) && said(&output).starts_with(&expected), "{output:?}");
+    assert_eq!(said(&check(&["--time-limit", "5", "--isolate"])), "");
+}
+
+#[test]
+fn a_sweep_isolates_our_fmu_where_it_is_asked_to_and_its_document_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = |output: &str, more: &[&str]| {
+        let what = ["sweep", "--vary", "membrane.restitution=0.3:0.9:2", "--until", "2", "--output", output];
+        videg(folder.path(), &[&what[..], more].concat())
+    };
+    let isolation = |output: &str| -> serde_json::Value {
+        let text = std::fs::read_to_string(folder.path().join(output).join("sweep.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["isolation"].clone()
+    };
+    assert!(sweep("here", &[]).status.success());
+    assert_eq!(isolation("here"), serde_json::Value::Null);
+    assert!(sweep("isolated", &["--isolate", "--time-limit", "50"]).status.success());
+    assert_eq!(isolation("isolated"), serde_json::json!({"time_limit_s": 50.0, "memory_limit_bytes": 4096_u64 << 20}));
+    same_files(&folder.path().join("here"), &folder.path().join("isolated"), &["sweep.csv"]);
+    // With this little memory no worker gets anywhere: it is one that runs.
+    let output = sweep("starved", &["--isolate", "--memory-limit", "1"]);
+    assert!(!output.status.success(), "{output:?}");
+}
+
+#[test]
+fn the_limits_of_an_isolated_fmu_decide_which_sweep_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    toy::fmu(folder.path(), "toy.fmu", &[]);
+    let sweep = |more: &[&str]| {
+        let what =
+            ["sweep", "--fmu", "toy.fmu", "--vary", "gain=1,2", "--record", "y", "--until", "1", "--output", "out"];
+        videg(folder.path(), &[&what[..], more].concat())
+    };
+    let limits = ["--time-limit", "7.5", "--memory-limit", "0"];
+    assert!(sweep(&limits).status.success());
+    let text = std::fs::read_to_string(folder.path().join("out/sweep.json")).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["isolation"], serde_json::json!({"time_limit_s": 7.5, "memory_limit_bytes": null}));
+    assert!(sweep(&limits).status.success(), "the same sweep again");
+    for (other, differs) in [
+        (&["--time-limit", "8", "--memory-limit", "0"][..], "\"time_limit_s\":7.5"),
+        (&[][..], "\"memory_limit_bytes\":null"),
+        (&["--no-isolate"][..], "not nothing"),
+    ] {
+        let output = sweep(other);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(said.contains("it belongs to another sweep (isolation is") && said.contains(differs), "{said}");
     }
 }
 

@@ -29,7 +29,7 @@ fn found<'a>(artefact: &'a Artefact, quantity: &str) -> &'a Finding {
 }
 
 fn settings(values: &[(&str, f64)]) -> Vec<Setting> {
-    values.iter().map(|(name, value)| Setting { name: (*name).to_owned(), value: format!("{value:?}") }).collect()
+    values.iter().map(|(name, value)| Setting::new(*name, format!("{value:?}"))).collect()
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn phase_noise_takes_most_of_the_output_until_it_hardly_matters() {
                 ("excitation.amplitude", 2.1626),
                 ("excitation.phaseNoise", intensity.sqrt()),
             ]);
-            settings.push(Setting { name: "excitation.seed".to_owned(), value: seed.to_string() });
+            settings.push(Setting::new("excitation.seed", seed.to_string()));
             Run { settings, window: [50.0, 100.0] }
         };
         let runs: Vec<Run> = (1..=SAMPLES).map(sample).collect();
@@ -150,7 +150,7 @@ fn the_same_item_has_the_same_bytes_each_time() {
 fn a_run_does_not_depend_on_its_neighbours() {
     let noisy = |k: i32| {
         let mut settings = settings(&[("excitation.phaseNoise", 1.0), ("excitation.noiseHold", 1e-4)]);
-        settings.push(Setting { name: "excitation.seed".to_owned(), value: k.to_string() });
+        settings.push(Setting::new("excitation.seed", k.to_string()));
         Run { settings, window: [5.0, 10.0] }
     };
     let mut runs: Vec<Run> = (1..=12).map(noisy).collect();

@@ -65,10 +65,7 @@ impl Arguments {
     fn settings(&self) -> Vec<Setting> {
         let release = self.release.and_then(|name| name.to_possible_value()).map(|value| (names::RELEASE, value));
         let topology = self.topology.and_then(|name| name.to_possible_value()).map(|value| (names::TOPOLOGY, value));
-        let setting = |(name, value): (&str, clap::builder::PossibleValue)| Setting {
-            name: name.to_owned(),
-            value: value.get_name().to_owned(),
-        };
+        let setting = |(name, value): (&str, clap::builder::PossibleValue)| Setting::new(name, value.get_name());
         release.into_iter().chain(topology).map(setting).collect()
     }
 }
@@ -139,7 +136,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let scenario = options.scenario_with(arguments.settings())?;
     anyhow::ensure!(
         scenario.until <= LONGEST,
-        "--until = {} s: must not be above {LONGEST} s for crosscheck, as ngspice keeps all its time points in memory",
+        "{} = {} s: must not be above {LONGEST} s for crosscheck, as ngspice keeps all its time points in memory",
+        scenario.until_place,
         scenario.until
     );
     let ngspice = Ngspice::find(None)?;

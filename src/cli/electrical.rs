@@ -68,5 +68,5 @@ pub fn capacitance_ratios(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]
 pub fn every_setting(settings: &Settings) -> Vec<Setting> {
     let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
     let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
-    quantities.chain(choices).map(|(name, value)| Setting { name: name.to_owned(), value }).collect()
+    quantities.chain(choices).map(|(name, value)| Setting::new(name, value)).collect()
 }

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, ensure};
 use clap::Args;
 
-use super::packaging;
+use super::{output, packaging};
 use crate::fmi::{Bounds, Fmu, Isolation};
 use crate::package;
 
@@ -24,11 +24,11 @@ pub struct IsolationOptions {
     #[arg(long)]
     no_isolate: bool,
     /// Longest time that a call of an isolated FMU may take, s; 0: any [default: 60]
-    #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true, conflicts_with = "no_isolate")]
     time_limit: Option<f64>,
     /// Memory (address space) that the process of an isolated FMU may take, MiB; 0: any. Not on macOS and Windows
     /// [default: 4096]
-    #[arg(long, value_name = "MIB")]
+    #[arg(long, value_name = "MIB", conflicts_with = "no_isolate")]
     memory_limit: Option<u32>,
 }
 
@@ -44,16 +44,43 @@ impl IsolationOptions {
             return Ok(Fmu::open(path)?);
         }
         let is_trusted = |identifier: &str, library: &Path| !self.isolate && package::is_own(identifier, library);
-        Ok(Fmu::open_isolated_unless(path, &self.isolation()?, is_trusted)?)
+        let fmu = Fmu::open_isolated_unless(path, &self.isolation()?, is_trusted)?;
+        if let Some(limit) = self.limit().filter(|_| !fmu.is_isolated()) {
+            let path = path.display();
+            // Not an error: who checks many FMUs bounds those of others.
+            output::warn(&[format!(
+                "{limit} does not bind {path}: it is one of videg's, which run in its own process; add --isolate"
+            )]);
+        }
+        Ok(fmu)
     }
 
     /// Packages the FMUs of this project, with progress, and opens the one with this identifier.
     pub fn open_own(&self, identifier: &str) -> anyhow::Result<Fmu> {
-        if !self.isolate && (self.time_limit.is_some() || self.memory_limit.is_some()) {
-            bail!("--time-limit and --memory-limit need --isolate here: the FMUs of videg run in its own process");
-        }
+        self.check_own()?;
         let path = packaging::path(identifier)?;
         if self.isolate { Ok(Fmu::open_isolated(path, &self.isolation()?)?) } else { Ok(Fmu::open(path)?) }
+    }
+
+    /// That nothing is asked of the model or the FMUs of this project that would be without effect.
+    pub fn check_own(&self) -> anyhow::Result<()> {
+        let limit = self.limit().filter(|_| !self.isolate).unwrap_or_default();
+        ensure!(
+            limit.is_empty(),
+            "{limit} needs --isolate here: the FMUs of videg run in its own process, which it would not bind"
+        );
+        Ok(())
+    }
+
+    /// Whether even what is of this project is to run in processes of its own.
+    pub fn is_forced(&self) -> bool {
+        self.isolate
+    }
+
+    /// A limit that was given, by its option.
+    fn limit(&self) -> Option<&'static str> {
+        let time = self.time_limit.map(|_| "--time-limit");
+        time.or(self.memory_limit.map(|_| "--memory-limit"))
     }
 
     fn isolation(&self) -> anyhow::Result<Isolation> {
@@ -100,6 +127,6 @@ mod tests {
     fn bounds_on_what_is_not_isolated_are_refused() {
         let options = IsolationOptions { time_limit: Some(1.0), ..IsolationOptions::default() };
         let error = options.open_own("VibroImpactHarvester").err().unwrap().to_string();
-        assert!(error.starts_with("--time-limit and --memory-limit need --isolate here"), "{error}");
+        assert!(error.starts_with("--time-limit needs --isolate here"), "{error}");
     }
 }

@@ -1,5 +1,6 @@
 //! Settings by name: which of them are the harvester's, which the circuit's.
 
+use anyhow::anyhow;
 use videg_circuit::Settings;
 
 use crate::cosim::EmbeddedCircuit;
@@ -10,23 +11,24 @@ use crate::scenario::{Scenario, Setting};
 pub fn split(harvester: &ModelDescription, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
     let (mut mechanical, mut electrical) = (Vec::new(), Vec::new());
     for setting in &scenario.settings {
-        let of_circuit = EmbeddedCircuit::apply(&mut Settings::default(), setting)?;
+        let of_circuit = EmbeddedCircuit::apply(&mut Settings::default(), setting);
+        let of_circuit = of_circuit.map_err(|error| anyhow!("{}: {error}", setting.place()))?;
         if harvester.variable(&setting.name).is_ok() {
             mechanical.push(setting.clone());
         } else if of_circuit {
             electrical.push(setting.clone());
         } else {
-            anyhow::bail!(unknown(harvester, &setting.name));
+            anyhow::bail!(unknown(harvester, setting));
         }
     }
     Ok((mechanical, electrical))
 }
 
-fn unknown(harvester: &ModelDescription, name: &str) -> String {
+fn unknown(harvester: &ModelDescription, setting: &Setting) -> String {
     let harvester = harvester.variables.iter().map(|variable| variable.name.as_str());
     let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
     let choices = Settings::CHOICES.iter().map(|choice| choice.name);
-    let hint = nearest_name(name, harvester.chain(quantities).chain(choices));
+    let hint = nearest_name(&setting.name, harvester.chain(quantities).chain(choices));
     let hint = hint.map_or_else(|| "see videg fmu info".to_owned(), |nearest| format!("did you mean {nearest}?"));
-    format!("--set {name}: neither the harvester nor the circuit has such a variable; {hint}")
+    format!("{}: neither the harvester nor the circuit has such a variable; {hint}", setting.place())
 }

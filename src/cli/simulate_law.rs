@@ -31,7 +31,7 @@ impl Law {
 
     /// The setting that chooses the law.
     pub fn setting(self) -> Setting {
-        Setting { name: VARIABLE.to_owned(), value: self.name().to_owned() }
+        Setting::new(VARIABLE, self.name())
     }
 
     /// Whether `value` of `contact.law`, a name or a number, means this law.
@@ -52,9 +52,9 @@ pub fn scenario(law: Option<Law>, options: &RunOptions) -> anyhow::Result<Scenar
     let scenario = options.scenario()?;
     let Some(law) = law else { return Ok(scenario) };
     match scenario.settings.iter().rfind(|setting| setting.name == VARIABLE) {
-        Some(Setting { value, .. }) if !law.is(value) => {
-            let name = law.name();
-            anyhow::bail!("--law {name}: {VARIABLE} = {value} is set as well; leave one of the two out")
+        Some(set) if !law.is(&set.value) => {
+            let (name, place, value) = (law.name(), set.place(), &set.value);
+            anyhow::bail!("--law {name}: {place} = {value} says otherwise; leave one of the two out")
         }
         None if law != Law::Both => Ok(options.scenario_with(vec![law.setting()])?),
         _ => Ok(scenario),

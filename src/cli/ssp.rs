@@ -80,7 +80,7 @@ fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setti
     EmbeddedCircuit::new("circuit", &resolved, capacitance)?;
     let mut of_circuit = electrical::every_setting(&resolved);
     for (name, value) in ["left.capacitance", "right.capacitance"].into_iter().zip(capacitance) {
-        of_circuit.push(Setting { name: name.to_owned(), value: format!("{value:?}") });
+        of_circuit.push(Setting::new(name, format!("{value:?}")));
     }
     Ok((mechanical, of_circuit))
 }

@@ -138,11 +138,14 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
     let design = arguments.what.design.or(file.design).unwrap_or_default();
     let fmu = arguments.fmu.as_deref().map(|path| arguments.isolation.open(path)).transpose()?;
+    if fmu.is_none() {
+        arguments.isolation.check_own()?;
+    }
     let own = sweep::harvester_description()?;
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
     let isolation = arguments.isolation.bounds_of(fmu.as_ref());
-    let sweep = Sweep::new(arguments.what.request(file, description, fingerprint, isolation)?)?;
+    let sweep = Sweep::new(&arguments.what.request(file, description, fingerprint, isolation)?)?;
     if arguments.check {
         return show_counts(arguments, &sweep, design);
     }
@@ -150,8 +153,8 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
         Some(fmu) => Engine::Fmu(fmu),
         // What the model itself does not offer goes through its FMU, with the same numbers.
         None => match BuiltIn::new(&sweep)? {
-            Some(built_in) => Engine::BuiltIn(Box::new(built_in)),
-            None => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
+            Some(built_in) if !arguments.isolation.is_forced() => Engine::BuiltIn(Box::new(built_in)),
+            _ => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
         },
     };
     let (stop, signal) = signals()?;

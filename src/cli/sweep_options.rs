@@ -71,7 +71,9 @@ impl What {
         let is_harvester = description.variable("gain.voltage").is_ok();
         let model = &description.model_name;
         let has_case = self.case.is_some() || file.case.case.is_some();
-        anyhow::ensure!(is_harvester || !has_case, "--case: {model} is not the harvester, of which the cases are");
+        let place = || file.case.origin(self.case.is_some()).key("case");
+        anyhow::ensure!(is_harvester || !has_case, "{}: {model} is not the harvester, of which the cases are", place());
+        let in_file = self.in_file(&file);
         let step = self.step.or(file.case.step);
         let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
         let name = case.name.clone();
@@ -97,7 +99,21 @@ impl What {
             common_seeds: self.common_seeds || common_seeds.unwrap_or(false),
             seed_variable: self.seed_variable.clone().or(seed_variable),
             record: if self.record.is_empty() { record } else { self.record.clone() },
+            in_file,
         })
+    }
+
+    /// What the file says, and no option: of which file.
+    fn in_file(&self, file: &SweepFile) -> Vec<(&'static str, PathBuf)> {
+        let Some(path) = &file.case.path else { return Vec::new() };
+        let keys = [
+            ("design", self.design.is_none() && file.design.is_some()),
+            ("points", self.points.is_none() && file.points.is_some()),
+            ("samples", self.samples.is_none() && file.samples.is_some()),
+            ("seed-variable", self.seed_variable.is_none() && file.seed_variable.is_some()),
+            ("record", self.record.is_empty() && !file.record.is_empty()),
+        ];
+        keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| (key, path.clone())).collect()
     }
 
     fn scenario(
@@ -107,7 +123,7 @@ impl What {
         is_harvester: bool,
     ) -> Result<Scenario, ScenarioError> {
         let own_end = || description.default_experiment.stop_time.filter(|_| !is_harvester);
-        let until = self.until.or(file.until).or_else(own_end);
+        let until = self.until.or_else(|| if file.until.is_none() { own_end() } else { None });
         let settings = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
         let window = self.window.map(|Window(window)| window);
         scenario::Request { case: self.case.clone(), file: Some(file), settings, until, step: self.step, window }

@@ -48,6 +48,14 @@ pub enum CosimError {
         /// What is allowed.
         bound: String,
     },
+    /// An FMU refused a setting.
+    #[error("{place}: {cause}")]
+    Refused {
+        /// Where the setting was said.
+        place: String,
+        /// Its error.
+        cause: crate::fmi::FmiError,
+    },
     /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
     #[error("{name} = {value}: {bound}")]
     Setting {

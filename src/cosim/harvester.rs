@@ -109,7 +109,8 @@ impl HarvesterFmu {
     pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
         let mut instance = fmu.instantiate("harvester", Logging::default())?;
         for setting in settings {
-            instance.set_by_name(&setting.name, &setting.value)?;
+            let set = instance.set_by_name(&setting.name, &setting.value);
+            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause })?;
         }
         let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
         let mut reals = [0; REALS.len()];

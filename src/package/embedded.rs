@@ -5,8 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::entries::{Entries, put};
+use super::entries::Entries;
 use super::error::{PackageError, Result};
+use super::put::put;
 use super::{AddedBinary, FMUS, FmuPackage, Options, locate};
 
 /// Bytes of an archive in the folder that `VIDEG_FMUS` named when the program was compiled.

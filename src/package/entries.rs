@@ -5,12 +5,12 @@ use std::fs::{self, File};
 use std::io::{self, Cursor, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 
 use super::error::{PackageError, Result};
+use super::put::put;
 
 /// What goes into an archive: names with forward slashes, sorted, and the files or bytes behind them.
 #[derive(Debug, Clone, Default)]
@@ -118,18 +118,6 @@ impl Entries {
     }
 }
 
-/// Writes a file beside its place and moves it there, so that nobody ever sees half of it. Several processes may do so at
-/// once: the last one has its way.
-pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
-    let mut temporary = new_file(folder).map_err(PackageError::io("write into", folder))?;
-    let written = temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all());
-    written.map_err(PackageError::io("write", path))?;
-    temporary.persist(path).map_err(|error| PackageError::io("write", path)(error.error))?;
-    Ok(())
-}
-
 /// The same on every machine and day.
 fn options(name: &str) -> SimpleFileOptions {
     SimpleFileOptions::default()
@@ -138,13 +126,4 @@ fn options(name: &str) -> SimpleFileOptions {
         .last_modified_time(DateTime::default())
         .system(System::Unix)
         .unix_permissions(if name.starts_with("binaries/") { 0o755 } else { 0o644 })
-}
-
-/// A temporary file with the permissions of any new file, not the private ones that are usual for temporary files.
-fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".videg-").suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
 }

@@ -28,6 +28,7 @@ mod fresh;
 mod locate;
 mod picture;
 mod platform;
+mod put;
 mod ssp;
 mod target;
 mod tools;

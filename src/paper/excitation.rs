@@ -7,7 +7,7 @@ use crate::scenario::Setting;
 
 /// The variable called `name` at `value`, to the last bit.
 pub fn set(name: &str, value: f64) -> Setting {
-    Setting { name: name.to_owned(), value: format!("{value:?}") }
+    Setting::new(name, format!("{value:?}"))
 }
 
 /// The cylinder as the FMU has it.

@@ -84,7 +84,7 @@ fn settings(cylinder: &Cylinder, point: usize, sample: usize, count: usize) -> V
     let mut settings = cylinder.elastic(GAMMA, FREQUENCY, nudge(sample, count));
     settings.push(set("excitation.phaseNoise", INTENSITIES[point].sqrt()));
     let seed = seed(point, sample);
-    settings.push(Setting { name: "excitation.seed".to_owned(), value: seed.to_string() });
+    settings.push(Setting::new("excitation.seed", seed.to_string()));
     settings
 }
 

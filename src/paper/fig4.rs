@@ -63,7 +63,7 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 /// The contact of a ball that flies into the membrane of a cylinder at rest, sampled.
 fn contact(workshop: &Workshop<'_>, restitution: f64) -> Result<Vec<Point>, PaperError> {
     let instance = &mut workshop.start(&[
-        Setting { name: "contact.law".to_owned(), value: "compliant".to_owned() },
+        Setting::new("contact.law", "compliant"),
         set("excitation.amplitude", 0.0),
         set("initial.ballPosition", 0.0),
         set("initial.ballVelocity", SPEED),

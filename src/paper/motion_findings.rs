@@ -146,7 +146,7 @@ fn double_hits(
     recording: &Recording,
 ) -> Result<Found, PaperError> {
     let mut free = workshop.case(shown.case)?;
-    free.push(Setting { name: "initial.outsideGap".to_owned(), value: "free".to_owned() });
+    free.push(Setting::new("initial.outsideGap", "free"));
     let free = impacts(workshop, &free, shown.window)?;
     let hits = Pattern::DoubleHit.count(&free, setup.travel);
     let [cylinder, _, ball, _] = setup.start;

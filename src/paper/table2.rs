@@ -112,7 +112,7 @@ fn compute(workshop: &Workshop<'_>) -> Result<Computation, PaperError> {
         }
         cases.push(case);
     }
-    let rule = Setting { name: "initial.outsideGap".to_owned(), value: "free".to_owned() };
+    let rule = Setting::new("initial.outsideGap", "free");
     let free = workshop.case("fig12")?.into_iter().chain([rule]).collect();
     let free = computed(workshop, &PRINTED[2], free, &nudges)?;
     let pooled = cases.iter().filter(|case| case.is_chaotic()).flat_map(|case| case.values.iter().copied());

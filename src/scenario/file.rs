@@ -16,16 +16,18 @@
 
 use std::fs::File;
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{ScenarioError, Setting};
+use super::{Origin, ScenarioError, Setting};
 
 /// What a case file says.
 #[derive(Debug, Clone, Default)]
 pub struct CaseFile {
+    /// Where it was read from, if it was.
+    pub path: Option<PathBuf>,
     /// Case of the paper to start from.
     pub case: Option<String>,
     /// Name of the run.
@@ -78,7 +80,7 @@ impl CaseFile {
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let (mut file, stem) = read_file(path, Self::parse)?;
         file.name = file.name.or(stem);
-        Ok(file)
+        Ok(file.at(path))
     }
 
     /// Reads the text of a case file.
@@ -97,11 +99,25 @@ impl CaseFile {
         Self::of(table.try_into().map_err(|error| toml_error(&error))?)
     }
 
+    /// The same, read from the file at `path`.
+    #[must_use]
+    pub fn at(mut self, path: &Path) -> Self {
+        self.settings.iter_mut().for_each(|setting| setting.origin = Origin::File(path.to_owned()));
+        self.path = Some(path.to_owned());
+        self
+    }
+
+    /// Where a key was said: in the file, unless an option says it.
+    #[must_use]
+    pub fn origin(&self, is_option: bool) -> Origin {
+        self.path.clone().filter(|_| !is_option).map_or(Origin::Option, Origin::File)
+    }
+
     fn of(layout: Layout) -> Result<Self, String> {
         let mut settings = Vec::new();
         flatten("", &layout.set, &mut settings)?;
         let Layout { case, name, description, until, step, window, .. } = layout;
-        Ok(Self { case, name, description, until, step, window, settings })
+        Ok(Self { path: None, case, name, description, until, step, window, settings })
     }
 }
 
@@ -144,7 +160,7 @@ fn flatten(prefix: &str, table: &Table, settings: &mut Vec<Setting>) -> Result<(
             continue;
         }
         let value = value_text(&name, value)?;
-        settings.push(Setting { name, value });
+        settings.push(Setting::new(name, value));
     }
     Ok(())
 }

@@ -1,32 +1,28 @@
 //! What to run: a case of the paper or a case file, settings on top of it, duration and averaging window.
 
 mod file;
+mod origin;
 mod preset;
+mod times;
 
 pub use file::{CaseFile, value_text};
 pub(crate) use file::{read_file, toml_error};
+pub use origin::Origin;
 
 use serde::Serialize;
 use thiserror::Error;
 
-/// Duration of a run unless something else is asked for, s: that of the paper (Section 4.2).
-const DEFAULT_UNTIL: f64 = 100.0;
-/// Communication step unless something else is asked for, s.
-const DEFAULT_STEP: f64 = 1e-3;
-/// Bounds of the duration, s: below, times differ by nothing that can be drawn; above, they have no digits left.
-const SHORTEST: f64 = 1e-6;
-const LONGEST: f64 = 1e9;
-/// Largest number of communication points of the grid: 1e9 rows are some 200 GB of CSV.
-const MAX_STEPS: f64 = 1e9;
+/// Case unless something else is asked for.
+const DEFAULT_CASE: &str = "fig14";
 
 /// Why a scenario makes no sense. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// No case has this name.
-    #[error("--case {name}: no such case; there are: {known}")]
+    #[error("{given}: no such case; there are: {known}")]
     UnknownCase {
-        /// Name given.
-        name: String,
+        /// Name given, and where.
+        given: String,
         /// Names that exist.
         known: String,
     },
@@ -39,8 +35,8 @@ pub enum ScenarioError {
     /// A duration, step or window is out of range.
     #[error("{name} = {value} s: {bound}")]
     Time {
-        /// Name of the option.
-        name: &'static str,
+        /// Name of the option, or of file and key.
+        name: String,
         /// Value given.
         value: f64,
         /// What is allowed.
@@ -71,9 +67,26 @@ pub struct Setting {
     pub name: String,
     /// Its value.
     pub value: String,
+    /// Where it was said.
+    #[serde(skip)]
+    pub origin: Origin,
 }
 
 impl Setting {
+    /// A setting that no user asked for.
+    pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self { name: name.into(), value: value.into(), origin: Origin::Program }
+    }
+
+    /// Where it was said, for an error about it.
+    #[must_use]
+    pub fn place(&self) -> String {
+        match self.origin {
+            Origin::Program => self.name.clone(),
+            Origin::Option | Origin::File(_) => self.origin.entry("set", &self.name),
+        }
+    }
+
     /// Reads `name=value`.
     ///
     /// # Errors
@@ -81,7 +94,7 @@ impl Setting {
     pub fn parse(text: &str) -> Result<Self, ScenarioError> {
         match text.split_once('=').map(|(name, value)| (name.trim(), value.trim())) {
             Some((name, value)) if !name.is_empty() && !value.is_empty() => {
-                Ok(Self { name: name.to_owned(), value: value.to_owned() })
+                Ok(Self { origin: Origin::Option, ..Self::new(name, value) })
             }
             _ => Err(ScenarioError::BadSetting { text: text.to_owned() }),
         }
@@ -133,6 +146,8 @@ pub struct Scenario {
     pub paper: PaperValues,
     /// How many of the settings are those of the case.
     of_case: usize,
+    /// What the end is called where it was said, for an error about it.
+    pub until_place: String,
 }
 
 impl Scenario {
@@ -147,9 +162,14 @@ impl Request {
     ///
     /// # Errors
     /// An unknown case; a duration, step or window that makes no sense.
-    pub fn resolve(self) -> Result<Scenario, ScenarioError> {
-        let file = self.file.unwrap_or_default();
-        let case = preset::find(self.case.as_deref().or(file.case.as_deref()).unwrap_or("fig14"))?;
+    pub fn resolve(mut self) -> Result<Scenario, ScenarioError> {
+        let file = self.file.take().unwrap_or_default();
+        let named = self.case.as_deref().or(file.case.as_deref()).unwrap_or(DEFAULT_CASE);
+        let case = preset::find(named).map_err(|known| {
+            let given = file.origin(self.case.is_some()).value("case", named);
+            ScenarioError::UnknownCase { given, known }
+        })?;
+        let times = times::resolve(&self, &file)?;
         let mut changes = file.settings;
         changes.extend(self.settings);
         let mut description = file.description.unwrap_or_else(|| case.description.to_owned());
@@ -161,52 +181,19 @@ impl Request {
         let mut settings = preset::settings(case);
         let of_case = settings.len();
         settings.extend(changes);
-        let until = self.until.or(file.until).unwrap_or(DEFAULT_UNTIL);
-        let step = self.step.or(file.step).unwrap_or_else(|| DEFAULT_STEP.min(until));
-        let window = self.window.or(file.window).unwrap_or_else(|| default_window(until));
-        check_times(until, step, window)?;
         let paper = PaperValues { voltage_gain: case.paper_voltage_gain, power: case.paper_power };
         Ok(Scenario {
             name: file.name.unwrap_or_else(|| case.name.to_owned()),
             description,
             settings,
-            until,
-            step,
-            window,
+            until: times.until,
+            step: times.step,
+            window: times.window,
             paper: if as_printed { paper } else { PaperValues::default() },
             of_case,
+            until_place: times.until_place,
         })
     }
-}
-
-/// 50 to 100 s, as the paper averages; of a shorter run its second half.
-fn default_window(until: f64) -> [f64; 2] {
-    if until >= 100.0 { [50.0, 100.0] } else { [until / 2.0, until] }
-}
-
-fn check_times(until: f64, step: f64, window: [f64; 2]) -> Result<(), ScenarioError> {
-    let fail = |name, value, bound: String| Err(ScenarioError::Time { name, value, bound });
-    if !(SHORTEST..=LONGEST).contains(&until) {
-        return fail("--until", until, format!("must lie from {SHORTEST} to {LONGEST:e} s"));
-    }
-    if !(step > 0.0 && step <= until) {
-        return fail("--step", step, format!("must lie above 0 and not above --until = {until} s"));
-    }
-    if until / step > MAX_STEPS {
-        return fail("--step", step, format!("must be at least --until / {MAX_STEPS:e} = {:e} s", until / MAX_STEPS));
-    }
-    let [from, to] = window;
-    if !(from >= 0.0 && from < until) {
-        return fail("--window start", from, format!("must lie from 0 to below --until = {until} s"));
-    }
-    if !(to > from && to <= until) {
-        return fail(
-            "--window end",
-            to,
-            format!("must lie above its start {from} s and not above --until = {until} s"),
-        );
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 
 use videg_model::{Case, Parameters};
 
-use super::{ScenarioError, Setting};
+use super::Setting;
 
 /// The case called `name`.
-pub(super) fn find(name: &str) -> Result<&'static Case, ScenarioError> {
-    Case::find(name).ok_or_else(|| ScenarioError::UnknownCase {
-        name: name.to_owned(),
-        known: Case::ALL.iter().map(|case| case.name).collect::<Vec<_>>().join(", "),
-    })
+///
+/// # Errors
+/// The names of all, if there is none.
+pub(super) fn find(name: &str) -> Result<&'static Case, String> {
+    Case::find(name).ok_or_else(|| Case::ALL.iter().map(|case| case.name).collect::<Vec<_>>().join(", "))
 }
 
 /// What the case sets: every parameter whose value is not the start value. Numbers are written so that reading them
@@ -17,7 +17,5 @@ pub(super) fn find(name: &str) -> Result<&'static Case, ScenarioError> {
 pub(super) fn settings(case: &Case) -> Vec<Setting> {
     let parameters = (case.parameters)();
     let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
-    changed
-        .map(|quantity| Setting { name: quantity.name.to_owned(), value: format!("{:?}", (quantity.get)(&parameters)) })
-        .collect()
+    changed.map(|quantity| Setting::new(quantity.name, format!("{:?}", (quantity.get)(&parameters)))).collect()
 }

@@ -27,8 +27,8 @@ impl Axis {
     /// one elsewhere; a variable no value of which lies in its bounds.
     pub fn new(description: &ModelDescription, vary: &Vary, design: Design, seed: u64) -> Result<Self, SweepError> {
         let name = &vary.name;
-        let variable = description.variable(name)?.clone();
         let bad = |reason: String| SweepError::option("vary", name, reason);
+        let variable = description.variable(name).map_err(|error| bad(error.to_string()))?.clone();
         if !variable.is_settable() {
             let (variability, causality) = (variable.variability.as_str(), variable.causality.as_str());
             return Err(bad(format!("it is a {variability} {causality}, which cannot be set")));

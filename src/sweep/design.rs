@@ -47,7 +47,7 @@ impl Points {
     /// # Errors
     /// A number of points that is missing, out of bounds, or not that of the grid.
     pub fn new(design: Design, axes: Vec<Axis>, asked: Option<u64>) -> Result<Self, SweepError> {
-        let bad = |value: String, reason: String| Err(SweepError::Option { option: "points", value, reason });
+        let bad = |value: String, reason: String| Err(SweepError::option("points", value, reason));
         let count = match (design, asked) {
             (Design::Grid, asked) => {
                 let product = axes.iter().try_fold(1_u64, |product, axis| product.checked_mul(axis.len()));

@@ -1,4 +1,5 @@
-//! The document `sweep.json`: everything that decides the results of a sweep.
+//! The document `sweep.json`: everything that decides the results of a sweep. Behind it stand their checksums once they are
+//! complete (`sums.rs`).
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -76,7 +77,12 @@ impl Document<'_> {
 
 /// SHA-256 of `content`, in hexadecimal digits.
 pub(super) fn sha256(content: impl AsRef<[u8]>) -> String {
-    Sha256::digest(content).iter().fold(String::new(), |mut digits, byte| {
+    hexadecimal(&Sha256::digest(content))
+}
+
+/// Two digits for each of `bytes`.
+pub(super) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut digits, byte| {
         let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
         digits.extend([digit(byte >> 4), digit(byte & 15)]);
         digits

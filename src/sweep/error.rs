@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::fmi::FmiError;
-use crate::scenario::ScenarioError;
+use crate::scenario::{Origin, ScenarioError};
 
 /// Why a sweep could not be run, resumed or merged. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]
@@ -18,8 +18,10 @@ pub enum SweepError {
     #[error(transparent)]
     Fmi(#[from] FmiError),
     /// An option, or the key of the sweep file of the same name, makes no sense.
-    #[error("--{option}{}{value}: {reason}", if value.is_empty() { "" } else { " " })]
+    #[error("{}: {reason}", place(origin, option, value))]
     Option {
+        /// Where it was said.
+        origin: Origin,
         /// Name of the option.
         option: &'static str,
         /// What was given.
@@ -93,10 +95,29 @@ pub enum SweepError {
     },
 }
 
+/// What is called `option`, and its `value`, as a user finds it.
+fn place(origin: &Origin, option: &str, value: &str) -> String {
+    match option {
+        _ if value.is_empty() => origin.key(option),
+        "set" | "vary" => origin.entry(option, value),
+        _ => origin.value(option, value),
+    }
+}
+
 impl SweepError {
     /// An option whose value makes no sense.
     pub(super) fn option(option: &'static str, value: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self::Option { option, value: value.into(), reason: reason.into() }
+        Self::Option { origin: Origin::Option, option, value: value.into(), reason: reason.into() }
+    }
+
+    /// The same, of what was said where `origin` has it by option and value.
+    pub(super) fn said(self, origin: impl FnOnce(&str, &str) -> Origin) -> Self {
+        match self {
+            Self::Option { option, value, reason, .. } => {
+                Self::Option { origin: origin(option, &value), option, value, reason }
+            }
+            other => other,
+        }
     }
 
     /// For `map_err`: the file system refused to `action` on `path`.

@@ -26,7 +26,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::{Design, Vary};
-use crate::scenario::{CaseFile, ScenarioError, read_file, toml_error};
+use crate::scenario::{CaseFile, Origin, ScenarioError, read_file, toml_error};
 
 /// What a sweep file says.
 #[derive(Debug, Default)]
@@ -76,7 +76,8 @@ impl SweepFile {
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let (mut file, stem) = read_file(path, Self::parse)?;
         file.case.name = file.case.name.or(stem);
-        Ok(file)
+        file.vary.iter_mut().for_each(|vary| vary.origin = Origin::File(path.to_owned()));
+        Ok(Self { case: file.case.at(path), ..file })
     }
 
     /// Reads the text of a sweep file.

@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::document::differences;
-use super::{Shard, SweepError};
+use super::{Shard, SweepError, sums};
 use crate::whole::{self, LockError, partial};
 
 /// Name of the document in a folder of results.
@@ -80,11 +80,11 @@ fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError 
     SweepError::content(&folder.join(DOCUMENT), reason)
 }
 
-/// The document in the folder, if there is one.
+/// The document in the folder, if there is one, without checksums.
 fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     let path = folder.join(DOCUMENT);
     match std::fs::read_to_string(&path) {
-        Ok(there) => Ok(Some(there)),
+        Ok(there) => Ok(Some(sums::identity(&there))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(SweepError::file("read", &path)(error)),
     }
@@ -126,7 +126,7 @@ pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> R
     check_document(folder, document)
 }
 
-fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
+pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(content)?;
     file.sync_all()

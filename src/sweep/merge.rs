@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::document::{Kept, differences};
 use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
-use super::{Shard, SweepError, column, lines, table};
+use super::{Shard, SweepError, column, lines, sums, table};
 use crate::whole;
 
 /// Version of this program: tables that another one writes may have other bytes.
@@ -36,16 +36,17 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     file.sync_all().map_err(SweepError::file("write", &part))?;
     std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
     let parquet = table::write(&path, &kept.columns, &document, true)?;
+    sums::record(output, &document, &[&path, &parquet])?;
     let files = vec![path, output.join(DOCUMENT), parquet];
     Ok(Report { runs: kept.runs, done: kept.runs, failed, resumed_from: 0, files })
 }
 
-/// The document of the first folder, which the others have as well.
+/// The document of the first folder, which the others have as well, without checksums.
 fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
     let mut first = None;
     for folder in folders {
         let path = folder.join(DOCUMENT);
-        let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
+        let text = sums::identity(&std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?);
         match &first {
             None => first = Some(text),
             Some(first) if *first == text => {}
@@ -129,6 +130,7 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> R
         })?;
         let length = std::fs::metadata(path).map_err(SweepError::file("read", path))?.len();
         extent.check_whole(length, &range).map_err(|reason| SweepError::content(path, reason))?;
+        sums::check(path)?;
         failed += extent.failed;
     }
     out.flush().map_err(written)?;

@@ -22,6 +22,7 @@ mod record;
 mod run;
 mod seeds;
 mod shard;
+mod sums;
 mod table;
 mod times;
 mod vary;

@@ -1,6 +1,7 @@
 //! The sweep, resolved: everything that decides its results.
 
 use std::collections::HashSet;
+use std::path::PathBuf;
 
 use super::axis::Axis;
 use super::column::{self, Column, Type};
@@ -10,8 +11,8 @@ use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};
 use crate::cosim::Averages;
-use crate::fmi::{Bounds, FmiError, Kind, ModelDescription, Value, ValueError, Variable};
-use crate::scenario::Setting;
+use crate::fmi::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
+use crate::scenario::{Origin, Setting};
 
 /// Variables from which averages follow, and their types.
 pub(super) const GAINS: [&str; 3] = ["gain.voltage", "gain.energyEq13", "impact.count"];
@@ -46,6 +47,23 @@ pub struct Request<'a> {
     pub seed_variable: Option<String>,
     /// Variables to record at the end of each run.
     pub record: Vec<String>,
+    /// Which of these stand in a file, by the names of the options, and in which.
+    pub in_file: Vec<(&'static str, PathBuf)>,
+}
+
+impl Request<'_> {
+    /// Where `value` of `option` was said, or a value of the variable of that name.
+    fn origin(&self, option: &str, value: &str) -> Origin {
+        let said = match option {
+            "set" => self.settings.iter().rfind(|setting| setting.name == value).map(|setting| &setting.origin),
+            "vary" => self.vary.iter().rfind(|vary| vary.name == value).map(|vary| &vary.origin),
+            _ => {
+                let file = self.in_file.iter().find(|(name, _)| *name == option);
+                return file.map_or(Origin::Option, |(_, path)| Origin::File(path.clone()));
+            }
+        };
+        said.cloned().unwrap_or(Origin::Option)
+    }
 }
 
 /// A sweep, checked.
@@ -87,15 +105,22 @@ impl Sweep {
     ///
     /// # Errors
     /// Whatever in it makes no sense for all of its runs.
-    pub fn new(request: Request<'_>) -> Result<Self, SweepError> {
-        let Request { description, design, seed, .. } = request;
+    pub fn new(request: &Request<'_>) -> Result<Self, SweepError> {
+        Self::resolve(request).map_err(|error| error.said(|option, value| request.origin(option, value)))
+    }
+
+    fn resolve(request: &Request<'_>) -> Result<Self, SweepError> {
+        let Request { description, design, seed, .. } = *request;
         let vary = last_of_each(&request.vary, |vary| &vary.name);
-        let settings = settings(&request, &vary)?;
+        let settings = settings(request, &vary)?;
         let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
         let points = Points::new(design, axes, request.points)?;
-        let seeds = seeds(&request, &settings, &vary)?;
+        let seeds = seeds(request, &settings, &vary)?;
         let runs = count_runs(points.count(), request.samples, seeds.as_ref())?;
-        let record = request.record.iter().map(|name| description.variable(name).cloned());
+        let record = request.record.iter().map(|name| {
+            let found = description.variable(name).cloned();
+            found.map_err(|error| SweepError::option("record", name, error.to_string()))
+        });
         let record = record.collect::<Result<Vec<_>, _>>()?;
         let averages = has_gains(description);
         if record.is_empty() && !averages {
@@ -124,7 +149,7 @@ impl Sweep {
             sha256: None,
         };
         let (document, samples) = (document.sealed(), request.samples);
-        let (name, times) = (request.name, request.times);
+        let (name, times) = (request.name.clone(), request.times);
         Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
     }
 
@@ -231,20 +256,20 @@ fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -
 }
 
 fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {
-    let variable = description.variable(&setting.name)?;
+    let bad = |reason: String| SweepError::option("set", &setting.name, reason);
+    let variable = description.variable(&setting.name).map_err(|error| bad(error.to_string()))?;
     if !variable.is_settable() {
         let causality = variable.causality.as_str();
         let article = if causality.starts_with(['i', 'o']) { "an" } else { "a" };
-        let reason = format!("it is {article} {causality}, which cannot be set");
-        return Err(SweepError::option("set", &setting.name, reason));
+        return Err(bad(format!("it is {article} {causality}, which cannot be set")));
     }
-    let value = Value::parse(description, variable, &setting.value).map_err(FmiError::from)?;
+    let value = Value::parse(description, variable, &setting.value).map_err(|error| bad(error.to_string()))?;
     Ok((variable.clone(), value))
 }
 
 /// As it stands in the document: however it was written, the same value gives the same text.
 fn as_setting((variable, value): &(Variable, Value)) -> Setting {
-    Setting { name: variable.name.clone(), value: column::cell(value) }
+    Setting::new(&variable.name, column::cell(value))
 }
 
 fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::folder;
 use super::record::{self, Found, Record};
-use super::{Engine, Shard, Sweep, SweepError, table};
+use super::{Engine, Shard, Sweep, SweepError, sums, table};
 
 /// Runs that may be done before one that is due: what the results wait in.
 const AHEAD: u64 = 4096;
@@ -68,7 +68,10 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
     let path = record::results_path(job.folder, job.shard);
     let mut files = vec![path.clone(), job.folder.join(folder::DOCUMENT)];
     let (done, failed, resumed_from) = match Record::open(job.folder, sweep, job.shard, job.fresh)? {
-        Found::Complete { failed } => (runs, failed, runs),
+        Found::Complete { failed } => {
+            sums::check(&path)?;
+            (runs, failed, runs)
+        }
         Found::Unfinished(mut record) => {
             let resumed_from = record.next - range.start;
             check_last(sweep, engine, &record)?;
@@ -82,10 +85,30 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
             (done, failed, resumed_from)
         }
     };
-    if done == runs && job.shard.is_none() {
-        files.push(table::write(&path, sweep.columns(), sweep.document(), resumed_from < runs)?);
+    if done == runs {
+        let parquet =
+            job.shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), resumed_from < runs));
+        let parquet = parquet.transpose()?;
+        let results: Vec<&Path> = [Some(&path), parquet.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+        settle(job.folder, sweep.document(), &results, resumed_from == runs)?;
+        files.extend(parquet);
     }
     Ok(Report { runs, done, failed, resumed_from, files })
+}
+
+/// That complete results are as their checksums say; new ones, and those of a sweep that ended before, get theirs.
+fn settle(folder: &Path, document: &str, results: &[&Path], were_there: bool) -> Result<(), SweepError> {
+    let mut missing = Vec::new();
+    for result in results {
+        if !were_there || !sums::check(result)? {
+            missing.push(*result);
+        }
+    }
+    if !missing.is_empty() {
+        return sums::record(folder, document, &missing);
+    }
+    sums::clear(folder);
+    Ok(())
 }
 
 /// That the last line that is there is what this program makes of its run.

@@ -61,7 +61,7 @@ impl Seeds {
                 let reason = format!("{} has no {name}; name its seed by --seed-variable", description.model_name);
                 return Err(SweepError::option("samples", asked.samples.to_string(), reason));
             }
-            Err(error) => return Err(error.into()),
+            Err(error) => return Err(SweepError::option("seed-variable", name, error.to_string())),
         };
         Ok(Some(Self { variable, first: asked.seed, samples: asked.samples, common: asked.common }))
     }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::SweepError;
+use crate::scenario::Origin;
 
 /// A variable and the values that it takes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,6 +14,9 @@ pub struct Vary {
     /// Its values.
     #[serde(flatten)]
     pub spread: Spread,
+    /// Where it was said.
+    #[serde(skip)]
+    pub origin: Origin,
 }
 
 /// Values of a variable.
@@ -69,7 +73,7 @@ impl Vary {
             return Err(bad());
         }
         let spread = if values.contains(':') { Spread::Range(range(values).ok_or_else(bad)?) } else { list(values) };
-        Ok(Self { name: name.to_owned(), spread })
+        Ok(Self { name: name.to_owned(), spread, origin: Origin::Option })
     }
 
     /// Reads a table of lists and of ranges `{ from, to, count, scale }`, whose names may be dotted.
@@ -123,7 +127,7 @@ fn flatten(prefix: &str, table: &Table, all: &mut Vec<Vary>) -> Result<(), Strin
                 ));
             }
         };
-        all.push(Vary { name, spread });
+        all.push(Vary { name, spread, origin: Origin::Option });
     }
     Ok(())
 }
@@ -145,7 +149,7 @@ mod tests {
             ("a.b=x, y", Spread::List { values: vec!["x".to_owned(), "y".to_owned()] }),
             ("a.b=7", Spread::List { values: vec!["7".to_owned()] }),
         ] {
-            assert_eq!(Vary::parse(text).unwrap(), Vary { name: "a.b".to_owned(), spread });
+            assert_eq!(Vary::parse(text).unwrap(), Vary { name: "a.b".to_owned(), spread, origin: Origin::Option });
         }
         for text in ["", "a", "a=", "=1:2", "a=1:", "a=1:2:3:4", "a=1:2:x", "a=1:2:-3", "a=log:x:2", "a=1:2,3"] {
             let message = Vary::parse(text).unwrap_err().to_string();

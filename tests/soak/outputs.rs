@@ -66,6 +66,10 @@ fn disturb(arguments: &[&str], at_most: u64, what: &str) -> u64 {
         let what = format!("{what}: {fault:?} of {calls} calls, {end:?}");
         assert_whole(&folder, &old, &new, &what);
         disk::assert_names_a_file(&end, &folder, &what);
+        if files(&folder).keys().any(|name| is_partial(name)) {
+            let left: Vec<_> = written(arguments, &folder).into_keys().collect();
+            assert!(left.iter().eq(new.keys()), "{what}: the next run leaves {left:?}");
+        }
         hits += u64::from(end != disk::End::Done);
     }
     restore();

@@ -2,6 +2,7 @@
 //! says to bad input.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+mod checksums;
 mod command;
 mod request;
 mod resume;

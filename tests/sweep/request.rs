@@ -59,6 +59,46 @@ fn bad_input_is_one_line_with_the_thing_the_value_and_the_bound_before_anything_
     }
 }
 
+/// A wrong value is that of the file and the key, or of the option, from which it came.
+#[test]
+fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
+    let (guard, folder) = folder();
+    let file = guard.path().join("my.toml");
+    let path = file.to_str().unwrap();
+    let restitution = "[vary]\nmembrane.restitution = { from = 0.2, to = 0.9 }";
+    let none: &[&str] = &[];
+    for (text, options, said) in [
+        (
+            "set.membrane.restitution = 7",
+            none,
+            "FILE: set.membrane.restitution: membrane.restitution = 7 is out of range",
+        ),
+        ("set.ball.position = 1", none, "FILE: set.ball.position: it is an output, which cannot be set"),
+        ("set.ball.weight = 1", none, "FILE: set.ball.weight: neither the harvester nor the circuit"),
+        ("samples = 2\nset.excitation.seed = 1", none, "FILE: set.excitation.seed: the samples give it a value"),
+        ("until = -1", none, "FILE: until = -1 s: must lie"),
+        ("case = 'fig8'", none, "FILE: case = fig8: no such case"),
+        (restitution, none, "FILE: vary.membrane.restitution: a grid needs a count"),
+        ("vary.ball.weight = [1]", none, "FILE: vary.ball.weight: "),
+        (&format!("design = 'lhs'\npoints = 0\n{restitution}"), none, "FILE: points = 0: must lie from 1 to"),
+        ("samples = 0", none, "FILE: samples = 0: with 1 points it must lie"),
+        ("record = ['nope']", none, "FILE: record = nope: "),
+        ("seed_variable = 'ball.mass'", none, "FILE: seed_variable = ball.mass: a seed is an Integer"),
+        ("samples = 1", &["--samples", "0"], "--samples 0: with 1 points"),
+        ("record = ['impacts']", &["--record", "nope"], "--record nope: "),
+        ("vary.ball.mass = [1]", &["--vary", "ball.mass=x"], "--vary ball.mass: "),
+        ("set.ball.mass = 1", &["--set", "ball.mass=x"], "--set ball.mass: "),
+    ] {
+        fs::write(&file, text).unwrap();
+        let (code, message) = refused(videg(&["sweep", path, "--output"]).arg(&folder).args(options));
+        assert_eq!(code, Some(2), "{text} {options:?}: {message}");
+        assert!(
+            message.starts_with(&format!("videg: {}", said.replace("FILE", path))),
+            "{text} {options:?}: {message}"
+        );
+    }
+}
+
 #[test]
 fn a_check_counts_and_leaves_nothing_behind() {
     let (_guard, folder) = folder();

@@ -116,7 +116,10 @@ fn the_parquet_file_holds_the_table_with_types_and_the_document() {
     let reader = SerializedFileReader::new(fs::File::open(folder.join("sweep.parquet")).unwrap()).unwrap();
     let metadata = reader.metadata().file_metadata();
     let document = metadata.key_value_metadata().unwrap().iter().find(|pair| pair.key == "videg.sweep").unwrap();
-    assert_eq!(document.value.as_ref().unwrap(), &fs::read_to_string(folder.join("sweep.json")).unwrap());
+    // The document cannot hold the checksum of the file that it stands in.
+    let beside = fs::read_to_string(folder.join("sweep.json")).unwrap();
+    let decides = beside.split_once(",\n  \"results\": {").unwrap().0;
+    assert_eq!(document.value.as_ref().unwrap(), &format!("{decides}\n}}\n"));
     let table: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
     let csv = rows(&folder);
     assert_eq!(table.len(), csv.len() - 1);

@@ -88,6 +88,8 @@ mod logger;
 mod macros;
 #[cfg(feature = "model-description")]
 mod model_description;
+#[cfg(feature = "model-description")]
+mod references;
 mod resource;
 mod serialize;
 mod slave;
@@ -102,6 +104,8 @@ pub use info::{DefaultExperiment, ModelInfo};
 pub use logger::{LogCategory, Logger};
 #[cfg(feature = "model-description")]
 pub use model_description::{DescriptionError, model_description};
+#[cfg(feature = "model-description")]
+pub use references::changed_references;
 pub use resource::{ResourceError, resource_path};
 pub use serialize::{StateError, StateReader, StateWriter};
 pub use slave::{EventOutcome, Experiment, Slave};

@@ -77,11 +77,6 @@ impl Harvester {
         self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
     }
 
-    fn is_too_long(&self, h: f64) -> bool {
-        let Parameters { frequency, phase_noise, noise_hold, .. } = self.parameters;
-        h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > MAX_HOLDS * noise_hold
-    }
-
     #[cold]
     fn too_long(&self, t: f64, h: f64) -> SlaveError {
         let Parameters { frequency, noise_hold, .. } = self.parameters;
@@ -175,14 +170,14 @@ impl Slave for Harvester {
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        if self.is_too_long(h) {
+        if is_too_long(&self.parameters, h) {
             return Err(self.too_long(t, h));
         }
         self.check_limits(log);
         let Self { parameters, model, .. } = self;
         let model = running(model)?;
         let behind = t - model.time();
-        if behind > h && behind * parameters.frequency > 1.0 {
+        if behind > h && (behind * parameters.frequency > 1.0 || is_too_long(parameters, behind)) {
             return Err(elsewhere(t, model.time()));
         }
         let mut number = model.totals().impacts;
@@ -260,6 +255,12 @@ impl Slave for Harvester {
 /// The model, or why there is none.
 fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveError> {
     model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
+}
+
+/// Whether a step of `h`, s, is more work than anybody waits for.
+fn is_too_long(parameters: &Parameters, h: f64) -> bool {
+    let Parameters { frequency, phase_noise, noise_hold, .. } = *parameters;
+    h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > MAX_HOLDS * noise_hold
 }
 
 /// Why no step begins at `t`, s: the model is far behind, as only a forged state has it, and could take for ever to get there.

@@ -29,7 +29,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
     let (name, step) = (case.name.clone().unwrap_or_default(), case.step);
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
     let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
-    Sweep::new(Request {
+    Sweep::new(&Request {
         isolation: None,
         name,
         description: &HARVESTER,
@@ -44,6 +44,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
         common_seeds: common_seeds.unwrap_or(false),
         seed_variable,
         record,
+        in_file: Vec::new(),
     })
 }
 

@@ -1,0 +1,189 @@
+//! Checksums of complete results. They stand in the document behind what decides the results, so that a file which changes
+//! later on a disk or on the way to another machine is found out.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read as _};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+
+use super::SweepError;
+use super::document::hexadecimal;
+use super::folder::{self, DOCUMENT};
+use crate::whole;
+
+/// What stands before the checksums. Nothing else in the document does: a text has no line breaks, and other keys are
+/// indented further or have other names.
+const KEY: &str = ",\n  \"results\": ";
+/// How a document ends.
+const END: &str = "\n}\n";
+/// Who has this file locked writes.
+const LOCK: &str = "sweep.json.lock.part";
+/// How long to wait for another shard that writes its own.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+struct Sum {
+    bytes: u64,
+    sha256: String,
+}
+
+/// By the names of the files.
+type Sums = BTreeMap<String, Sum>;
+
+/// The document without checksums: what decides the results.
+pub(super) fn identity(text: &str) -> String {
+    text.split_once(KEY).map_or_else(|| text.to_owned(), |(head, _)| format!("{head}{END}"))
+}
+
+/// That a complete file of results is as `sweep.json` beside it says, if that says anything of it; whether it does.
+///
+/// # Errors
+/// A file of another length or content; a refusal of the file system.
+pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
+    let document = path.with_file_name(DOCUMENT);
+    let text = std::fs::read_to_string(&document).map_err(SweepError::file("read", &document))?;
+    let Some(expected) = read(&document, &text)?.remove(&name(path)) else { return Ok(false) };
+    let found = Sum::of(path)?;
+    let changed = |what: String| {
+        let reason = format!("{what}; it was changed after it was complete");
+        Err(SweepError::content(path, reason))
+    };
+    if found.bytes != expected.bytes {
+        return changed(format!("it has {} bytes, and {DOCUMENT} expects {}", found.bytes, expected.bytes));
+    }
+    if found.sha256 != expected.sha256 {
+        return changed(format!("its SHA-256 is {}, and {DOCUMENT} expects {}", found.sha256, expected.sha256));
+    }
+    Ok(true)
+}
+
+/// Adds the checksums of complete `results` to their `document` in the folder.
+///
+/// # Errors
+/// Another document in the folder; another process that does not come to an end with the same; a refusal of the file
+/// system.
+pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
+    // Only one that this program wrote ends so; others it does not write to.
+    let (Some(head), Some(first)) = (document.strip_suffix(END), results.first()) else { return Ok(()) };
+    let path = folder.join(DOCUMENT);
+    let turn = wait_for(&folder.join(LOCK))?;
+    folder::check_document(folder, document)?;
+    let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
+    let mut sums = read(&path, &text)?;
+    for result in results {
+        sums.insert(name(result), Sum::of(result)?);
+    }
+    let sums = serde_json::to_string_pretty(&sums).unwrap_or_default().replace('\n', "\n  ");
+    // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
+    let part = first.with_extension("json.part");
+    folder::write_synced(&part, format!("{head}{KEY}{sums}{END}").as_bytes())
+        .map_err(SweepError::file("write", &part))?;
+    std::fs::rename(&part, &path).map_err(SweepError::file("write", &path))?;
+    let removed = folder::remove(&folder.join(LOCK));
+    drop(turn);
+    removed
+}
+
+/// Removes what a process that was killed left of [`record`].
+pub(super) fn clear(folder: &Path) {
+    // It keeps nobody from anything.
+    let _ = whole::remove_abandoned(&folder.join(LOCK));
+}
+
+/// Waits until no other shard of the folder writes its own: they take turns.
+fn wait_for(lock: &Path) -> Result<File, SweepError> {
+    let end = Instant::now() + PATIENCE;
+    loop {
+        match folder::lock(lock) {
+            Err(SweepError::Locked { .. }) if Instant::now() < end => std::thread::sleep(Duration::from_millis(10)),
+            other => return other,
+        }
+    }
+}
+
+/// The checksums in the `text` of the document at `path`.
+fn read(path: &Path, text: &str) -> Result<Sums, SweepError> {
+    #[derive(Deserialize)]
+    struct Results {
+        #[serde(default)]
+        results: Sums,
+    }
+    let read = serde_json::from_str::<Results>(text);
+    read.map(|read| read.results).map_err(|error| SweepError::content(path, error.to_string()))
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+impl Sum {
+    /// Of the file at `path`, which may be larger than the memory.
+    fn of(path: &Path) -> Result<Self, SweepError> {
+        let summed = || -> io::Result<Self> {
+            let (mut file, mut hash, mut chunk, mut bytes) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16], 0);
+            loop {
+                let count = file.read(&mut chunk)?;
+                if count == 0 {
+                    return Ok(Self { bytes, sha256: hexadecimal(&hash.finalize()) });
+                }
+                hash.update(&chunk[..count]);
+                bytes += count as u64;
+            }
+        };
+        summed().map_err(SweepError::file("read", path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::super::document::sha256;
+    use super::*;
+
+    const DECIDES: &str = "{\n  \"seed\": 1,\n  \"sha256\": \"00\"\n}\n";
+
+    #[test]
+    fn shards_of_one_folder_add_their_checksums_and_what_decides_stays_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let [one, other] = ["sweep.1-of-2.csv", "sweep.2-of-2.csv"].map(|name| folder.path().join(name));
+        fs::write(&one, "abc").unwrap();
+        fs::write(&other, "").unwrap();
+        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        assert!(!check(&one).unwrap(), "nothing is said of it yet");
+        record(folder.path(), DECIDES, &[&one]).unwrap();
+        record(folder.path(), DECIDES, &[&other]).unwrap();
+        assert!(check(&one).unwrap() && check(&other).unwrap());
+        let text = fs::read_to_string(folder.path().join(DOCUMENT)).unwrap();
+        assert_eq!(identity(&text), DECIDES);
+        let read: serde_json::Value = serde_json::from_str(&text).unwrap();
+        // FIPS 180-4, the example of "abc".
+        let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(read["results"]["sweep.1-of-2.csv"]["sha256"], known);
+        assert_eq!(read["results"]["sweep.2-of-2.csv"]["bytes"], 0);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn a_changed_file_is_named_with_what_is_expected_and_what_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sweep.csv");
+        fs::write(&path, "abc").unwrap();
+        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        record(folder.path(), DECIDES, &[&path]).unwrap();
+        for (content, said) in [
+            ("abcd", "sweep.csv: it has 4 bytes, and sweep.json expects 3; it was changed"),
+            ("abd", &format!("sweep.json expects {}", sha256("abc"))),
+            ("abd", &format!("sweep.csv: its SHA-256 is {}, and", sha256("abd"))),
+        ] {
+            fs::write(&path, content).unwrap();
+            let message = check(&path).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+        }
+    }
+}
