@@ -17,6 +17,7 @@
 
 #[cfg(doctest)]
 mod book;
+mod circuit_sample;
 #[cfg(feature = "tool")]
 pub mod cli;
 pub mod cosim;

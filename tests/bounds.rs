@@ -1,6 +1,5 @@
 //! The tables of docs/bounds.md are those of the code, and what they say happens does. `UPDATE_BOUNDS=1 cargo test --test
 //! bounds` writes them.
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use videg_circuit::{Circuit, Settings};
 use videg_golden::Golden;

@@ -5,9 +5,7 @@ Writes harvester.csv, circuit.csv and result.json; --check compares them with `v
 """
 
 import argparse
-import csv
 import json
-import socket
 import subprocess
 import sys
 import tempfile
@@ -19,7 +17,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import tool  # noqa: E402
 from federation import add_run_options, core_options, helics  # noqa: E402
+from loopback import free_port  # noqa: E402
 from schedule import Schedule  # noqa: E402
+from series import rows  # noqa: E402
 from subsystems import FMUS  # noqa: E402
 
 
@@ -50,12 +50,6 @@ def case(options: argparse.Namespace) -> list[str]:
     """The options that say what to run, as videg has them."""
     settings = [word for setting in options.set for word in ("--set", setting)]
     return ["--case", options.case, "--until", repr(options.until), *settings]
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def start(options: argparse.Namespace, federate: str, port: int) -> subprocess.Popen:
@@ -103,11 +97,6 @@ def watch(processes: dict[str, subprocess.Popen], grace: float) -> None:
     if failed:
         ends = (f"{name} {'still running' if code is None else f'exit code {code}'}" for name, code in failed.items())
         raise tool.Problem(f"the federation failed: {', '.join(ends)}")
-
-
-def rows(file: Path) -> list[dict[str, float]]:
-    with open(file, newline="") as series:
-        return [{name: float(text) for name, text in row.items()} for row in csv.DictReader(series)]
 
 
 def summary(options: argparse.Namespace, effort: dict) -> dict:

@@ -69,14 +69,7 @@ impl CircuitSlave for EmbeddedCircuit {
     }
 
     fn sample(&self) -> Result<CircuitSample, CosimError> {
-        let c = &self.circuit;
-        Ok(CircuitSample {
-            voltage: c.voltage(),
-            load_voltage: c.load_voltage(),
-            load_current: c.load_current(),
-            supply_current: c.supply_current(),
-            ledger: c.ledger(),
-        })
+        Ok(CircuitSample::from(&self.circuit))
     }
 
     fn can_roll_back(&self) -> bool {

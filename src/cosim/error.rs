@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::ngspice::NgspiceError;
+
 /// Error of the master or of one of its subsystems.
 #[derive(Debug, Error)]
 pub enum CosimError {
@@ -24,7 +26,7 @@ pub enum CosimError {
         /// The circuit.
         label: String,
         /// Its error.
-        cause: Box<crate::ngspice::NgspiceError>,
+        cause: Box<NgspiceError>,
     },
     /// A circuit cannot go back to an earlier state, which an adaptive step takes.
     #[error(
@@ -74,4 +76,10 @@ pub enum CosimError {
         /// What the system said.
         cause: std::io::Error,
     },
+}
+
+impl From<CosimError> for NgspiceError {
+    fn from(error: CosimError) -> Self {
+        Self::Harvester(Box::new(error))
+    }
 }

@@ -19,9 +19,11 @@ mod rollback;
 mod schedule;
 mod signal;
 mod summary;
+mod survey;
 
+pub use crate::circuit_sample::CircuitSample;
 pub use balance::{EnergyBalance, MechanicalEnergies};
-pub use circuit::{CircuitSample, CircuitSlave};
+pub use circuit::CircuitSlave;
 pub use circuit_fmu::FmuCircuit;
 pub use coupling::{Coupling, CouplingSummary, Method};
 pub use embedded::EmbeddedCircuit;

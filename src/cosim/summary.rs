@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::CircuitSample;
+use crate::ngspice::Waveforms;
 
 /// The mechanics: impacts and what the paper's equations make of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -115,5 +116,12 @@ impl CircuitSummary {
             },
             charge: Charges { supply: ledger.supply_charge, load: ledger.load_charge },
         }
+    }
+}
+
+impl Waveforms {
+    /// The run summed up as that of any other circuit; `energy_eq13` is the harvester's sum of W, J.
+    pub fn summary(&self, energy_eq13: f64) -> CircuitSummary {
+        CircuitSummary::new(&self.last(), energy_eq13)
     }
 }

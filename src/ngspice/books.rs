@@ -7,7 +7,7 @@
 use videg_circuit::{Ledger, Topology};
 
 use super::circuit::{Branch, Elements};
-use crate::cosim::CircuitSample;
+use crate::circuit_sample::CircuitSample;
 
 /// What holds at one time point of ngspice.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

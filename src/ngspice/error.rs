@@ -96,9 +96,9 @@ pub enum NgspiceError {
     /// The embedded circuit refused something.
     #[error("embedded circuit: {0}")]
     Circuit(#[from] videg_circuit::Error),
-    /// The harvester FMU refused something.
+    /// What gives C(t) refused something.
     #[error(transparent)]
-    Harvester(#[from] crate::cosim::CosimError),
+    Harvester(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// Lines of ngspice that tell why it stopped; empty if it said nothing of the kind.

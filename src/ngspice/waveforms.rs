@@ -9,7 +9,7 @@ use super::capacitance::CapacitanceTable;
 use super::circuit::Elements;
 use super::raw::RawReader;
 use super::{NgspiceError, Said};
-use crate::cosim::{CircuitSample, CircuitSummary};
+use crate::circuit_sample::CircuitSample;
 
 /// A circuit over a run.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,14 +34,7 @@ impl Waveforms {
         for (time, capacitance) in table.rows() {
             circuit.advance(time - now, capacitance)?;
             now = time;
-            let sample = CircuitSample {
-                voltage: circuit.voltage(),
-                load_voltage: circuit.load_voltage(),
-                load_current: circuit.load_current(),
-                supply_current: circuit.supply_current(),
-                ledger: circuit.ledger(),
-            };
-            found.push(time, sample);
+            found.push(time, CircuitSample::from(&circuit));
         }
         Ok(found)
     }
@@ -99,11 +92,6 @@ impl Waveforms {
     /// The books at the end.
     pub fn ledger(&self) -> Ledger {
         self.last().ledger
-    }
-
-    /// The run summed up as that of any other circuit; `energy_eq13` is the harvester's sum of W, J.
-    pub fn summary(&self, energy_eq13: f64) -> CircuitSummary {
-        CircuitSummary::new(&self.last(), energy_eq13)
     }
 
     /// Root of the mean square of the difference of the voltages from those of `other`, left and right, V; `None` if

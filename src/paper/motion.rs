@@ -28,16 +28,15 @@ pub(super) struct Shown {
 const BEGINNING: [f64; 2] = [0.0, 5.0];
 const STEADY: [f64; 2] = [50.0, 54.0];
 
-/// The figures, in their order.
-const SHOWN: [Shown; 7] = [
-    Shown { case: "fig9", number: 9, window: BEGINNING, circled: None },
-    Shown { case: "fig10", number: 10, window: BEGINNING, circled: None },
-    Shown { case: "fig11", number: 11, window: BEGINNING, circled: Some(Pattern::ShortFlight) },
-    Shown { case: "fig12", number: 12, window: BEGINNING, circled: Some(Pattern::DoubleHit) },
-    Shown { case: "fig13", number: 13, window: BEGINNING, circled: None },
-    Shown { case: "fig14", number: 14, window: STEADY, circled: None },
-    Shown { case: "fig15", number: 15, window: STEADY, circled: None },
-];
+pub(super) const FIG9: Shown = Shown { case: "fig9", number: 9, window: BEGINNING, circled: None };
+pub(super) const FIG10: Shown = Shown { case: "fig10", number: 10, window: BEGINNING, circled: None };
+pub(super) const FIG11: Shown =
+    Shown { case: "fig11", number: 11, window: BEGINNING, circled: Some(Pattern::ShortFlight) };
+pub(super) const FIG12: Shown =
+    Shown { case: "fig12", number: 12, window: BEGINNING, circled: Some(Pattern::DoubleHit) };
+pub(super) const FIG13: Shown = Shown { case: "fig13", number: 13, window: BEGINNING, circled: None };
+pub(super) const FIG14: Shown = Shown { case: "fig14", number: 14, window: STEADY, circled: None };
+pub(super) const FIG15: Shown = Shown { case: "fig15", number: 15, window: STEADY, circled: None };
 
 /// Parameters that a figure depends on, SI units.
 pub(super) struct Setup {
@@ -109,9 +108,8 @@ fn rounded(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }
 
-/// Makes the figure of `number`.
-pub(super) fn make(workshop: &Workshop<'_>, number: u32) -> Result<Artefact, PaperError> {
-    let Some(shown) = SHOWN.iter().find(|shown| shown.number == number) else { return Ok(Artefact::default()) };
+/// Makes a figure.
+pub(super) fn make(workshop: &Workshop<'_>, shown: &Shown) -> Result<Artefact, PaperError> {
     let setup = Setup::of(workshop, shown.case)?;
     let recording = record(workshop, &workshop.case(shown.case)?, shown.window, STEP)?;
     let (findings, text) = findings(workshop, shown, &setup, &recording)?;

@@ -72,7 +72,7 @@ struct Stability {
 
 /// Makes Figure 10.
 pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let mut artefact = motion::make(workshop, 10)?;
+    let mut artefact = motion::make(workshop, &motion::FIG10)?;
     let stability = Stability::of(workshop)?;
     artefact.findings.extend(stability.findings());
     artefact.text.extend(stability.text());

@@ -2,6 +2,8 @@
 
 use statrs::statistics::{Data, OrderStatistics as _, RankTieBreaker};
 
+use super::ensemble::Ensemble;
+
 /// Samples drawn anew for an interval of confidence.
 const RESAMPLES: usize = 2000;
 /// Seed of those draws.
@@ -27,19 +29,14 @@ impl Summary {
     pub fn new(values: &[f64]) -> Self {
         let mut random = fastrand::Rng::with_seed(SEED);
         let resample = |_| mean((0..values.len()).map(|_| values[random.usize(..values.len())]));
-        let means: Vec<f64> = (0..RESAMPLES).map(resample).collect();
+        let means = Ensemble::new((0..RESAMPLES).map(resample).collect());
         Self {
             mean: mean(values.iter().copied()),
-            interval: [quantile(&means, 0.025), quantile(&means, 0.975)],
+            interval: [means.quantile(0.025), means.quantile(0.975)],
             standard_error: standard_error(values),
-            median: quantile(values, 0.5),
+            median: Ensemble::new(values.to_vec()).quantile(0.5),
         }
     }
-}
-
-/// The value below which the part `tau` of `values` lies.
-pub fn quantile(values: &[f64], tau: f64) -> f64 {
-    Data::new(values.to_vec()).quantile(tau)
 }
 
 /// Spearman's rank correlation of `(x, y)` pairs, -1 to 1: 1 where y always rises with x. NaN if either is constant.

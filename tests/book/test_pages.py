@@ -1,17 +1,13 @@
 """What a reader of the built book sees, in a phone's and a desktop's window, in light and dark, without a network."""
 
-import os
 import re
-import shutil
-from pathlib import Path
 
 import pytest
-from playwright.sync_api import sync_playwright
 
-ROOT = Path(__file__).resolve().parents[2]
-TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+import chromium
+from harness import ROOT
+
 BOOK = ROOT / "target" / "book" / "html"
-SCREENSHOTS = TARGET / "screenshots"
 PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print.html", "toc.html", "404.html"))
 
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
@@ -22,13 +18,8 @@ LATEX = re.compile(r"\$\$|\\(?:t?frac|sqrt|text|left|quad|begin|Delta|omega)\b")
 
 @pytest.fixture(scope="module")
 def browser():
-    chromium = shutil.which("chromium")
-    assert chromium, "chromium is not on the PATH; run ./test.sh setup first"
-    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+    with chromium.headless() as browser:
         yield browser
-        browser.close()
 
 
 def test_every_chapter_became_a_page():
@@ -58,6 +49,6 @@ def test_every_page_fits_has_its_equations_and_asks_for_nothing(browser, width, 
             if wrong > 0:
                 faults.append(f"{name} at {width}: {what}: {wrong}")
         faults += [f"{name}: {image} is not drawn" for image in page.evaluate(BROKEN)]
-        page.screenshot(path=SCREENSHOTS / f"book-{str(name).replace('/', '-')}-{width}-{scheme}.png")
+        page.screenshot(path=chromium.SCREENSHOTS / f"book-{str(name).replace('/', '-')}-{width}-{scheme}.png")
     context.close()
     assert faults == []

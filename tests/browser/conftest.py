@@ -1,28 +1,18 @@
-"""Reports to look at, and a headless Chromium to look with."""
+"""Reports to look at, and the browser to look with."""
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import sync_playwright
 
-ROOT = Path(__file__).resolve().parents[2]
-TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-SCREENSHOTS = TARGET / "screenshots"
-QUIET = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
+import chromium
+import harness
 
 
 def run(*command):
-    subprocess.run(["cargo", "run", "--quiet", "--release", *command], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    cargo = ["cargo", "run", "--quiet", "--release", *command]
+    subprocess.run(cargo, cwd=harness.ROOT, check=True, stdout=subprocess.DEVNULL)
 
 
 def make_report(kind, folder):
@@ -53,13 +43,8 @@ def report(request, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def browser():
-    chromium = shutil.which("chromium")
-    assert chromium, "chromium is not on the PATH; run ./test.sh setup first"
-    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=QUIET)
+    with chromium.headless() as browser:
         yield browser
-        browser.close()
 
 
 class Visit:
@@ -84,7 +69,7 @@ class Visit:
             self.faults.append(f"request: {request.url}")
 
     def shoot(self, name, target=None):
-        path = SCREENSHOTS / f"{self.name}-{name}.png"
+        path = chromium.SCREENSHOTS / f"{self.name}-{name}.png"
         if target:
             target.screenshot(path=path)
         else:

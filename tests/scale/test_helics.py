@@ -1,9 +1,7 @@
 """Harvester and circuit as two federates are one process, bit by bit; and no federate outlives the others."""
 
-import csv
 import json
 import signal
-import socket
 from pathlib import Path
 
 import psutil
@@ -11,14 +9,11 @@ import pytest
 
 import harness
 from conftest import VIDEG, end, wait_for
+from loopback import free_port
+from series import rows
 
 QUICK = ("--timeout", "4")
 """So that a lost partner is noticed soon."""
-
-
-def rows(file: Path) -> list[dict[str, float]]:
-    with open(file, newline="") as series:
-        return [{name: float(text) for name, text in row.items()} for row in csv.DictReader(series)]
 
 
 @pytest.mark.parametrize(
@@ -68,12 +63,6 @@ def test_a_federate_ends_with_an_error_when_the_other_dies_or_hangs(start, tmp_p
     assert f"{survivor}_federate.py: the federation broke after" in ended.stderr
     assert ended.stderr.splitlines()[-1].startswith("run.py: the federation failed: ")
     assert f"{victim} " in ended.stderr.splitlines()[-1]
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 @pytest.fixture

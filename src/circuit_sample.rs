@@ -1,0 +1,94 @@
+//! The outputs of a circuit, whatever solves it.
+
+use videg_circuit::{Circuit, Ledger};
+
+/// Outputs of a circuit at one communication point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CircuitSample {
+    /// Voltages of the membranes, left and right, V.
+    pub voltage: [f64; 2],
+    /// Voltage across the load, V.
+    pub load_voltage: f64,
+    /// Current through the load, A.
+    pub load_current: f64,
+    /// Current from the supply, A.
+    pub supply_current: f64,
+    /// Energies and charges so far.
+    pub ledger: Ledger,
+}
+
+impl CircuitSample {
+    /// Names of [`CircuitSample::columns`], as the FMU `HarvestingCircuit` has them.
+    pub const NAMES: [&'static str; 13] = [
+        "left.voltage",
+        "right.voltage",
+        "load.voltage",
+        "load.current",
+        "supply.current",
+        "supply.energy",
+        "load.energy",
+        "zener.energy",
+        "diode.energy",
+        "stored.energy",
+        "mechanical.energy",
+        "supply.charge",
+        "load.charge",
+    ];
+
+    /// The values as a row of a time series.
+    pub fn columns(&self) -> [f64; Self::NAMES.len()] {
+        let Ledger { supply, load, zener, diode, stored, mechanical, supply_charge, load_charge } = self.ledger;
+        let [left, right] = self.voltage;
+        let energies = [supply, load, zener, diode, stored, mechanical];
+        let mut row = [0.0; Self::NAMES.len()];
+        row[..5].copy_from_slice(&[left, right, self.load_voltage, self.load_current, self.supply_current]);
+        row[5..11].copy_from_slice(&energies);
+        row[11..].copy_from_slice(&[supply_charge, load_charge]);
+        row
+    }
+
+    /// The sample of which these are the [`columns`](Self::columns).
+    pub fn from_columns(row: [f64; Self::NAMES.len()]) -> Self {
+        let [
+            left,
+            right,
+            load_voltage,
+            load_current,
+            supply_current,
+            supply,
+            load,
+            zener,
+            diode,
+            stored,
+            mechanical,
+            q_in,
+            q_out,
+        ] = row;
+        let ledger = Ledger { supply, load, zener, diode, stored, mechanical, supply_charge: q_in, load_charge: q_out };
+        Self { voltage: [left, right], load_voltage, load_current, supply_current, ledger }
+    }
+}
+
+impl From<&Circuit> for CircuitSample {
+    fn from(circuit: &Circuit) -> Self {
+        Self {
+            voltage: circuit.voltage(),
+            load_voltage: circuit.load_voltage(),
+            load_current: circuit.load_current(),
+            supply_current: circuit.supply_current(),
+            ledger: circuit.ledger(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_of_numbers_makes_the_sample_that_made_it() {
+        let mut row = [0.0; CircuitSample::NAMES.len()];
+        row.iter_mut().enumerate().for_each(|(k, value)| *value = k as f64);
+        assert_eq!(CircuitSample::from_columns(row).columns(), row);
+    }
+}

@@ -1,0 +1,123 @@
+//! C(t) of a run of the harvester, as the table that other solvers get.
+
+use super::{HarvesterFmu, HarvesterSample};
+use crate::ngspice::{CapacitanceTable, NgspiceError};
+
+impl CapacitanceTable {
+    /// Runs `harvester` from 0 s to `until`, s, and keeps what C(t) needs: the kinks and extrema that the FMU announces,
+    /// and in between as many points as `error` asks for, the largest error of the linear interpolation relative to the
+    /// height of the largest pulse so far. Outside the pulses there is nothing to keep.
+    ///
+    /// # Errors
+    /// What the FMU says; an `error` outside `1e-9` to `0.1`; more than [`Self::MAX_ROWS`] rows.
+    pub fn from_harvester(harvester: &mut HarvesterFmu, until: f64, error: f64) -> Result<Self, NgspiceError> {
+        if !(1e-9..=0.1).contains(&error) {
+            let value = error.to_string();
+            return Err(NgspiceError::Value {
+                name: "error of C(t)".to_owned(),
+                value,
+                bound: "must lie from 1e-9 to 0.1",
+            });
+        }
+        let mut sample = harvester.sample()?;
+        let rest = sample.capacitance();
+        let mut survey = Survey { harvester, rest, height: [0.0; 2], error };
+        let mut table = Self::default();
+        table.push(0.0, rest)?;
+        let mut now = 0.0;
+        while now < until {
+            let end = sample.next_knot().clamp(now + Survey::SHORTEST, until.max(now + Survey::SHORTEST)).min(until);
+            let points = survey.interval(now, end, &mut sample)?;
+            thin(&points, survey.tolerance(), &mut table)?;
+            now = end;
+        }
+        Ok(table)
+    }
+}
+
+/// A time with the capacitances there.
+type Point = (f64, [f64; 2]);
+
+/// A run of the harvester from knot to knot.
+struct Survey<'a> {
+    harvester: &'a mut HarvesterFmu,
+    /// Capacitances at the start, F.
+    rest: [f64; 2],
+    /// Height of the largest pulse so far, F.
+    height: [f64; 2],
+    error: f64,
+}
+
+impl Survey<'_> {
+    /// Closest knots, s: a ball that comes to rest has knots without end.
+    const SHORTEST: f64 = 1e-6;
+
+    /// Pieces into which the stretch between two knots is cut before it is thinned. A quarter of a sine in n pieces is
+    /// off by (pi/2)^2 / (8 n^2) of its height; four times its curvature is allowed for, and half the error.
+    fn pieces(&self, length: f64) -> u32 {
+        let wanted = (2.0 / self.error.sqrt()).min(length / (0.1 * Self::SHORTEST)).ceil();
+        // Bounded by 2 / sqrt(1e-9).
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let pieces = wanted as u32;
+        pieces.max(2)
+    }
+
+    /// Points of C(t) from `now` to `end`, both included; the harvester stands at `end` then.
+    fn interval(&mut self, now: f64, end: f64, sample: &mut HarvesterSample) -> Result<Vec<Point>, NgspiceError> {
+        let pieces = self.pieces(end - now);
+        let mut points = vec![(now, sample.capacitance())];
+        let mut last = now;
+        for k in 1..=pieces {
+            let part = f64::from(k) / f64::from(pieces);
+            let next = if k == pieces { end } else { now + (end - now) * part };
+            self.harvester.step(last, next - last)?;
+            *sample = self.harvester.sample()?;
+            last = next;
+            points.push((next, sample.capacitance()));
+        }
+        for (_, capacitance) in &points {
+            for ((height, c), rest) in self.height.iter_mut().zip(capacitance).zip(self.rest) {
+                *height = height.max((c - rest).abs());
+            }
+        }
+        Ok(points)
+    }
+
+    /// Half of the error, F: the other half is that of the pieces.
+    fn tolerance(&self) -> [f64; 2] {
+        self.height.map(|height| 0.5 * self.error * height)
+    }
+}
+
+/// Appends to `table` the last of `points` and as many of those before as it takes to be within `tolerance` of all of
+/// them, the first being in the table already: from each point kept to the farthest one that a chord reaches. A chord
+/// may reach as far as the slopes that pass all points in between (within the tolerance) leave room for.
+fn thin(points: &[Point], tolerance: [f64; 2], table: &mut CapacitanceTable) -> Result<(), NgspiceError> {
+    let mut anchor = 0;
+    while anchor + 1 < points.len() {
+        let (start, from) = points[anchor];
+        let mut room = [(f64::NEG_INFINITY, f64::INFINITY); 2];
+        let mut reached = anchor + 1;
+        for (index, &(time, capacitance)) in points.iter().enumerate().skip(anchor + 1) {
+            let fits = (0..2).all(|j| {
+                let slope = (capacitance[j] - from[j]) / (time - start);
+                room[j].0 <= slope && slope <= room[j].1
+            });
+            if fits {
+                reached = index;
+            }
+            for j in 0..2 {
+                let rise = capacitance[j] - from[j];
+                let (low, high) = ((rise - tolerance[j]) / (time - start), (rise + tolerance[j]) / (time - start));
+                room[j] = (room[j].0.max(low), room[j].1.min(high));
+            }
+            if room.iter().any(|(low, high)| low > high) {
+                break;
+            }
+        }
+        let (time, capacitance) = points[reached];
+        table.push(time, capacitance)?;
+        anchor = reached;
+    }
+    Ok(())
+}
