@@ -27,10 +27,10 @@ fn references(document: &str) -> Result<BTreeMap<String, String>, quick_xml::Err
     loop {
         match reader.read_event()? {
             Event::Eof => return Ok(found),
-            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == b"ScalarVariable" => {
+            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == "ScalarVariable" => {
                 let text = |name| -> Result<String, quick_xml::Error> {
                     let attribute = tag.try_get_attribute(name)?;
-                    Ok(attribute.map(|it| String::from_utf8_lossy(&it.value).into_owned()).unwrap_or_default())
+                    Ok(attribute.map(|it| it.value.into_owned()).unwrap_or_default())
                 };
                 found.insert(text("name")?, text("valueReference")?);
             }
