@@ -309,6 +309,13 @@ fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
             assert!(run.stderr.starts_with(&expected), "{verb} {text} {options:?}: {}", run.stderr);
         }
     }
+    std::fs::write(&file, "until = 1\nset.release = 'storage'\nset.storage.voltage = 2500").unwrap();
+    for verb in ["cosim", "ssp"] {
+        assert_refused(
+            &[verb, "--case-file", path, "--set", "supply.voltage=1", "--set", "supply.voltage=3000"],
+            &["storage.voltage = 2500 V", &format!("({path}: set.storage.voltage, --set supply.voltage)")],
+        );
+    }
     std::fs::write(&file, "set.contact.law = 'compliant'").unwrap();
     assert_refused(
         &["simulate", "--case-file", path, "--law", "impulsive"],

@@ -151,7 +151,8 @@ pub fn couple(
     let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;
     let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratios.best)?;
     let voltage_warning = voltage_warning(&settings, harvester.bias_voltage());
-    let circuits = circuits(backend, &scenario, &settings, ratios, &harvester)?;
+    let circuits = circuits(backend, &scenario, &settings, ratios, &harvester);
+    let circuits = circuits.map_err(|error| settings::placed(&of_circuit, error))?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let master = Master::new(harvester, circuits, &scenario, coupling)?;
     let mut recorder = CsvRecorder::create(csv, true)?;

@@ -163,7 +163,8 @@ pub fn follow(fmu: &Fmu, scenario: Scenario, ngspice: &Ngspice, sweep: bool) -> 
     let case = Case::new(fmu, &scenario, &mechanical, &mut bar)?;
     bar.finish();
     let circuit = electrical::resolve(&electrical, case.bias_voltage, case.best_ratio())?;
-    Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth())?;
+    let elements = Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth());
+    elements.map_err(|error| settings::placed(&electrical, error))?;
     solve(scenario, case, circuit, ngspice, sweep)
 }
 

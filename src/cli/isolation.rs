@@ -84,6 +84,10 @@ impl IsolationOptions {
     }
 
     fn isolation(&self) -> anyhow::Result<Isolation> {
+        if cfg!(any(windows, target_vendor = "apple")) && self.memory_limit.is_some_and(|mib| mib > 0) {
+            // Not an error: the same script runs on Linux, where it is bound.
+            output::warn(&["--memory-limit binds nothing on this system".to_owned()]);
+        }
         let program = std::env::current_exe().context("cannot find this program's own file")?;
         Ok(Isolation { program, bounds: self.bounds() })
     }

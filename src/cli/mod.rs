@@ -31,6 +31,7 @@ mod simulate_both_report;
 mod simulate_contacts;
 mod simulate_law;
 mod ssp;
+mod streams;
 mod sweep;
 mod sweep_options;
 mod worker;

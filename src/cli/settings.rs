@@ -5,7 +5,7 @@ use videg_circuit::Settings;
 
 use crate::cosim::EmbeddedCircuit;
 use crate::fmi::{ModelDescription, nearest_name};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::{Origin, Scenario, Setting};
 
 /// Settings of the harvester, and those of the circuit. A name that both have is the harvester's.
 pub fn split(harvester: &ModelDescription, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
@@ -22,6 +22,19 @@ pub fn split(harvester: &ModelDescription, scenario: &Scenario) -> anyhow::Resul
         }
     }
     Ok((mechanical, electrical))
+}
+
+/// An error about values that do not go together, with where those of `settings` were said.
+pub fn placed(settings: &[Setting], error: impl Into<anyhow::Error>) -> anyhow::Error {
+    let error = error.into();
+    let text = format!("{error:#}");
+    let is_named = |index: usize, setting: &Setting| {
+        let is_last = settings[index + 1..].iter().all(|later| later.name != setting.name);
+        is_last && setting.origin != Origin::Program && text.contains(&format!("{} = ", setting.name))
+    };
+    let named = settings.iter().enumerate().filter(|(index, setting)| is_named(*index, setting));
+    let places: Vec<_> = named.map(|(_, setting)| setting.place()).collect();
+    if places.is_empty() { error } else { anyhow!("{text} ({})", places.join(", ")) }
 }
 
 fn unknown(harvester: &ModelDescription, setting: &Setting) -> String {

@@ -77,7 +77,7 @@ fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setti
     let ratio = electrical::capacitance_ratios(fmu, scenario, &mechanical)?.best;
     let resolved = electrical::resolve(&asked, harvester.bias_voltage(), ratio)?;
     let capacitance = harvester.sample()?.capacitance();
-    EmbeddedCircuit::new("circuit", &resolved, capacitance)?;
+    EmbeddedCircuit::new("circuit", &resolved, capacitance).map_err(|error| settings::placed(&asked, error))?;
     let mut of_circuit = electrical::every_setting(&resolved);
     for (name, value) in ["left.capacitance", "right.capacitance"].into_iter().zip(capacitance) {
         of_circuit.push(Setting::new(name, format!("{value:?}")));

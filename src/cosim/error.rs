@@ -56,7 +56,7 @@ pub enum CosimError {
         /// Where the setting was said.
         place: String,
         /// Its error.
-        cause: crate::fmi::FmiError,
+        cause: Box<crate::fmi::FmiError>,
     },
     /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
     #[error("{name} = {value}: {bound}")]

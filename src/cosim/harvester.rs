@@ -110,7 +110,7 @@ impl HarvesterFmu {
         let mut instance = fmu.instantiate("harvester", Logging::default())?;
         for setting in settings {
             let set = instance.set_by_name(&setting.name, &setting.value);
-            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause })?;
+            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })?;
         }
         let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
         let mut reals = [0; REALS.len()];

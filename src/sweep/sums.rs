@@ -50,7 +50,7 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     let Some(expected) = read(&document, &text)?.remove(&name(path)) else { return Ok(false) };
     let found = Sum::of(path)?;
     let changed = |what: String| {
-        let reason = format!("{what}; it was changed after it was complete");
+        let reason = format!("{what}; it was changed after it was complete, and --fresh makes it anew");
         Err(SweepError::content(path, reason))
     };
     if found.bytes != expected.bytes {
