@@ -48,6 +48,13 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Largest size to which an entry of `packed` bytes may unpack.
+    fn most_of(&self, packed: u64) -> u64 {
+        packed.saturating_mul(self.ratio).max(FREE_BYTES)
+    }
+}
+
 /// An opened .fmu file. Nothing is unpacked until [`Archive::unpack`].
 #[derive(Debug)]
 pub struct Archive {
@@ -141,11 +148,17 @@ impl Archive {
         let allowed = self.limits.description_bytes.min(ModelDescription::MAX_BYTES);
         let entry = self.zip.by_index(index).map_err(|cause| FmiError::NotAnArchive { path: path.clone(), cause })?;
         let mut text = Vec::new();
+        let packed = entry.compressed_size();
+        let allowed_by_ratio = self.limits.most_of(packed);
         // One byte more than allowed tells whether there is more.
         entry
-            .take(allowed + 1)
+            .take(allowed.min(allowed_by_ratio) + 1)
             .read_to_end(&mut text)
             .map_err(FmiError::io("unpack modelDescription.xml of", &path))?;
+        if text.len() as u64 > allowed_by_ratio {
+            let reason = Refusal::Ratio { entry: DESCRIPTION.into(), packed, allowed: self.limits.ratio };
+            return Err(FmiError::Refused { path, reason });
+        }
         if text.len() as u64 > allowed {
             let cause = DescriptionError::Size { found: text.len() as u64, allowed };
             return Err(FmiError::Description { origin, cause });
@@ -212,7 +225,7 @@ fn unpack_entry(
 ) -> Result<()> {
     let refuse = |reason| Err(FmiError::Refused { path: path.into(), reason });
     let packed = entry.compressed_size();
-    let allowed_by_ratio = packed.saturating_mul(limits.ratio).max(FREE_BYTES);
+    let allowed_by_ratio = limits.most_of(packed);
     let mut written = 0_u64;
     let mut buffer = [0_u8; 1 << 14];
     loop {

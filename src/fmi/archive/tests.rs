@@ -116,6 +116,17 @@ fn a_bomb_is_stopped_by_its_ratio() {
 }
 
 #[test]
+fn a_description_that_inflates_is_stopped_by_its_ratio() {
+    let bomb = [GOOD, &vec![b' '; 4 << 20]].concat();
+    let (_folder, path) = zipped(&[("modelDescription.xml", &bomb)]);
+    let reason = refusal(Archive::open(&path).unwrap().description());
+    assert!(
+        matches!(&reason, Refusal::Ratio { entry, allowed: 100, .. } if entry == "modelDescription.xml"),
+        "{reason}"
+    );
+}
+
+#[test]
 fn a_bomb_that_declares_a_small_size_is_measured() {
     let size = (4_u32 << 20) + 12_345;
     let mut bytes = zip_bytes(&[("resources/zeros", &vec![0; size as usize])]);
