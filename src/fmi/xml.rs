@@ -159,7 +159,7 @@ fn enumeration(raw: &raw::SimpleType) -> Option<Result<EnumerationType>> {
 fn enumeration_item(raw: &raw::Item, place: &str) -> Result<EnumerationItem> {
     let value = raw.value.as_deref().ok_or_else(|| missing(place, "value in an Item"))?;
     Ok(EnumerationItem {
-        name: raw.name.clone().ok_or_else(|| missing(place, "name in an Item"))?,
+        name: types::shared(place, "name", raw.name.clone().ok_or_else(|| missing(place, "name in an Item"))?)?,
         value: integer(place, "value", value)?,
         description: raw.description.clone(),
     })

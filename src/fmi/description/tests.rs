@@ -105,6 +105,8 @@ fn bad_values_are_named_with_place_found_and_allowed() {
         ("modelIdentifier=\"Toy\"", "modelIdentifier=\"../../evil\"", "modelIdentifier is \"../../evil\""),
         ("modelIdentifier=\"Toy\"", "modelIdentifier=\"\"", "allowed is a C identifier"),
         ("declaredType=\"Law\"", "declaredType=\"Lex\"", "declaredType is \"Lex\""),
+        ("unit=\"kg\"", &format!("unit=\"{}\"", "k".repeat(1025)), "kk\", allowed is at most 1024 bytes"),
+        ("name=\"compliant\"", &format!("name=\"{}\"", "c".repeat(1025)), "cc\", allowed is at most 1024 bytes"),
         ("name=\"force\"", "name=\"mass\"", "two variables are named \"mass\""),
     ] {
         let error = parse(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::{Result, integer, optional, raw, real};
+use super::{Result, attribute, integer, optional, raw, real};
 
 /// What a variable takes over from its type.
 #[derive(Default)]
@@ -14,6 +14,16 @@ pub(super) struct SimpleType {
     /// Bounds of an Integer.
     pub integer: [Option<i32>; 2],
     pub is_enumeration: bool,
+}
+
+/// A text of a type, which is shown with each of its variables.
+///
+/// # Errors
+/// If it is too long for that.
+pub(super) fn shared(place: &str, name: &'static str, text: String) -> Result<String> {
+    const LONGEST: usize = 1024;
+    let is_short = text.len() <= LONGEST;
+    if is_short { Ok(text) } else { Err(attribute(place, name, &text, format!("at most {LONGEST} bytes"))) }
 }
 
 /// Type definitions by name; of those that share one, the first.
@@ -32,7 +42,7 @@ impl Types {
             if let Some(it) = raw.real {
                 let number = |name, text: Option<String>| optional(text.as_deref(), |text| real(&place, name, text));
                 read.real = [number("min", it.min)?, number("max", it.max)?];
-                read.unit = it.unit.map(Arc::from);
+                read.unit = it.unit.map(|unit| shared(&place, "unit", unit).map(Arc::from)).transpose()?;
             }
             if let Some(it) = raw.integer {
                 let number = |name, text: Option<String>| optional(text.as_deref(), |text| integer(&place, name, text));
