@@ -4,13 +4,14 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 use zip::result::ZipError;
 
 use super::description::ModelDescription;
 use super::error::{DescriptionError, FmiError, Refusal, Result};
+use crate::input;
+use crate::temporary::TemporaryFolder;
 
 mod directory;
 mod names;
@@ -80,11 +81,8 @@ impl Archive {
     pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
         let path = path.as_ref();
         let refuse = |reason| FmiError::Refused { path: path.into(), reason };
-        let mut file = File::open(path).map_err(FmiError::io("open", path))?;
+        let mut file = input::open_regular(path).map_err(FmiError::io("open", path))?;
         let found = file.metadata().map_err(FmiError::io("read", path))?;
-        if found.is_dir() {
-            return Err(FmiError::io("read", path)(io::ErrorKind::IsADirectory.into()));
-        }
         if found.len() > limits.archive_bytes {
             return Err(refuse(Refusal::ArchiveSize { found: found.len(), allowed: limits.archive_bytes }));
         }
@@ -166,18 +164,18 @@ impl Archive {
         ModelDescription::parse(&text, &origin)
     }
 
-    /// Unpacks everything into a new temporary folder, which is removed with the returned value.
+    /// Unpacks everything into a new temporary folder, which is removed with the returned value. Nobody but the user may look
+    /// into it.
     ///
     /// # Errors
     /// When a bound is passed, an entry is broken, or the file system refuses.
-    pub fn unpack(&mut self) -> Result<TempDir> {
+    pub fn unpack(&mut self) -> Result<TemporaryFolder> {
         let broken = |path: &Path| {
             let path = path.to_path_buf();
             move |cause| FmiError::NotAnArchive { path, cause }
         };
         let temporary = std::env::temp_dir();
-        let folder = tempfile::Builder::new().prefix("videg-fmu-").tempdir();
-        let folder = folder.map_err(FmiError::io("make a folder in", &temporary))?;
+        let folder = TemporaryFolder::new("videg-fmu-").map_err(FmiError::io("make a folder in", &temporary))?;
         let mut left = self.limits.unpacked_bytes;
         for index in 0..self.zip.len() {
             let mut entry = self.zip.by_index(index).map_err(broken(&self.path))?;
@@ -191,7 +189,7 @@ impl Archive {
                 fs::create_dir_all(parent).map_err(FmiError::io("create", parent))?;
             }
             // An entry never replaces another, whatever the file system makes of their names.
-            let mut file = File::create_new(&target).map_err(FmiError::io("create", &target))?;
+            let mut file = create(&target).map_err(FmiError::io("create", &target))?;
             unpack_entry(&mut entry, &name, &mut file, &mut left, &self.limits, &self.path)?;
         }
         Ok(folder)
@@ -212,6 +210,15 @@ impl Archive {
         }
         Ok(())
     }
+}
+
+/// A new file, which the user alone may read.
+fn create(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
 }
 
 /// Copies one entry, counting what really comes out.
