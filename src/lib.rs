@@ -9,6 +9,7 @@
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`report`] draws figures and writes the HTML report;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
+//! - [`temporary`] makes folders that are gone when the process ends;
 //! - [`whole`] writes files that appear whole or not at all;
 //! - [`cli`] is the command-line tool.
 //!
@@ -17,6 +18,7 @@
 
 #[cfg(doctest)]
 mod book;
+pub(crate) mod children;
 mod circuit_sample;
 #[cfg(feature = "tool")]
 pub mod cli;
@@ -24,6 +26,7 @@ pub mod cosim;
 #[cfg(feature = "tool")]
 pub mod crosscheck;
 pub mod fmi;
+pub(crate) mod input;
 pub mod ngspice;
 #[cfg(feature = "tool")]
 pub mod package;
@@ -33,4 +36,5 @@ pub mod paper;
 pub mod report;
 pub mod scenario;
 pub mod sweep;
+pub mod temporary;
 pub mod whole;

@@ -231,7 +231,11 @@ fn nothing_is_left_behind() {
     let folder = tempfile::tempdir().unwrap();
     let temporary = folder.path().join("temporary");
     std::fs::create_dir(&temporary).unwrap();
-    let path = toy::fmu(folder.path(), "toy.fmu", &["STEP=FILE *f = fopen(\"left.txt\", \"w\"); fclose(f); abort();"]);
+    let path = toy::fmu(
+        folder.path(),
+        "toy.fmu",
+        &["STEP=FILE *f = fopen(\"left.txt\", \"w\"); fclose(f); chmod(\".\", 0); abort();"],
+    );
     let output = Command::new(env!("CARGO_BIN_EXE_videg"))
         .args(["fmu", "check"])
         .arg(&path)

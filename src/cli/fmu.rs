@@ -1,5 +1,7 @@
 //! `videg fmu`: build, check and describe FMUs.
 
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -9,7 +11,7 @@ use super::isolation::IsolationOptions;
 use super::message::plain;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
-use crate::fmi::{Archive, Kind, ModelDescription, Variable};
+use crate::fmi::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 use crate::package::{self, AddedBinary, Options};
 
 /// Arguments of the verb.
@@ -94,17 +96,17 @@ fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bo
 
 /// One variable as `--json` shows it.
 #[derive(Serialize)]
-struct Row {
-    name: String,
+struct Row<'a> {
+    name: &'a str,
     value_reference: u32,
     r#type: &'static str,
-    causality: String,
-    variability: String,
-    unit: Option<String>,
-    start: Option<String>,
+    causality: &'static str,
+    variability: &'static str,
+    unit: Option<&'a str>,
+    start: Option<Cow<'a, str>>,
     min: Option<f64>,
     max: Option<f64>,
-    description: Option<String>,
+    description: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -116,13 +118,14 @@ struct Info<'a> {
     fmi_version: &'static str,
     description: Option<&'a str>,
     platforms: Vec<String>,
-    variables: Vec<Row>,
+    variables: Vec<Row<'a>>,
 }
 
 fn info(file: &Path, json: bool) -> anyhow::Result<()> {
     let mut archive = Archive::open(file)?;
     let description = archive.description()?;
-    let variables = description.variables.iter().map(|variable| row(&description, variable)).collect();
+    let items = Items::of(&description);
+    let variables = description.variables.iter().map(|variable| row(&items, variable)).collect();
     let info = Info {
         file,
         model_name: &description.model_name,
@@ -141,42 +144,54 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn row(description: &ModelDescription, variable: &Variable) -> Row {
-    let item = |number: i32| {
-        let items = description.enumeration(variable).map(|enumeration| &enumeration.items);
-        let found = items.and_then(|items| items.iter().find(|item| item.value == number));
-        found.map_or_else(|| number.to_string(), |item| item.name.clone())
-    };
+/// Names of the items of each enumeration by their values: there may be many items, and many variables of their type.
+struct Items<'a>(HashMap<&'a str, HashMap<i32, &'a str>>);
+
+impl<'a> Items<'a> {
+    /// Of types and items that share a name or value, the first counts.
+    fn of(description: &'a ModelDescription) -> Self {
+        let types = description.enumerations.iter().rev();
+        let items = |items: &'a [EnumerationItem]| items.iter().rev().map(|item| (item.value, item.name.as_str()));
+        Self(types.map(|it| (it.name.as_str(), items(&it.items).collect())).collect())
+    }
+
+    fn name(&self, variable: &Variable, value: i32) -> Cow<'a, str> {
+        let items = variable.declared_type.as_deref().and_then(|name| self.0.get(name));
+        items.and_then(|items| items.get(&value)).map_or_else(|| value.to_string().into(), |name| (*name).into())
+    }
+}
+
+fn row<'a>(items: &Items<'a>, variable: &'a Variable) -> Row<'a> {
     let (kind, start, min, max) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| format!("{value:?}")), *min, *max),
+        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| format!("{value:?}").into()), *min, *max),
         Kind::Integer { start, min, max } => {
-            ("Integer", start.map(|value| value.to_string()), min.map(f64::from), max.map(f64::from))
+            ("Integer", start.map(|value| value.to_string().into()), min.map(f64::from), max.map(f64::from))
         }
-        Kind::Boolean { start } => ("Boolean", start.map(|value| value.to_string()), None, None),
-        Kind::String { start } => ("String", start.clone(), None, None),
-        Kind::Enumeration { start } => ("Enumeration", start.map(item), None, None),
+        Kind::Boolean { start } => ("Boolean", start.map(|value| value.to_string().into()), None, None),
+        Kind::String { start } => ("String", start.as_deref().map(Cow::from), None, None),
+        Kind::Enumeration { start } => ("Enumeration", start.map(|value| items.name(variable, value)), None, None),
     };
     Row {
-        name: variable.name.clone(),
+        name: &variable.name,
         value_reference: variable.value_reference,
         r#type: kind,
-        causality: variable.causality.as_str().to_owned(),
-        variability: variable.variability.as_str().to_owned(),
-        unit: variable.unit().map(ToOwned::to_owned),
+        causality: variable.causality.as_str(),
+        variability: variable.variability.as_str(),
+        unit: variable.unit(),
         start,
         min,
         max,
-        description: variable.description.clone(),
+        description: variable.description.as_deref(),
     }
 }
 
 fn text(info: &Info) -> String {
     let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
     for variable in &info.variables {
-        let start = variable.start.clone().unwrap_or_default();
-        let unit = variable.unit.clone().unwrap_or_else(|| variable.r#type.to_lowercase());
-        let mut cells = format::row(&[variable.name.clone(), start, unit, variable.causality.clone()]);
-        cells.push(variable.description.clone().unwrap_or_default().into());
+        let unit = variable.unit.map_or_else(|| variable.r#type.to_lowercase(), ToOwned::to_owned);
+        let start = variable.start.as_deref().unwrap_or_default().to_owned();
+        let mut cells = format::row(&[variable.name.to_owned(), start, unit, variable.causality.to_owned()]);
+        cells.push(variable.description.unwrap_or_default().into());
         table.add_row(cells);
     }
     let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
@@ -188,4 +203,22 @@ fn text(info: &Info) -> String {
         info.description.unwrap_or_default(),
         info.guid,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn start_values_of_enumerations_are_shown_by_names_that_are_not_copied() {
+        let document = include_bytes!("../fmi/testdata/good.xml");
+        let description = ModelDescription::parse(document, "test").unwrap();
+        let items = Items::of(&description);
+        let shown = row(&items, description.variable("law").unwrap());
+        let name = &description.enumerations[0].items[0].name;
+        assert!(matches!(shown.start, Some(Cow::Borrowed(start)) if std::ptr::eq(start, name.as_str())));
+        let mut law = description.variable("law").unwrap().clone();
+        law.kind = Kind::Enumeration { start: Some(77) };
+        assert_eq!(row(&items, &law).start.as_deref(), Some("77"), "there is no such item");
+    }
 }

@@ -1,4 +1,5 @@
-//! Text from elsewhere on its way to a terminal: no control characters, and of an error one line that can be read.
+//! Text from elsewhere on its way to a terminal: no characters that control it, reorder or hide text, and of an error one line
+//! that can be read.
 
 /// Longest error that is shown, characters.
 const LONGEST: usize = 2000;
@@ -15,10 +16,17 @@ pub fn one_line(text: &str) -> String {
     format!("{begin}... (and {} more characters)", count - LONGEST)
 }
 
-/// `text` with its control characters spelled out, but for ends of lines: none reaches the terminal as a command.
+/// `text` with what [`is_hidden`] spelled out, but for ends of lines: none reaches the terminal as a command.
 pub fn plain(text: &str) -> String {
-    let spell = |c: char| if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
+    let spell = |c: char| if is_hidden(c) && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
     text.chars().map(spell).collect()
+}
+
+/// Whether a character controls the terminal, or text around it: ends a line, changes the direction, takes no place.
+fn is_hidden(c: char) -> bool {
+    let formats = ['\u{61c}', '\u{feff}'];
+    let ranges = ['\u{200b}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2060}'..='\u{206f}'];
+    c.is_control() || formats.contains(&c) || ranges.iter().any(|range| range.contains(&c))
 }
 
 #[cfg(test)]
@@ -30,6 +38,13 @@ mod tests {
         assert_eq!(one_line("a\n  b\r\n\n\u{1b}[2Jc\u{7}"), "a | b | \\u{1b}[2Jc\\u{7}");
         let long = one_line(&"x".repeat(LONGEST + 7));
         assert!(long.ends_with("x... (and 7 more characters)"), "{long}");
+    }
+
+    #[test]
+    fn what_reorders_or_hides_text_is_spelled_out() {
+        for c in "\u{200b}\u{200d}\u{200e}\u{200f}\u{2028}\u{2029}\u{202a}\u{202e}\u{2066}\u{2069}\u{feff}".chars() {
+            assert_eq!(one_line(&format!("a{c}b")), format!("a{}b", c.escape_default()));
+        }
     }
 
     #[test]

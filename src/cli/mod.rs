@@ -14,6 +14,7 @@ mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
+mod interruption;
 mod isolation;
 mod message;
 mod options;
@@ -84,6 +85,27 @@ pub(crate) enum Verdict {
     Stopped(u8),
 }
 
+impl Verb {
+    fn run(&self) -> anyhow::Result<Verdict> {
+        let is_watched = !matches!(self, Self::Sweep(_) | Self::NgspiceWorker | Self::FmuWorker);
+        let interruption = is_watched.then(interruption::Interruption::watch).transpose()?;
+        let result = match self {
+            Self::Cosim(arguments) => cosim::run(arguments),
+            Self::Crosscheck(arguments) => crosscheck::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Sweep(arguments) => sweep::run(arguments),
+            Self::Reproduce(arguments) => reproduce::run(arguments),
+            Self::Fmu(arguments) => fmu::run(arguments),
+            Self::Ssp(arguments) => ssp::run(arguments),
+            Self::Completions(arguments) => completions::run(arguments),
+            Self::NgspiceWorker => worker::run_ngspice(),
+            Self::FmuWorker => worker::run_fmu(),
+        };
+        interruption.iter().for_each(interruption::Interruption::settle);
+        result
+    }
+}
+
 /// The command line as it is parsed: every verb with its options and their help.
 pub fn command() -> clap::Command {
     Cli::command()
@@ -95,18 +117,7 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    let result = match cli.verb {
-        Verb::Cosim(arguments) => cosim::run(&arguments),
-        Verb::Crosscheck(arguments) => crosscheck::run(&arguments),
-        Verb::Simulate(arguments) => simulate::run(&arguments),
-        Verb::Sweep(arguments) => sweep::run(&arguments),
-        Verb::Reproduce(arguments) => reproduce::run(&arguments),
-        Verb::Fmu(arguments) => fmu::run(&arguments),
-        Verb::Ssp(arguments) => ssp::run(&arguments),
-        Verb::Completions(arguments) => completions::run(&arguments),
-        Verb::NgspiceWorker => worker::run_ngspice(),
-        Verb::FmuWorker => worker::run_fmu(),
-    };
+    let result = cli.verb.run();
     match result {
         Ok(Verdict::Passed) => ExitCode::SUCCESS,
         Ok(Verdict::Failed) => ExitCode::from(1),

@@ -4,13 +4,14 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 use zip::result::ZipError;
 
 use super::description::ModelDescription;
 use super::error::{DescriptionError, FmiError, Refusal, Result};
+use crate::input;
+use crate::temporary::TemporaryFolder;
 
 mod directory;
 mod names;
@@ -48,6 +49,13 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Largest size to which an entry of `packed` bytes may unpack.
+    fn most_of(&self, packed: u64) -> u64 {
+        packed.saturating_mul(self.ratio).max(FREE_BYTES)
+    }
+}
+
 /// An opened .fmu file. Nothing is unpacked until [`Archive::unpack`].
 #[derive(Debug)]
 pub struct Archive {
@@ -73,11 +81,8 @@ impl Archive {
     pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
         let path = path.as_ref();
         let refuse = |reason| FmiError::Refused { path: path.into(), reason };
-        let mut file = File::open(path).map_err(FmiError::io("open", path))?;
+        let mut file = input::open_regular(path).map_err(FmiError::io("open", path))?;
         let found = file.metadata().map_err(FmiError::io("read", path))?;
-        if found.is_dir() {
-            return Err(FmiError::io("read", path)(io::ErrorKind::IsADirectory.into()));
-        }
         if found.len() > limits.archive_bytes {
             return Err(refuse(Refusal::ArchiveSize { found: found.len(), allowed: limits.archive_bytes }));
         }
@@ -141,11 +146,17 @@ impl Archive {
         let allowed = self.limits.description_bytes.min(ModelDescription::MAX_BYTES);
         let entry = self.zip.by_index(index).map_err(|cause| FmiError::NotAnArchive { path: path.clone(), cause })?;
         let mut text = Vec::new();
+        let packed = entry.compressed_size();
+        let allowed_by_ratio = self.limits.most_of(packed);
         // One byte more than allowed tells whether there is more.
         entry
-            .take(allowed + 1)
+            .take(allowed.min(allowed_by_ratio) + 1)
             .read_to_end(&mut text)
             .map_err(FmiError::io("unpack modelDescription.xml of", &path))?;
+        if text.len() as u64 > allowed_by_ratio {
+            let reason = Refusal::Ratio { entry: DESCRIPTION.into(), packed, allowed: self.limits.ratio };
+            return Err(FmiError::Refused { path, reason });
+        }
         if text.len() as u64 > allowed {
             let cause = DescriptionError::Size { found: text.len() as u64, allowed };
             return Err(FmiError::Description { origin, cause });
@@ -153,18 +164,18 @@ impl Archive {
         ModelDescription::parse(&text, &origin)
     }
 
-    /// Unpacks everything into a new temporary folder, which is removed with the returned value.
+    /// Unpacks everything into a new temporary folder, which is removed with the returned value. Nobody but the user may look
+    /// into it.
     ///
     /// # Errors
     /// When a bound is passed, an entry is broken, or the file system refuses.
-    pub fn unpack(&mut self) -> Result<TempDir> {
+    pub fn unpack(&mut self) -> Result<TemporaryFolder> {
         let broken = |path: &Path| {
             let path = path.to_path_buf();
             move |cause| FmiError::NotAnArchive { path, cause }
         };
         let temporary = std::env::temp_dir();
-        let folder = tempfile::Builder::new().prefix("videg-fmu-").tempdir();
-        let folder = folder.map_err(FmiError::io("make a folder in", &temporary))?;
+        let folder = TemporaryFolder::new("videg-fmu-").map_err(FmiError::io("make a folder in", &temporary))?;
         let mut left = self.limits.unpacked_bytes;
         for index in 0..self.zip.len() {
             let mut entry = self.zip.by_index(index).map_err(broken(&self.path))?;
@@ -178,7 +189,7 @@ impl Archive {
                 fs::create_dir_all(parent).map_err(FmiError::io("create", parent))?;
             }
             // An entry never replaces another, whatever the file system makes of their names.
-            let mut file = File::create_new(&target).map_err(FmiError::io("create", &target))?;
+            let mut file = create(&target).map_err(FmiError::io("create", &target))?;
             unpack_entry(&mut entry, &name, &mut file, &mut left, &self.limits, &self.path)?;
         }
         Ok(folder)
@@ -201,6 +212,15 @@ impl Archive {
     }
 }
 
+/// A new file, which the user alone may read.
+fn create(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}
+
 /// Copies one entry, counting what really comes out.
 fn unpack_entry(
     entry: &mut ZipFile<'_, File>,
@@ -212,7 +232,7 @@ fn unpack_entry(
 ) -> Result<()> {
     let refuse = |reason| Err(FmiError::Refused { path: path.into(), reason });
     let packed = entry.compressed_size();
-    let allowed_by_ratio = packed.saturating_mul(limits.ratio).max(FREE_BYTES);
+    let allowed_by_ratio = limits.most_of(packed);
     let mut written = 0_u64;
     let mut buffer = [0_u8; 1 << 14];
     loop {

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use super::error::{DescriptionError, FmiError, Result};
 use super::{suggest, xml};
@@ -144,7 +145,7 @@ pub struct Variable {
 #[allow(missing_docs)] // the fields are the attributes of the same name
 pub enum Kind {
     /// 64-bit floating-point number.
-    Real { unit: Option<String>, start: Option<f64>, min: Option<f64>, max: Option<f64> },
+    Real { unit: Option<Arc<str>>, start: Option<f64>, min: Option<f64>, max: Option<f64> },
     /// 32-bit integer.
     Integer { start: Option<i32>, min: Option<i32>, max: Option<i32> },
     /// Truth value.
@@ -263,7 +264,8 @@ impl ModelDescription {
     /// Reads a document. `origin` names it in errors.
     ///
     /// # Errors
-    /// When it is too large, not well-formed, of another FMI version, not for co-simulation, or lacks something.
+    /// When it is too large, not well-formed, of another FMI version, not for co-simulation, lacks something, or has more than a
+    /// million elements, 256 attributes of an element or 64 KiB in an attribute.
     pub fn parse(document: &[u8], origin: &str) -> Result<Self> {
         let read = || {
             let found = document.len() as u64;

@@ -8,7 +8,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use libloading::Library;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
-use tempfile::TempDir;
 
 use super::archive::{Archive, Limits};
 use super::description::ModelDescription;
@@ -17,6 +16,7 @@ use super::instance::Instance;
 use super::isolated::{self, Isolation, Pool};
 use super::library::{self, Functions, HOST_PLATFORM};
 use super::logging::Logging;
+use crate::temporary::TemporaryFolder;
 
 /// A co-simulation FMU, unpacked and loaded. Clones share it; it is unloaded and its folder removed with the last
 /// clone and the last instance.
@@ -36,7 +36,7 @@ pub(super) struct Loaded {
     fatal: AtomicBool,
     // In the order of dropping: the library, or what has loaded it, goes before the folder that holds it.
     code: Code,
-    _folder: Option<TempDir>,
+    _folder: Option<TemporaryFolder>,
 }
 
 /// Where the library of an FMU is loaded.

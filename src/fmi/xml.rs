@@ -1,14 +1,11 @@
 //! From the text of `modelDescription.xml` to [`ModelDescription`].
 //!
-//! Two passes: the first walks the events and refuses what must never be interpreted (document types, deep nesting,
-//! another root, another FMI version); the second reads the elements that are used and skips all others.
+//! Two passes: the first (`vet`) walks the events and refuses what must never be interpreted; the second reads the
+//! elements that are used and skips all others.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::str::FromStr;
-
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
 
 use super::description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
@@ -17,19 +14,16 @@ use super::description::{
 use super::error::DescriptionError as Error;
 
 mod raw;
+mod types;
 mod variable;
+mod vet;
 
 type Result<T> = std::result::Result<T, Error>;
-
-/// Deepest nesting of elements; FMI 2.0 itself needs six, vendor annotations may add some.
-const MAX_DEPTH: usize = 64;
-/// Most attributes of an element; FMI 2.0 itself has 16. The reader compares each with all before it.
-const MAX_ATTRIBUTES: usize = 256;
 
 pub(super) fn read(document: &[u8]) -> Result<ModelDescription> {
     let document = document.strip_prefix(b"\xef\xbb\xbf").unwrap_or(document);
     let text = decode(document)?;
-    vet(&text)?;
+    vet::vet(&text)?;
     let raw: raw::Description =
         quick_xml::de::from_str(&text).map_err(|error| Error::Content { cause: error.to_string() })?;
     convert(raw)
@@ -49,74 +43,13 @@ fn decode(document: &[u8]) -> Result<Cow<'_, str>> {
     Err(Error::Encoding { position: error.valid_up_to() })
 }
 
-/// First pass.
-fn vet(text: &str) -> Result<()> {
-    let mut reader = Reader::from_str(text);
-    let mut depth = 0_usize;
-    let mut has_root = false;
-    loop {
-        let event = reader
-            .read_event()
-            .map_err(|error| Error::Syntax { position: reader.error_position(), cause: error.to_string() })?;
-        match event {
-            Event::DocType(_) => return Err(Error::Doctype),
-            Event::Start(element) => {
-                count_attributes(&element)?;
-                root(&element, &mut has_root, reader.buffer_position())?;
-                depth += 1;
-                if depth > MAX_DEPTH {
-                    return Err(Error::Depth { allowed: MAX_DEPTH });
-                }
-            }
-            Event::Empty(element) => {
-                count_attributes(&element)?;
-                root(&element, &mut has_root, reader.buffer_position())?;
-            }
-            Event::End(_) => depth = depth.saturating_sub(1),
-            Event::Eof if depth > 0 || !has_root => {
-                let cause = "the document ends too early".to_owned();
-                return Err(Error::Syntax { position: reader.buffer_position(), cause });
-            }
-            Event::Eof => return Ok(()),
-            _ => {}
-        }
-    }
-}
-
-fn count_attributes(element: &BytesStart<'_>) -> Result<()> {
-    let mut attributes = element.attributes();
-    if attributes.with_checks(false).nth(MAX_ATTRIBUTES).is_none() {
-        return Ok(());
-    }
-    let element = element.name().as_ref().chars().take(100).collect();
-    Err(Error::Attributes { element, allowed: MAX_ATTRIBUTES })
-}
-
-/// Looks at the first element: name and version.
-fn root(element: &BytesStart<'_>, has_root: &mut bool, position: u64) -> Result<()> {
-    if *has_root {
-        return Ok(());
-    }
-    *has_root = true;
-    let name = element.name().as_ref().to_owned();
-    if name != "fmiModelDescription" {
-        return Err(Error::Root { found: name });
-    }
-    let version = element
-        .try_get_attribute("fmiVersion")
-        .map_err(|error| Error::Syntax { position, cause: error.to_string() })?
-        .ok_or_else(|| missing("fmiModelDescription", "fmiVersion"))?;
-    let version = version.value.into_owned();
-    if version == "2.0" { Ok(()) } else { Err(Error::Version { found: version }) }
-}
-
 /// Second pass: from strings to values.
 fn convert(raw: raw::Description) -> Result<ModelDescription> {
     let root = "fmiModelDescription";
     let types = raw.type_definitions.unwrap_or_default().types;
     let enumerations = types.iter().filter_map(enumeration).collect::<Result<Vec<_>>>()?;
     let variables = raw.model_variables.ok_or_else(|| missing(root, "ModelVariables"))?.variables;
-    let types = variable::Types::of(&types);
+    let types = types::Types::of(types)?;
     let variables = variables
         .into_iter()
         .enumerate()
@@ -226,7 +159,7 @@ fn enumeration(raw: &raw::SimpleType) -> Option<Result<EnumerationType>> {
 fn enumeration_item(raw: &raw::Item, place: &str) -> Result<EnumerationItem> {
     let value = raw.value.as_deref().ok_or_else(|| missing(place, "value in an Item"))?;
     Ok(EnumerationItem {
-        name: raw.name.clone().ok_or_else(|| missing(place, "name in an Item"))?,
+        name: types::shared(place, "name", raw.name.clone().ok_or_else(|| missing(place, "name in an Item"))?)?,
         value: integer(place, "value", value)?,
         description: raw.description.clone(),
     })

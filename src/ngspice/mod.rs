@@ -30,6 +30,7 @@ mod analytic;
 mod books;
 mod capacitance;
 mod circuit;
+mod drain;
 mod error;
 pub mod live;
 mod raw;

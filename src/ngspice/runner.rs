@@ -2,16 +2,18 @@
 
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read};
+use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::thread::JoinHandle;
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use super::capacitance::CapacitanceTable;
+use super::drain::Drain;
 use super::template::{FileName, Netlist};
 use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
-use crate::whole;
+use crate::children::Group;
+use crate::temporary::TemporaryFolder;
+use crate::{input, whole};
 
 /// The program.
 #[derive(Debug, Clone)]
@@ -24,7 +26,7 @@ pub struct Ngspice {
 /// A finished run of ngspice, in a folder that is removed with it.
 #[derive(Debug)]
 pub struct Finished {
-    folder: tempfile::TempDir,
+    folder: TemporaryFolder,
     said: Said,
 }
 
@@ -34,7 +36,7 @@ impl Ngspice {
     /// Longest time that a run may take unless something else is asked for.
     pub const TIME_LIMIT: Duration = Duration::from_secs(600);
     /// Bytes of ngspice's messages that are kept, of each stream; the rest is read and dropped.
-    const OUTPUT: u64 = 64 * 1024;
+    const OUTPUT: usize = 64 * 1024;
 
     /// The program `named`, or else that of the environment variable [`Self::VARIABLE`], or else that on the `PATH`.
     ///
@@ -113,30 +115,30 @@ impl Ngspice {
     /// A program that cannot be started, takes too long, or fails.
     pub fn run(&self, netlist: &Netlist, table: &CapacitanceTable) -> Result<Finished, NgspiceError> {
         let file = |cause| NgspiceError::File { path: std::env::temp_dir(), cause };
-        let folder = tempfile::Builder::new().prefix("videg-ngspice-").tempdir().map_err(file)?;
+        let folder = TemporaryFolder::new("videg-ngspice-").map_err(file)?;
         Self::export(folder.path(), netlist, table)?;
-        let mut child = self.start(folder.path())?;
-        let outputs = [drain(child.stdout.take()), drain(child.stderr.take())];
-        let ended = wait(&mut child, self.time_limit);
-        let text = outputs.map(|output| output.and_then(|thread| thread.join().ok()).unwrap_or_default());
-        let said = Said::in_output(&text.concat());
         let failed = |cause| NgspiceError::Start { program: self.program.clone(), cause };
-        match ended.map_err(failed)? {
+        let mut group = Group::start(&mut self.command(folder.path())).map_err(failed)?;
+        let (stdout, stderr) = (group.child.stdout.take(), group.child.stderr.take());
+        let stdout = stdout.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
+        let stderr = stderr.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
+        let ended = wait(&mut group, self.time_limit).map_err(failed)?;
+        let text = [stdout, stderr].map(|drain| drain.map(|drain| drain.text()).unwrap_or_default());
+        let said = Said::in_output(&text.concat());
+        match ended {
             None => Err(NgspiceError::TimeLimit { limit: self.time_limit.as_secs_f64(), said }),
             Some(status) if !status.success() => Err(NgspiceError::Failed { status, said }),
             Some(_) => Ok(Finished { folder, said }),
         }
     }
 
-    fn start(&self, folder: &Path) -> Result<Child, NgspiceError> {
+    fn command(&self, folder: &Path) -> Command {
         let mut command = Command::new(&self.program);
         command.args(["-n", "-b", FileName::Netlist.name()]).current_dir(folder);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // It would turn the result into ASCII.
         command.env_remove("SPICE_ASCIIRAWFILE");
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        command.spawn().map_err(|cause| NgspiceError::Start { program: self.program.clone(), cause })
+        command
     }
 }
 
@@ -144,10 +146,10 @@ impl Finished {
     /// The result, if there is one.
     ///
     /// # Errors
-    /// If it cannot be opened.
+    /// If it cannot be opened, or is no regular file.
     pub fn raw(&self) -> Result<Option<BufReader<File>>, NgspiceError> {
         let path = self.folder.path().join(FileName::Raw.name());
-        match File::open(&path) {
+        match input::open_regular(&path) {
             Ok(file) => Ok(Some(BufReader::with_capacity(1 << 16, file))),
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(cause) => Err(NgspiceError::File { path, cause }),
@@ -160,43 +162,19 @@ impl Finished {
     }
 }
 
-/// Reads a stream to its end, and keeps its beginning.
-fn drain(stream: Option<impl Read + Send + 'static>) -> Option<JoinHandle<String>> {
-    let mut stream = stream?;
-    Some(std::thread::spawn(move || {
-        let mut kept = Vec::new();
-        // A stream that breaks has ended.
-        let _ = stream.by_ref().take(Ngspice::OUTPUT).read_to_end(&mut kept);
-        let _ = std::io::copy(&mut stream, &mut std::io::sink());
-        String::from_utf8_lossy(&kept).into_owned()
-    }))
-}
-
-/// Waits for the end; after `limit` ends the program and all that it started, and returns nothing.
-fn wait(child: &mut Child, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
+/// Waits for the end, and ends what the program started; after `limit` the program too, and returns nothing.
+fn wait(group: &mut Group, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
     const PAUSE: Duration = Duration::from_millis(5);
     let start = Instant::now();
     loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(Some(status));
+        if group.has_ended()? {
+            return group.end().map(Some);
         }
         if start.elapsed() >= limit {
-            end(child)?;
-            return Ok(None);
+            return group.end().map(|_| None);
         }
         std::thread::sleep(PAUSE);
     }
-}
-
-/// Ends the program with its process group.
-fn end(child: &mut Child) -> std::io::Result<()> {
-    #[cfg(unix)]
-    if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
-        // It may have ended by itself meanwhile.
-        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
-    }
-    let _ = child.kill();
-    child.wait().map(drop)
 }
 
 #[cfg(test)]

@@ -90,6 +90,22 @@ fn a_program_that_hangs_is_ended_with_its_children() {
 }
 
 #[test]
+fn what_a_program_leaves_running_neither_delays_nor_outlives_it() {
+    let start = Instant::now();
+    let error = message("sleep 100 & echo 'Error: no such node'; exit 3");
+    assert!(error.ends_with("\n  ngspice: Error: no such node"), "{error}");
+    let error = message("setsid sleep 30 & echo 'Error: no such node'; sleep 1; exit 3");
+    assert!(error.ends_with("\n  ngspice: Error: no such node"), "it was sent away: {error}");
+    assert!(start.elapsed() < Duration::from_secs(25), "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_pipe_in_the_place_of_a_result_is_not_waited_for() {
+    let error = message("mkfifo harvesting.raw");
+    assert!(error.ends_with("harvesting.raw: it is a pipe, not a regular file"), "{error}");
+}
+
+#[test]
 fn a_flood_of_messages_is_bounded_and_harmless() {
     let error = message("yes 'error: \u{1b}[31mflood' | head -c 50000000; exit 1");
     assert!(error.len() < 3000 && error.contains("flood") && !error.contains('\u{1b}'), "{}", error.len());

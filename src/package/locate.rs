@@ -37,10 +37,16 @@ fn around(path: &Path) -> Option<PathBuf> {
 pub(super) fn own_libraries(fmu: &FmuPackage) -> Vec<PathBuf> {
     let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = std::env::current_exe().ok();
-    let around = program.as_deref().and_then(|path| path.ancestors().find(|folder| is_workspace(folder)));
-    let workspace = around.or_else(|| is_workspace(compiled).then_some(compiled));
+    let workspace = own_workspace(program.as_deref(), compiled, cfg!(feature = "embedded-fmus"));
     let name = Platform::HOST.cargo_name(fmu.identifier);
     folders(workspace, None).iter().map(|folder| folder.join(&name)).collect()
+}
+
+/// The source tree that goes with `program`, which was `compiled` in this one. A program that has its FMUs inside was made to
+/// be handed over: where it was compiled, somebody else may have put something by now.
+fn own_workspace<'a>(program: Option<&'a Path>, compiled: &'a Path, has_fmus: bool) -> Option<&'a Path> {
+    let around = program.and_then(|path| path.ancestors().find(|folder| is_workspace(folder)));
+    around.or_else(|| (!has_fmus && is_workspace(compiled)).then_some(compiled))
 }
 
 fn is_workspace(folder: &Path) -> bool {
@@ -121,4 +127,19 @@ pub(super) fn description(fmu: &FmuPackage, workspace: Option<&Path>) -> Result<
     let looked: Vec<_> = roots.map(|root| root.join("modelDescription").join(&name)).collect();
     let found = looked.iter().find(|path| path.is_file()).cloned();
     found.ok_or(PackageError::NoDescription { identifier: fmu.identifier, looked })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_with_fmus_inside_does_not_trust_the_folder_that_it_was_compiled_in() {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let elsewhere = tempfile::tempdir().unwrap();
+        let program = elsewhere.path().join("videg");
+        assert_eq!(own_workspace(Some(&program), here, false), Some(here));
+        assert_eq!(own_workspace(Some(&program), here, true), None);
+        assert_eq!(own_workspace(Some(&here.join("target/release/videg")), here, true), Some(here), "it lies in it");
+    }
 }

@@ -14,7 +14,6 @@
 //! load.resistance = inf
 //! ```
 
-use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +21,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{Origin, ScenarioError, Setting};
+use crate::input;
 
 /// What a case file says.
 #[derive(Debug, Clone, Default)]
@@ -129,7 +129,7 @@ fn read_text(path: &Path) -> Result<String, ScenarioError> {
     const LARGEST: u64 = 16 << 20;
     let shown = path.display().to_string();
     let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
+    let read = input::open_once(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
     match read {
         Err(cause) => Err(ScenarioError::Unreadable { path: shown, cause }),
         Ok(_) if text.len() as u64 > LARGEST => {

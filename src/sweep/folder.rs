@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::document::differences;
 use super::{Shard, SweepError, sums};
+use crate::input;
 use crate::whole::{self, LockError, partial};
 
 /// Name of the document in a folder of results.
@@ -83,7 +84,7 @@ fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError 
 /// The document in the folder, if there is one, without checksums.
 fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     let path = folder.join(DOCUMENT);
-    match std::fs::read_to_string(&path) {
+    match input::read_text(&path) {
         Ok(there) => Ok(Some(sums::identity(&there))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(SweepError::file("read", &path)(error)),

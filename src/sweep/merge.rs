@@ -9,7 +9,7 @@ use super::document::{Kept, differences};
 use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
 use super::{Shard, SweepError, column, lines, sums, table};
-use crate::whole;
+use crate::{input, whole};
 
 /// Version of this program: tables that another one writes may have other bytes.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -46,7 +46,7 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
     let mut first = None;
     for folder in folders {
         let path = folder.join(DOCUMENT);
-        let text = sums::identity(&std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?);
+        let text = sums::identity(&input::read_text(&path).map_err(SweepError::file("read", &path))?);
         match &first {
             None => first = Some(text),
             Some(first) if *first == text => {}
@@ -120,7 +120,7 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> R
     out.rewind().and_then(|()| file.set_len(0)).and_then(|()| out.write_all(&heading)).map_err(written)?;
     for (shard, path) in shards {
         let range = shard.range(kept.runs);
-        let from = BufReader::new(File::open(path).map_err(SweepError::file("open", path))?);
+        let from = BufReader::new(input::open_regular(path).map_err(SweepError::file("open", path))?);
         let extent = lines::follow(from, &heading, range.start, range.end - range.start, |line| {
             out.write_all(line).map_err(Broken::Written)
         });

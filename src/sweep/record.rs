@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::folder::{self, RESULTS};
 use super::lines::{self, Extent};
 use super::{Shard, Sweep, SweepError, column};
-use crate::whole;
+use crate::{input, whole};
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
@@ -139,7 +139,7 @@ impl Record {
 
 /// How far the results at `path` are complete; none if there are none.
 fn complete(path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
-    let file = match File::open(path) {
+    let file = match input::open_regular(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(SweepError::file("open", path)(error)),

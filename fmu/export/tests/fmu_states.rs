@@ -223,6 +223,58 @@ fn damaged_truncated_and_foreign_bytes_are_refused() {
     assert_eq!(deserialize(&host, &good, &mut state), fmi2OK);
 }
 
+/// A serialised state with `change` made to its content, and a checksum that is right again.
+fn changed(good: &[fmi2Byte], change: impl FnOnce(&mut [u8])) -> Vec<fmi2Byte> {
+    const HEADER: usize = 36;
+    const CHECKSUM: usize = 8;
+    let mut bytes: Vec<u8> = good.iter().map(|byte| byte.to_ne_bytes()[0]).collect();
+    let end = bytes.len() - CHECKSUM;
+    change(&mut bytes[HEADER..end]);
+    // FNV-1a
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    let checksum = bytes[..end].iter().fold(0xcbf2_9ce4_8422_2325, step);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    bytes.into_iter().map(|byte| fmi2Byte::from_ne_bytes([byte])).collect()
+}
+
+#[test]
+fn times_that_no_call_leads_to_are_refused() {
+    const TIME_AT: usize = 2;
+    const START_AT: usize = 12;
+    const STOP_AT: usize = 21;
+    const TOLERANCE_AT: usize = 30;
+    const STATUS_AT: usize = 38;
+    const REACHED_AT: usize = 43;
+    let host = busy_host();
+    let good = serialize(&host, host.save());
+    let mut state = null_mut();
+    assert_eq!(deserialize(&host, &changed(&good, |_| ()), &mut state), fmi2OK, "the checksum is right");
+    let refused = |at: usize, value: f64, what: &str| {
+        let optional = [STOP_AT, TOLERANCE_AT, REACHED_AT].contains(&at);
+        let bytes = changed(&good, |content| {
+            content[at..at + 8].copy_from_slice(&value.to_le_bytes());
+            if optional {
+                content[at - 1] = 1;
+            }
+        });
+        let mut state = null_mut();
+        assert_eq!(deserialize(&host, &bytes, &mut state), fmi2Error, "{what} = {value}");
+        assert!(state.is_null() && host.error().contains(&format!("{what} = {value}")), "{}", host.error());
+    };
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        refused(TIME_AT, value, "time");
+        refused(START_AT, value, "startTime");
+        refused(REACHED_AT, value, "last successful time");
+        refused(TOLERANCE_AT, value, "tolerance");
+    }
+    refused(STOP_AT, f64::NAN, "stopTime");
+    refused(STOP_AT, -1.0, "stopTime");
+    refused(TOLERANCE_AT, -1.0, "tolerance");
+    let status = changed(&good, |content| content[STATUS_AT] = 77);
+    assert_eq!(deserialize(&host, &status, &mut null_mut()), fmi2Error);
+    assert!(host.error().contains("77 is no status of a step"), "{}", host.error());
+}
+
 #[test]
 fn a_buffer_that_is_too_small_or_null_is_refused_and_untouched() {
     let host = busy_host();

@@ -92,7 +92,9 @@ fn fault(name: &str) -> Option<&'static str> {
 
 fn is_device(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
-    let is_port = |rest: &str| matches!(rest.as_bytes(), [b'0'..=b'9']);
+    // Windows takes superscript digits for digits there.
+    let is_port =
+        |rest: &str| matches!(rest, "\u{b9}" | "\u{b2}" | "\u{b3}") || matches!(rest.as_bytes(), [b'0'..=b'9']);
     DEVICES.contains(&stem.as_str()) || ["com", "lpt"].iter().any(|port| stem.strip_prefix(port).is_some_and(is_port))
 }
 
@@ -141,7 +143,9 @@ mod tests {
 
     #[test]
     fn names_that_are_none_on_some_system_are_refused() {
-        for name in ["NUL", "a/con.txt", "aux .h", "Com1", "a/LPT9.log", "a.", "a /b", "a:stream", "a\nb", "a\u{7f}"] {
+        let ports = ["Com1", "a/LPT9.log", "COM\u{b9}", "com\u{b2}.txt", "lpt\u{b3}"];
+        for name in ["NUL", "a/con.txt", "aux .h", "a.", "a /b", "a:stream", "a\nb", "a\u{7f}"].into_iter().chain(ports)
+        {
             assert!(refusal(&[name]).is_some(), "{name:?}");
         }
         assert!(refusal(&[&"x/".repeat(501)]).unwrap().ends_with("its name has more than 1000 bytes"));

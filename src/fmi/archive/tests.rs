@@ -53,6 +53,12 @@ fn unpacking_gives_the_files_back_and_cleans_up() {
     let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("resources/a/b.txt", b"hello")]);
     let unpacked = Archive::open(&path).unwrap().unpack().unwrap();
     assert_eq!(fs::read(unpacked.path().join("resources/a/b.txt")).unwrap(), b"hello");
+    #[cfg(unix)]
+    for name in ["resources/a/b.txt", "modelDescription.xml"] {
+        let found = fs::metadata(unpacked.path().join(name)).unwrap();
+        let mode = std::os::unix::fs::PermissionsExt::mode(&found.permissions());
+        assert_eq!(mode & 0o777, 0o600, "{name}");
+    }
     let place = unpacked.path().to_path_buf();
     drop(unpacked);
     assert!(!place.exists());
@@ -113,6 +119,17 @@ fn a_bomb_is_stopped_by_its_ratio() {
     let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("resources/zeros", &vec![0; 4 << 20])]);
     let reason = refusal(Archive::open(&path).unwrap().unpack());
     assert!(matches!(reason, Refusal::Ratio { allowed: 100, .. }), "{reason}");
+}
+
+#[test]
+fn a_description_that_inflates_is_stopped_by_its_ratio() {
+    let bomb = [GOOD, &vec![b' '; 4 << 20]].concat();
+    let (_folder, path) = zipped(&[("modelDescription.xml", &bomb)]);
+    let reason = refusal(Archive::open(&path).unwrap().description());
+    assert!(
+        matches!(&reason, Refusal::Ratio { entry, allowed: 100, .. } if entry == "modelDescription.xml"),
+        "{reason}"
+    );
 }
 
 #[test]

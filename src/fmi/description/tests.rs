@@ -30,7 +30,7 @@ fn reads_what_the_file_says() {
 fn variables_take_defaults_and_the_attributes_of_their_type() {
     let description = parse(GOOD).unwrap();
     let mass = description.variable("mass").unwrap();
-    let unit = Some("kg".to_owned());
+    let unit = Some("kg".into());
     assert_eq!(mass.kind, Kind::Real { unit, start: Some(1.5), min: Some(0.0), max: Some(10.0) });
     assert_eq!(mass.initial, Some(Initial::Exact));
     let force = description.variable("force").unwrap();
@@ -105,6 +105,8 @@ fn bad_values_are_named_with_place_found_and_allowed() {
         ("modelIdentifier=\"Toy\"", "modelIdentifier=\"../../evil\"", "modelIdentifier is \"../../evil\""),
         ("modelIdentifier=\"Toy\"", "modelIdentifier=\"\"", "allowed is a C identifier"),
         ("declaredType=\"Law\"", "declaredType=\"Lex\"", "declaredType is \"Lex\""),
+        ("unit=\"kg\"", &format!("unit=\"{}\"", "k".repeat(1025)), "kk\", allowed is at most 1024 bytes"),
+        ("name=\"compliant\"", &format!("name=\"{}\"", "c".repeat(1025)), "cc\", allowed is at most 1024 bytes"),
         ("name=\"force\"", "name=\"mass\"", "two variables are named \"mass\""),
     ] {
         let error = parse(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();
@@ -139,6 +141,37 @@ fn attributes_without_end_are_refused_before_they_are_compared() {
     assert_eq!(error, DescriptionError::Attributes { element: "New".to_owned(), allowed: 256 });
     let error = parse(&format!("<fmiModelDescription{many} fmiVersion='2.0'>")).unwrap_err();
     assert_eq!(error, DescriptionError::Attributes { element: "fmiModelDescription".to_owned(), allowed: 256 });
+}
+
+#[test]
+fn attributes_and_documents_that_swell_are_refused() {
+    let error = parse(&GOOD.replacen("unit=\"m\"", &format!("unit=\"{}\"", "m".repeat(65_537)), 1)).unwrap_err();
+    let (element, attribute) = ("Real".to_owned(), "unit".to_owned());
+    assert_eq!(error, DescriptionError::Value { element, attribute, found: 65_537, allowed: 65_536 });
+    let error = parse(&GOOD.replacen("<ModelVariables>", &format!("<ModelVariables>{}", "<a/>".repeat(1_000_000)), 1));
+    assert_eq!(error.unwrap_err(), DescriptionError::Elements { allowed: 1_000_000 });
+}
+
+#[test]
+fn variables_share_the_texts_of_their_type() {
+    let variable = |name: &str| {
+        format!("<ScalarVariable name=\"{name}\" valueReference=\"9\"><Real declaredType=\"Mass\"/></ScalarVariable>")
+    };
+    let two = format!("<ModelVariables>{}{}", variable("one"), variable("two"));
+    let description = parse(&GOOD.replacen("<ModelVariables>", &two, 1).replace("<Unknown index=\"2\"/>", "")).unwrap();
+    let unit = |name: &str| match &description.variable(name).unwrap().kind {
+        Kind::Real { unit: Some(unit), .. } => std::sync::Arc::clone(unit),
+        kind => panic!("{kind:?}"),
+    };
+    assert!(std::sync::Arc::ptr_eq(&unit("one"), &unit("two")));
+}
+
+#[test]
+fn a_second_root_is_refused() {
+    for more in ["<fmiModelDescription fmiVersion=\"2.0\"/>", "<a></a>"] {
+        let error = parse(&format!("{GOOD}{more}")).unwrap_err();
+        assert!(matches!(&error, DescriptionError::Syntax { cause, .. } if cause.contains("second root")), "{error}");
+    }
 }
 
 #[test]

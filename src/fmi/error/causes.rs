@@ -131,6 +131,26 @@ pub enum DescriptionError {
         /// Bound.
         allowed: usize,
     },
+    /// The document has too many elements.
+    #[error("the model description has more than {allowed} elements")]
+    Elements {
+        /// Bound.
+        allowed: usize,
+    },
+    /// The value of an attribute is too long.
+    #[error(
+        "the model description has an element <{element}> whose {attribute} has {found} bytes, allowed are {allowed}"
+    )]
+    Value {
+        /// Name of the element.
+        element: String,
+        /// Name of the attribute.
+        attribute: String,
+        /// Length of the value, bytes.
+        found: usize,
+        /// Bound.
+        allowed: usize,
+    },
     /// The root element is another one.
     #[error("the root element is <{found}>, allowed is <fmiModelDescription>")]
     Root {

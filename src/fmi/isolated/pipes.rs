@@ -124,17 +124,16 @@ mod ends {
     }
 
     impl Ends {
-        #[allow(clippy::unnecessary_wraps)] // as on Unix
         pub fn new(requests: ChildStdin, mut replies: ChildStdout) -> io::Result<Self> {
             let (sender, receiver) = sync_channel(1);
-            std::thread::spawn(move || {
+            std::thread::Builder::new().spawn(move || {
                 let mut chunk = vec![0; CHUNK];
                 while let Ok(count @ 1..) = replies.read(&mut chunk) {
                     if sender.send(chunk[..count].to_vec()).is_err() {
                         break;
                     }
                 }
-            });
+            })?;
             Ok(Self { requests, replies: receiver })
         }
 

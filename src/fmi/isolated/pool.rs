@@ -41,8 +41,8 @@ impl Pool {
     pub fn new(isolation: Isolation, path: &Path, folder: &Path, entry: &str) -> Result<Self> {
         let opening = Opening {
             host: std::process::id(),
-            library: folder.join(entry),
-            shown: path.join(entry),
+            library: folder.join(entry).into(),
+            shown: path.join(entry).into(),
             memory: isolation.bounds.memory,
         };
         let (path, folder) = (path.to_owned(), folder.to_owned());

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{self, Read};
 use std::path::Path;
-use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
+use std::process::{ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -11,6 +11,7 @@ use super::WORKER_VERB;
 use super::ending::How;
 use super::pipes::{Heard, Pipes};
 use super::protocol::{Given, Opening, Reply, Request, SPARE, build, frame, unframe};
+use crate::children::Group;
 use crate::fmi::logging::LogRecord;
 
 /// How often a silent worker is looked at: what it started may hold its pipes open beyond its death.
@@ -22,14 +23,12 @@ const KEPT: usize = 2048;
 
 /// A worker. Dropping it ends it, together with what it started and did not send away.
 pub(super) struct Process {
-    child: Child,
+    group: Group,
     pipes: Pipes,
     /// What it sent and nobody has read yet.
     heard: Vec<u8>,
     /// How many calls there were.
     calls: u64,
-    /// Whether it is reaped, or about to be.
-    is_over: bool,
     printed: Arc<Mutex<Printed>>,
 }
 
@@ -48,14 +47,13 @@ impl Process {
         let mut command = Command::new(program);
         command.arg(WORKER_VERB).current_dir(folder);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let mut child = command.spawn()?;
+        let mut group = Group::start(&mut command)?;
+        let child = &mut group.child;
         let missing = || io::Error::other("no pipe");
         let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
-        let printed = keep_printed(child.stderr.take().ok_or_else(missing)?);
+        let printed = keep_printed(child.stderr.take().ok_or_else(missing)?)?;
         let pipes = Pipes::new(requests, replies)?;
-        Ok(Self { child, pipes, heard: Vec::new(), calls: 0, is_over: false, printed })
+        Ok(Self { group, pipes, heard: Vec::new(), calls: 0, printed })
     }
 
     /// Tells the worker what it is for and returns what it says to that. After an error the worker is gone.
@@ -144,24 +142,8 @@ impl Process {
         unframe(&mut self.heard, longest.max(SPARE)).map_err(|cause| How::Garbled(cause.to_string()))
     }
 
-    /// Whether it has ended. It is not reaped by that: its number stays its own, and that of its group.
-    #[cfg(unix)]
     fn has_ended(&mut self) -> Result<bool, How> {
-        use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
-        if self.is_over {
-            return Ok(true);
-        }
-        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        match waitid(WaitId::Pid(Pid::from_child(&self.child)), options) {
-            Ok(status) => Ok(status.is_some()),
-            Err(rustix::io::Errno::INTR) => Ok(false),
-            Err(cause) => Err(How::Refused(io::Error::from(cause).to_string())),
-        }
-    }
-
-    #[cfg(not(unix))]
-    fn has_ended(&mut self) -> Result<bool, How> {
-        self.child.try_wait().map(|status| status.is_some()).map_err(|cause| How::Refused(cause.to_string()))
+        self.group.has_ended().map_err(|cause| How::Refused(cause.to_string()))
     }
 
     /// Ends it; what became of it is `how`, or its own end where that comes first.
@@ -169,13 +151,13 @@ impl Process {
         if matches!(how, How::Silent) && self.farewell() {
             return self.ended();
         }
-        let _ = self.kill();
+        let _ = self.group.end();
         how
     }
 
     /// Its own end, and that of its group.
     fn ended(&mut self) -> How {
-        self.kill().map_or_else(|cause| How::Refused(cause.to_string()), How::Ended)
+        self.group.end().map_or_else(|cause| How::Refused(cause.to_string()), How::Ended)
     }
 
     /// Whether a worker that has closed its pipes ends by itself.
@@ -191,20 +173,6 @@ impl Process {
         false
     }
 
-    /// Ends the worker and its group, once: when it is reaped, their numbers may be given to others.
-    fn kill(&mut self) -> io::Result<ExitStatus> {
-        if !self.is_over {
-            self.is_over = true;
-            #[cfg(unix)]
-            {
-                let group = rustix::process::Pid::from_child(&self.child);
-                let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
-            }
-            let _ = self.child.kill();
-        }
-        self.child.wait()
-    }
-
     /// The end of what it printed.
     pub fn printed(&self) -> String {
         let end = Instant::now() + LOOK;
@@ -217,12 +185,6 @@ impl Process {
             drop(printed);
             std::thread::sleep(Duration::from_millis(1));
         }
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        let _ = self.kill();
     }
 }
 
@@ -250,10 +212,10 @@ impl Deadline {
 }
 
 /// Reads what a worker prints, so that it never waits for a reader, and keeps the end.
-fn keep_printed(mut stderr: ChildStderr) -> Arc<Mutex<Printed>> {
+fn keep_printed(mut stderr: ChildStderr) -> io::Result<Arc<Mutex<Printed>>> {
     let printed = Arc::new(Mutex::new(Printed::default()));
     let shared = Arc::clone(&printed);
-    std::thread::spawn(move || {
+    std::thread::Builder::new().spawn(move || {
         let mut chunk = [0; 1024];
         let keep = |bytes: &[u8]| {
             let mut printed = shared.lock().unwrap_or_else(PoisonError::into_inner);
@@ -265,8 +227,8 @@ fn keep_printed(mut stderr: ChildStderr) -> Arc<Mutex<Printed>> {
             keep(&chunk[..count]);
         }
         shared.lock().unwrap_or_else(PoisonError::into_inner).is_over = true;
-    });
-    printed
+    })?;
+    Ok(printed)
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! What the two processes say to each other: frames of a length and a message, numbers with all their bits.
 
-use std::ffi::CString;
+use std::ffi::{CStr, CString, OsString, c_char};
 use std::io::{self, Read, Write};
-use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -35,10 +34,10 @@ pub(super) fn build() -> String {
 pub(super) struct Opening {
     /// The process that asks: when it is gone, the worker goes.
     pub host: u32,
-    /// The library, unpacked.
-    pub library: PathBuf,
+    /// The library, unpacked: a path, which need not be UTF-8.
+    pub library: OsString,
     /// What errors call it: its path into the archive.
-    pub shown: PathBuf,
+    pub shown: OsString,
     /// Address space that the worker may take, bytes.
     pub memory: Option<u64>,
 }
@@ -196,15 +195,46 @@ impl Reply {
     }
 }
 
-/// What a function gave besides its status.
+/// What a function gave besides its status. None takes more memory than bytes of its message.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Given {
     Nothing,
     Reals(Vec<f64>),
-    Integers(Vec<i32>),
-    Texts(Vec<CString>),
+    /// Little-endian: as numbers, small ones would travel in one byte each.
+    Integers(Vec<[u8; 4]>),
+    Texts(Texts),
     Bytes(Vec<u8>),
     Number(u64),
+}
+
+impl Given {
+    /// Integers.
+    pub fn integers(values: Vec<i32>) -> Self {
+        Self::Integers(values.into_iter().map(i32::to_le_bytes).collect())
+    }
+}
+
+/// Texts one behind the other, each with a zero at its end: however many, they take as many bytes as they have.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Texts(Vec<u8>);
+
+impl<'a> FromIterator<&'a CStr> for Texts {
+    fn from_iter<I: IntoIterator<Item = &'a CStr>>(texts: I) -> Self {
+        Self(texts.into_iter().flat_map(CStr::to_bytes_with_nul).copied().collect())
+    }
+}
+
+impl Texts {
+    /// Whether they are `count`, and whole.
+    pub fn are(&self, count: usize) -> bool {
+        self.0.last().is_none_or(|&last| last == 0) && self.0.iter().filter(|&&byte| byte == 0).count() == count
+    }
+
+    /// Pointers to them, as C wants them; to those only that are whole.
+    pub fn pointers(&self) -> impl Iterator<Item = *const c_char> {
+        let texts = self.0.split_inclusive(|&byte| byte == 0);
+        texts.filter_map(|text| CStr::from_bytes_with_nul(text).ok()).map(CStr::as_ptr)
+    }
 }
 
 /// A message as it travels.
@@ -309,7 +339,7 @@ mod tests {
     fn an_answer_may_be_as_long_as_its_call_lets_it() {
         let references = vec![0; 1000];
         let reals = Given::Reals(vec![f64::MIN_POSITIVE; 1000]);
-        let integers = || Given::Integers(vec![i32::MIN; 1000]);
+        let integers = || Given::integers(vec![i32::MIN; 1000]);
         let answer = |given| frame(&Reply::Done { call: u64::MAX, status: i32::MIN, given }).unwrap();
         let is_taken = |mut bytes, request: Request| {
             unframe::<Reply>(&mut bytes, request.longest_answer()).is_ok_and(|reply| reply.is_some())
@@ -320,6 +350,36 @@ mod tests {
         assert!(is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 20 }));
         assert!(!is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 10 }));
         assert!(!is_taken(state(1 << 20), Request::Free));
+    }
+
+    #[test]
+    fn what_was_not_asked_for_takes_no_more_memory_than_its_message() {
+        let count = 1 << 20;
+        let message = |given| frame(&Reply::Done { call: 1, status: 0, given }).unwrap().len();
+        assert!(message(Given::integers(vec![0; count])) > size_of::<[u8; 4]>() * count);
+        assert!(message(Given::Reals(vec![0.0; count])) > size_of::<f64>() * count);
+        let texts: Texts = std::iter::repeat_n(c"", count).collect();
+        assert_eq!(texts.0.len(), count, "nothing but the texts themselves");
+        assert!(texts.are(count) && !texts.are(1));
+    }
+
+    #[test]
+    fn texts_that_are_not_whole_are_none() {
+        let texts: Texts = [c"one", c"", c"three"].into_iter().collect();
+        assert!(texts.are(3) && texts.pointers().count() == 3);
+        assert!(Texts::default().are(0));
+        let cut = Texts(b"one\0tw".to_vec());
+        assert!(!cut.are(1) && !cut.are(2) && cut.pointers().count() == 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn paths_that_are_not_utf_8_arrive_as_they_are() {
+        use std::os::unix::ffi::OsStringExt as _;
+        let path = OsString::from_vec(b"/tmp/\xff/Toy.so".to_vec());
+        let opening = Opening { host: 1, library: path.clone(), shown: path.clone(), memory: None };
+        let found = receive::<Opening>(&mut &*frame(&opening).unwrap()).unwrap().unwrap();
+        assert_eq!((&found.library, &found.shown), (&path, &path));
     }
 
     #[test]

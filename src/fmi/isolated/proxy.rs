@@ -65,7 +65,7 @@ unsafe extern "C" fn get_string(c: fmi2Component, vr: *const u32, n: usize, valu
     let (remote, references, values) = unsafe { (of(c), copied(vr, n), of_length(values, n)) };
     let (status, given) = remote.call(name, &Request::GetString { references });
     match given {
-        Given::Texts(texts) if texts.len() == n => {
+        Given::Texts(texts) if texts.are(n) => {
             for (value, text) in values.iter_mut().zip(remote.keep(texts)) {
                 *value = text;
             }

@@ -1,6 +1,6 @@
 //! What stands behind the component of an isolated instance: its worker, and what has become of it.
 
-use std::ffi::{CString, c_char};
+use std::ffi::c_char;
 use std::path::{Path, PathBuf};
 use std::ptr;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use fmi2_abi::{fmi2Component, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use super::Bounds;
 use super::ending::{Ending, How};
 use super::process::Process;
-use super::protocol::{Given, Request};
+use super::protocol::{Given, Request, Texts};
 use crate::fmi::logging::{Environment, LogRecord};
 
 /// An instance in a worker.
@@ -26,7 +26,7 @@ pub(super) struct Remote {
     /// Whether the last call was not passed on.
     is_refused: bool,
     /// The Strings that the last call gave.
-    texts: Vec<CString>,
+    texts: Texts,
 }
 
 /// What has become of an instance.
@@ -61,7 +61,7 @@ pub(in crate::fmi) unsafe fn verdict(component: fmi2Component) -> Option<Verdict
 
 impl Remote {
     pub fn new(process: Process, path: &Path, bounds: Bounds, name: String, environment: Arc<Environment>) -> Self {
-        let (path, time, texts) = (path.to_owned(), None, Vec::new());
+        let (path, time, texts) = (path.to_owned(), None, Texts::default());
         Self { process, path, bounds, name, environment, time, fate: Fate::Alive, is_refused: false, texts }
     }
 
@@ -154,9 +154,9 @@ impl Remote {
     }
 
     /// Keeps texts until the next ones; pointers to them.
-    pub fn keep(&mut self, texts: Vec<CString>) -> impl Iterator<Item = *const c_char> {
+    pub fn keep(&mut self, texts: Texts) -> impl Iterator<Item = *const c_char> {
         self.texts = texts;
-        self.texts.iter().map(|text| text.as_ptr())
+        self.texts.pointers()
     }
 
     /// Ends a worker that has sent `what`.
@@ -190,7 +190,8 @@ impl Number for f64 {
 
 impl Number for i32 {
     fn of(given: Given) -> Option<Vec<Self>> {
-        if let Given::Integers(values) = given { Some(values) } else { None }
+        let Given::Integers(values) = given else { return None };
+        Some(values.into_iter().map(i32::from_le_bytes).collect())
     }
 }
 

@@ -138,10 +138,10 @@ impl Session {
                     given(0.0, vr.len(), Given::Reals, |to| (f.get_real)(c, vr.as_ptr(), vr.len(), to))
                 }
                 Request::GetInteger { references: vr } => {
-                    given(0, vr.len(), Given::Integers, |to| (f.get_integer)(c, vr.as_ptr(), vr.len(), to))
+                    given(0, vr.len(), Given::integers, |to| (f.get_integer)(c, vr.as_ptr(), vr.len(), to))
                 }
                 Request::GetBoolean { references: vr } => {
-                    given(0, vr.len(), Given::Integers, |to| (f.get_boolean)(c, vr.as_ptr(), vr.len(), to))
+                    given(0, vr.len(), Given::integers, |to| (f.get_boolean)(c, vr.as_ptr(), vr.len(), to))
                 }
                 Request::GetString { references: vr } => {
                     given(ptr::null(), vr.len(), texts, |to| (f.get_string)(c, vr.as_ptr(), vr.len(), to))
@@ -159,7 +159,7 @@ impl Session {
                 }
                 Request::RealStatus { kind } => given(0.0, 1, Given::Reals, |to| (f.get_real_status)(c, *kind, to)),
                 Request::BooleanStatus { kind } => {
-                    given(0, 1, Given::Integers, |to| (f.get_boolean_status)(c, *kind, to))
+                    given(0, 1, Given::integers, |to| (f.get_boolean_status)(c, *kind, to))
                 }
                 _ => (fmi2Error, Given::Nothing),
             }
@@ -238,11 +238,9 @@ fn given<T: Clone>(
 
 /// Copies strings of the FMU; NULL counts as empty.
 fn texts(pointers: Vec<*const c_char>) -> Given {
-    let copied = |pointer: *const c_char| {
-        // SAFETY: the FMU returns zero-terminated strings that live until the next call.
-        if pointer.is_null() { CString::default() } else { unsafe { CStr::from_ptr(pointer) }.to_owned() }
-    };
-    Given::Texts(pointers.into_iter().map(copied).collect())
+    // SAFETY: the FMU returns zero-terminated strings that live until the next call.
+    let text = |pointer: *const c_char| if pointer.is_null() { c"" } else { unsafe { CStr::from_ptr(pointer) } };
+    Given::Texts(pointers.into_iter().map(text).collect())
 }
 
 fn pointers(texts: &[CString]) -> Vec<*const c_char> {

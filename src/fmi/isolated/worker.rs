@@ -25,7 +25,7 @@ pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> i
     if let Err(cause) = confine::begin(&opening) {
         return say(&Reply::Unable(cause.to_string()));
     }
-    let (library, functions) = match library::load(&opening.library, &opening.shown) {
+    let (library, functions) = match library::load(opening.library.as_ref(), opening.shown.as_ref()) {
         Ok(loaded) => loaded,
         Err(error) => return say(&Reply::Refused(error.to_string())),
     };

@@ -1,4 +1,6 @@
 //! The elements of `modelDescription.xml` as they stand: every attribute an optional string, unknown ones skipped.
+//!
+//! What few elements have is boxed: an element of a few letters must not take much more memory than text.
 
 use serde::Deserialize;
 
@@ -67,7 +69,7 @@ pub(super) struct Unit {
     #[serde(rename = "@name")]
     pub name: Option<String>,
     #[serde(rename = "BaseUnit")]
-    pub base: Option<BaseUnit>,
+    pub base: Option<Box<BaseUnit>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -105,9 +107,9 @@ pub(super) struct SimpleType {
     #[serde(rename = "@name")]
     pub name: Option<String>,
     #[serde(rename = "Real")]
-    pub real: Option<Attributes>,
+    pub real: Option<Box<Attributes>>,
     #[serde(rename = "Integer")]
-    pub integer: Option<Attributes>,
+    pub integer: Option<Box<Attributes>>,
     #[serde(rename = "Enumeration")]
     pub enumeration: Option<Items>,
 }
@@ -173,19 +175,19 @@ pub(super) struct ScalarVariable {
     #[serde(rename = "@initial")]
     pub initial: Option<String>,
     #[serde(rename = "Real")]
-    pub real: Option<Attributes>,
+    pub real: Option<Box<Attributes>>,
     #[serde(rename = "Integer")]
-    pub integer: Option<Attributes>,
+    pub integer: Option<Box<Attributes>>,
     #[serde(rename = "Boolean")]
-    pub boolean: Option<Attributes>,
+    pub boolean: Option<Box<Attributes>>,
     #[serde(rename = "String")]
-    pub string: Option<Attributes>,
+    pub string: Option<Box<Attributes>>,
     #[serde(rename = "Enumeration")]
-    pub enumeration: Option<Attributes>,
+    pub enumeration: Option<Box<Attributes>>,
 }
 
 /// Attributes of the type elements, of variables and of type definitions alike.
-#[derive(Debug, Default, Clone, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 pub(super) struct Attributes {
     #[serde(rename = "@declaredType")]
     pub declared_type: Option<String>,

@@ -1,28 +1,16 @@
 //! One `ScalarVariable`: defaults of the standard, attributes of its type definition, base type.
 
-use std::collections::HashMap;
 use std::str::FromStr;
+use std::sync::Arc;
 
+use super::types::Types;
 use super::{
     Causality, Error, Initial, Kind, Result, Variability, Variable, attribute, boolean, integer, missing, optional,
     raw, real,
 };
 
-/// Type definitions by name; of those that share one, the first.
-pub(super) struct Types<'a>(HashMap<&'a str, &'a raw::SimpleType>);
-
-impl<'a> Types<'a> {
-    pub fn of(types: &'a [raw::SimpleType]) -> Self {
-        Self(types.iter().rev().filter_map(|simple| Some((simple.name.as_deref()?, simple))).collect())
-    }
-
-    fn get(&self, name: &str) -> Option<&'a raw::SimpleType> {
-        self.0.get(name).copied()
-    }
-}
-
 /// Reads the variable at `position` (from 0).
-pub(super) fn convert(raw: raw::ScalarVariable, position: usize, types: &Types<'_>) -> Result<Variable> {
+pub(super) fn convert(raw: raw::ScalarVariable, position: usize, types: &Types) -> Result<Variable> {
     let name = raw.name.clone().ok_or_else(|| missing(&format!("ScalarVariable {}", position + 1), "name"))?;
     let place = format!("variable \"{name}\"");
     let reference = raw.value_reference.as_deref().ok_or_else(|| missing(&place, "valueReference"))?;
@@ -55,18 +43,20 @@ fn default_initial(causality: Causality, variability: Variability) -> Option<Ini
 }
 
 /// The base type, and the name of the type definition.
-fn kind(raw: raw::ScalarVariable, place: &str, types: &Types<'_>) -> Result<(Kind, Option<String>)> {
+fn kind(raw: raw::ScalarVariable, place: &str, types: &Types) -> Result<(Kind, Option<String>)> {
     let raw::ScalarVariable { real: as_real, integer: as_integer, boolean: as_boolean, string, enumeration, .. } = raw;
     let (kind, declared) = if let Some(own) = as_real {
-        let all = with_type(own, types, |simple| simple.real.as_ref());
+        let inherited = types.get(own.declared_type.as_deref());
         let number = |name, text: &Option<String>| optional(text.as_deref(), |text| real(place, name, text));
-        let (start, min, max) = (number("start", &all.start)?, number("min", &all.min)?, number("max", &all.max)?);
-        (Kind::Real { unit: all.unit, start, min, max }, all.declared_type)
+        let (start, min, max) = (number("start", &own.start)?, number("min", &own.min)?, number("max", &own.max)?);
+        let [least, most] = inherited.map_or([None; 2], |it| it.real);
+        let unit = own.unit.map(Arc::from).or_else(|| inherited.and_then(|it| it.unit.clone()));
+        (Kind::Real { unit, start, min: min.or(least), max: max.or(most) }, own.declared_type)
     } else if let Some(own) = as_integer {
-        let all = with_type(own, types, |simple| simple.integer.as_ref());
         let number = |name, text: &Option<String>| optional(text.as_deref(), |text| integer(place, name, text));
-        let (start, min, max) = (number("start", &all.start)?, number("min", &all.min)?, number("max", &all.max)?);
-        (Kind::Integer { start, min, max }, all.declared_type)
+        let (start, min, max) = (number("start", &own.start)?, number("min", &own.min)?, number("max", &own.max)?);
+        let [least, most] = types.get(own.declared_type.as_deref()).map_or([None; 2], |it| it.integer);
+        (Kind::Integer { start, min: min.or(least), max: max.or(most) }, own.declared_type)
     } else if let Some(own) = as_boolean {
         let start = optional(own.start.as_deref(), |text| boolean(place, "start", text))?;
         (Kind::Boolean { start }, own.declared_type)
@@ -83,28 +73,10 @@ fn kind(raw: raw::ScalarVariable, place: &str, types: &Types<'_>) -> Result<(Kin
     Ok((kind, declared))
 }
 
-/// The variable's own attributes, completed by those of its type definition.
-fn with_type(
-    own: raw::Attributes,
-    types: &Types<'_>,
-    pick: impl Fn(&raw::SimpleType) -> Option<&raw::Attributes>,
-) -> raw::Attributes {
-    let inherited = own.declared_type.as_deref().and_then(|name| types.get(name)).and_then(pick);
-    let Some(inherited) = inherited.cloned() else { return own };
-    raw::Attributes {
-        unit: own.unit.or(inherited.unit),
-        min: own.min.or(inherited.min),
-        max: own.max.or(inherited.max),
-        ..own
-    }
-}
-
-fn require_enumeration(declared: &str, place: &str, types: &Types<'_>) -> Result<()> {
-    if types.get(declared).is_some_and(|simple| simple.enumeration.is_some()) {
+fn require_enumeration(declared: &str, place: &str, types: &Types) -> Result<()> {
+    if types.get(Some(declared)).is_some_and(|simple| simple.is_enumeration) {
         return Ok(());
     }
-    let mut known: Vec<_> = types.0.iter().filter(|(_, simple)| simple.enumeration.is_some()).map(|it| *it.0).collect();
-    known.sort_unstable();
-    let allowed = format!("an enumeration of TypeDefinitions ({})", known.join(", "));
+    let allowed = format!("an enumeration of TypeDefinitions ({})", types.enumerations().join(", "));
     Err::<(), Error>(attribute(place, "declaredType", declared, allowed))
 }

@@ -1,21 +1,22 @@
 //! The master's side: starts the worker, exchanges a message a communication step, and ends it.
 
-use std::io::{self, BufReader, BufWriter, Read as _};
+use std::io::{self, BufReader, BufWriter};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
-use tempfile::TempDir;
 use thiserror::Error;
 
 use super::protocol::{Job, Ramp, Reply, receive, send};
+use crate::children::Group;
+use crate::ngspice::drain::Drain;
+use crate::temporary::TemporaryFolder;
 
 /// Verb of the command-line tool that runs the worker.
 pub const WORKER_VERB: &str = "ngspice-worker";
 /// Bytes of the worker's stderr that are kept.
-const KEPT_STDERR: u64 = 4096;
+const KEPT_STDERR: usize = 4096;
 
 /// Why ngspice does not go on.
 #[derive(Debug, Error)]
@@ -57,14 +58,14 @@ pub enum LiveError {
 
 /// A running worker.
 pub struct Worker {
-    child: Child,
+    group: Group,
     requests: BufWriter<ChildStdin>,
     replies: Receiver<io::Result<Option<Reply>>>,
-    stderr: Option<JoinHandle<String>>,
+    stderr: Drain,
     limit: Duration,
     vectors: usize,
     /// Working folder and home of the worker: no start-up file of ngspice lies there.
-    _folder: TempDir,
+    _folder: TemporaryFolder,
 }
 
 impl Worker {
@@ -74,22 +75,23 @@ impl Worker {
     /// If the program cannot be started.
     pub fn start(program: &Path, job: &Job, limit: Duration) -> Result<Self, LiveError> {
         let fail = |cause| LiveError::Start { program: program.to_owned(), cause };
-        let folder = tempfile::tempdir().map_err(fail)?;
-        let mut child = Command::new(program)
+        let folder = TemporaryFolder::new("videg-ngspice-").map_err(fail)?;
+        let mut command = Command::new(program);
+        command
             .arg(WORKER_VERB)
             .current_dir(folder.path())
             .env("HOME", folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .map_err(fail)?;
+            .stderr(Stdio::piped());
+        let mut group = Group::start(&mut command).map_err(fail)?;
+        let child = &mut group.child;
         let missing = || fail(io::Error::other("no pipe"));
         let requests = BufWriter::new(child.stdin.take().ok_or_else(missing)?);
-        let replies = read_replies(child.stdout.take().ok_or_else(missing)?);
-        let stderr = Some(read_stderr(child.stderr.take().ok_or_else(missing)?));
+        let replies = read_replies(child.stdout.take().ok_or_else(missing)?).map_err(fail)?;
+        let stderr = Drain::new(child.stderr.take().ok_or_else(missing)?, KEPT_STDERR).map_err(fail)?;
         let vectors = job.vectors.len();
-        let mut worker = Self { child, requests, replies, stderr, limit, vectors, _folder: folder };
+        let mut worker = Self { group, requests, replies, stderr, limit, vectors, _folder: folder };
         // A worker that is gone already is found out by the first step.
         let _ = send(&mut worker.requests, job);
         Ok(worker)
@@ -121,25 +123,17 @@ impl Worker {
 
     fn died(&mut self, from: f64, to: f64) -> LiveError {
         // It has closed its stdout, but may still be about to end.
-        let _ = self.child.kill();
-        let how = self.child.wait().map_or_else(|cause| cause.to_string(), |status| status.to_string());
-        let said = self.stderr.take().and_then(|thread| thread.join().ok()).unwrap_or_default();
+        let how = self.group.end().map_or_else(|cause| cause.to_string(), |status| status.to_string());
+        let said = self.stderr.text();
         let said = said.trim().lines().fold(String::new(), |all, line| all + ": " + line);
         LiveError::Died { from, to, how, said }
     }
 }
 
-impl Drop for Worker {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
 /// Reads replies in a thread of its own, because a pipe cannot be read with a time limit. At most one waits.
-fn read_replies(stdout: ChildStdout) -> Receiver<io::Result<Option<Reply>>> {
+fn read_replies(stdout: ChildStdout) -> io::Result<Receiver<io::Result<Option<Reply>>>> {
     let (sender, receiver) = sync_channel(1);
-    std::thread::spawn(move || {
+    std::thread::Builder::new().spawn(move || {
         let mut reader = BufReader::new(stdout);
         loop {
             let reply = receive(&mut reader);
@@ -148,16 +142,6 @@ fn read_replies(stdout: ChildStdout) -> Receiver<io::Result<Option<Reply>>> {
                 break;
             }
         }
-    });
-    receiver
-}
-
-/// Keeps the beginning of what the worker says on stderr and drops the rest, so that it never waits for a reader.
-fn read_stderr(mut stderr: ChildStderr) -> JoinHandle<String> {
-    std::thread::spawn(move || {
-        let mut kept = Vec::new();
-        let _ = stderr.by_ref().take(KEPT_STDERR).read_to_end(&mut kept);
-        let _ = io::copy(&mut stderr, &mut io::sink());
-        String::from_utf8_lossy(&kept).into_owned()
-    })
+    })?;
+    Ok(receiver)
 }

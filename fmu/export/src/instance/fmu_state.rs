@@ -1,11 +1,13 @@
 //! Saving, restoring and serialising FMU states.
 
 use super::co_simulation::LastStep;
+use super::lifecycle::fault;
 use super::{Call, Core, Instance};
 use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::serialize::{StateError, StateReader, StateWriter, seal, unseal};
 use crate::slave::{Experiment, Slave};
+use fmi2_abi::{fmi2OK, fmi2Pending};
 
 impl<S: Slave> Instance<S> {
     /// `fmi2GetFMUstate`: a new state if `token` is NULL, else that state is overwritten. Returns its token.
@@ -83,7 +85,7 @@ impl<S: Slave> Core<S> {
         let number = from.u8()?;
         let state =
             CallState::from_number(number).ok_or_else(|| StateError::Invalid(format!("{number} is no call state")))?;
-        Ok(Self {
+        let core = Self {
             state,
             exchange: from.bool()?,
             time: from.f64()?,
@@ -99,6 +101,28 @@ impl<S: Slave> Core<S> {
             },
             last_step: LastStep { status: from.i32()?, successful_time: from.option_f64()?, terminated: from.bool()? },
             model: S::read_state(from)?,
-        })
+        };
+        core.check()?;
+        Ok(core)
+    }
+
+    /// What no call can lead to is refused: a time that is no number compares with none, and so would switch checks of later
+    /// calls off.
+    fn check(&self) -> Result<(), StateError> {
+        let invalid = |text: String| Err(StateError::Invalid(text));
+        if !self.time.is_finite() {
+            return invalid(format!("time = {} s: it must be finite", self.time));
+        }
+        if let Some((argument, value, bound)) = self.experiment.as_ref().and_then(fault) {
+            return invalid(format!("{argument} = {value}: {bound}"));
+        }
+        let LastStep { status, successful_time, .. } = self.last_step;
+        if let Some(time) = successful_time.filter(|time| !time.is_finite()) {
+            return invalid(format!("last successful time = {time} s: it must be finite"));
+        }
+        if !(fmi2OK..=fmi2Pending).contains(&status) {
+            return invalid(format!("{status} is no status of a step"));
+        }
+        Ok(())
     }
 }

@@ -6,6 +6,20 @@ use crate::error::CallError;
 use crate::logger::LogCategory;
 use crate::slave::{Experiment, Slave};
 
+/// What is wrong with an experiment: the argument, its value and the bound.
+pub(super) fn fault(experiment: &Experiment) -> Option<(&'static str, f64, String)> {
+    let start = experiment.start_time;
+    if !start.is_finite() {
+        return Some(("startTime", start, "it must be finite".into()));
+    }
+    // An infinite stop time is a harmless way to say that there is none.
+    if let Some(stop) = experiment.stop_time.filter(|t| t.is_nan() || *t < start) {
+        return Some(("stopTime", stop, format!("it must not lie before {start} s")));
+    }
+    let tolerance = experiment.tolerance.filter(|it| !(it.is_finite() && *it > 0.0))?;
+    Some(("tolerance", tolerance, "it must be positive".into()))
+}
+
 impl<S: Slave> Instance<S> {
     /// `fmi2SetDebugLogging`. Without names, all categories are meant. An unknown name earns a warning and no more:
     /// the computation can go on.
@@ -25,23 +39,10 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2SetupExperiment`
     pub(crate) fn setup_experiment(&mut self, experiment: Experiment) -> Call {
-        let refuse = |argument, value: f64, bound: &str| {
-            Err(CallError::BadArgument { argument, value: value.to_string(), bound: bound.to_owned() })
-        };
-        let start = experiment.start_time;
-        if !start.is_finite() {
-            return refuse("startTime", start, "it must be finite");
+        if let Some((argument, value, bound)) = fault(&experiment) {
+            return Err(CallError::BadArgument { argument, value: value.to_string(), bound });
         }
-        // An infinite stop time is a harmless way to say that there is none.
-        if let Some(stop) = experiment.stop_time.filter(|t| t.is_nan() || *t < start) {
-            return refuse("stopTime", stop, &format!("it must not lie before {start} s"));
-        }
-        if let Some(tolerance) = experiment.tolerance
-            && !(tolerance.is_finite() && tolerance > 0.0)
-        {
-            return refuse("tolerance", tolerance, "it must be positive");
-        }
-        self.core.time = start;
+        self.core.time = experiment.start_time;
         self.core.experiment = Some(experiment);
         self.core.dirty = true;
         Ok(self.core.model.setup_experiment(&experiment, &self.logger)?)
