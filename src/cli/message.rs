@@ -1,5 +1,7 @@
 //! Text from elsewhere on its way to a terminal: no control characters, and of an error one line that can be read.
 
+use std::io::Write as _;
+
 /// Longest error that is shown, characters.
 const LONGEST: usize = 2000;
 
@@ -21,6 +23,22 @@ pub fn plain(text: &str) -> String {
     text.chars().map(spell).collect()
 }
 
+/// The same of a JSON document, which stays one: of its own it has ends of lines and no others.
+pub fn plain_json(json: &str) -> String {
+    let spell = |c: char| if c.is_control() && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    json.chars().map(spell).collect()
+}
+
+/// Says `message` on stderr in one line. Where nobody listens any more, the program goes on all the same.
+pub fn say(message: &str) {
+    show(&format!("videg: {}", one_line(message)));
+}
+
+/// Writes a line of this project's own on stderr, as it is.
+pub fn show(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,6 +48,16 @@ mod tests {
         assert_eq!(one_line("a\n  b\r\n\n\u{1b}[2Jc\u{7}"), "a | b | \\u{1b}[2Jc\\u{7}");
         let long = one_line(&"x".repeat(LONGEST + 7));
         assert!(long.ends_with("x... (and 7 more characters)"), "{long}");
+    }
+
+    #[test]
+    fn a_document_without_control_characters_says_the_same() {
+        let text = "a\u{7f}\u{9b}2J\u{1b}\nb";
+        let json = serde_json::to_string_pretty(&[text]).unwrap();
+        assert!(json.contains('\u{9b}'), "the writer spells them itself by now");
+        let shown = plain_json(&json);
+        assert!(!shown.contains(|c: char| c.is_control() && c != '\n'), "{shown:?}");
+        assert_eq!(serde_json::from_str::<[String; 1]>(&shown).unwrap(), [text]);
     }
 
     #[test]

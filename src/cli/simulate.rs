@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let json = serde_json::to_string_pretty(&result)?;
     output::write(&folder.join("result.json"), &json)?;
     if options.json {
-        output::print(&json)?;
+        output::print_json(&json)?;
     } else {
         output::print(&text(&scenario, &mechanics, &files))?;
     }
