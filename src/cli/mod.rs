@@ -37,6 +37,7 @@ mod ssp;
 mod streams;
 mod sweep;
 mod sweep_options;
+mod time_series;
 mod worker;
 
 use std::io::ErrorKind;
