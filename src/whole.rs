@@ -121,13 +121,29 @@ impl From<LockError> for io::Error {
 /// Another process that writes it; a refusal of the file system.
 pub fn lock(part: &Path) -> Result<File, LockError> {
     loop {
-        let mut options = OpenOptions::new();
-        let file = options.read(true).write(true).create(true).truncate(false).open(part).map_err(LockError::Open)?;
+        let file = open(part, true).map_err(LockError::Open)?;
         // Who had it locked before may have given it its last name in between.
         if own(&file, part)? {
             return Ok(file);
         }
     }
+}
+
+/// Opens what stands at `part`, which is made with `make`, to read and to write. A symbolic link is refused: somebody may
+/// have put it there to have written what it leads to.
+fn open(part: &Path, make: bool) -> io::Result<File> {
+    const LINK: &str = "it is a symbolic link, through which nothing is written; remove it";
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(make).truncate(false);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags(rustix::fs::OFlags::NOFOLLOW.bits().cast_signed());
+    }
+    if cfg!(not(unix)) && part.is_symlink() {
+        return Err(io::Error::other(LINK));
+    }
+    options.open(part).map_err(|cause| if part.is_symlink() { io::Error::new(cause.kind(), LINK) } else { cause })
 }
 
 /// Locks `file`, which was opened at `part`; whether it is still there.
@@ -150,7 +166,7 @@ pub fn own(file: &File, part: &Path) -> Result<bool, LockError> {
 /// # Errors
 /// A process that writes it; no locks; a refusal of the file system.
 pub fn remove_abandoned(part: &Path) -> io::Result<()> {
-    let file = OpenOptions::new().read(true).write(true).open(part)?;
+    let file = open(part, false)?;
     file.try_lock()?;
     if is_at(&file, part)? { std::fs::remove_file(part) } else { Ok(()) }
 }
@@ -172,7 +188,7 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt as _;
     let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
     let own = identity(file.metadata()?);
-    match path.metadata() {
+    match path.symlink_metadata() {
         Ok(there) => Ok(identity(there) == own),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(error),
@@ -246,6 +262,29 @@ mod tests {
         assert!(error.to_string().contains("another process is writing it"), "{error}");
         drop(first);
         assert!(WholeFile::create(&path).is_ok());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn nothing_is_written_through_a_link_that_somebody_has_put_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, other] = ["result.json", "other"].map(|name| folder.path().join(name));
+        fs::write(&other, "of somebody else").unwrap();
+        std::os::unix::fs::symlink(&other, partial(&path)).unwrap();
+        let said = write(&path, "new").unwrap_err().to_string();
+        assert_eq!(said, "it is a symbolic link, through which nothing is written; remove it");
+        assert!(remove_abandoned(&partial(&path)).is_err());
+        // One that leads nowhere makes no file there.
+        fs::remove_file(partial(&path)).unwrap();
+        std::os::unix::fs::symlink(folder.path().join("nothing"), partial(&path)).unwrap();
+        write(&path, "new").unwrap_err();
+        assert_eq!(names(folder.path()), ["other", "result.json.part"]);
+        assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
+        // Under the last name, the link goes and what it leads to stays.
+        fs::remove_file(partial(&path)).unwrap();
+        std::os::unix::fs::symlink(&other, &path).unwrap();
+        write(&path, "new").unwrap();
+        assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
     }
 
     #[test]

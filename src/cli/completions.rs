@@ -3,7 +3,7 @@
 use clap::Args;
 use clap_complete::Shell;
 
-use super::{Verdict, command};
+use super::{Verdict, command, output};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -16,6 +16,6 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command(), "videg", &mut script);
-    std::io::Write::write_all(&mut std::io::stdout(), &script)?;
+    output::put(&String::from_utf8_lossy(&script))?;
     Ok(Verdict::Passed)
 }

@@ -11,7 +11,7 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate::{RunOutput, file_list, heading, text_table};
-use super::{Verdict, cosim_report, electrical, output, picture, settings};
+use super::{Verdict, cosim_report, electrical, output, picture, settings, time_series};
 use crate::cosim::{
     CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, EnergyBalance, FmuCircuit,
     HarvesterFmu, Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
@@ -130,7 +130,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
     if options.json {
-        output::print(&json)?;
+        output::print_json(&json)?;
     } else {
         output::print(&text(&finished, &files))?;
     }
@@ -155,6 +155,9 @@ pub fn couple(
     let circuits = circuits.map_err(|error| settings::placed(&of_circuit, error))?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
     let master = Master::new(harvester, circuits, &scenario, coupling)?;
+    // How many points an adaptive step takes is seen at the end.
+    let warning = coupling.tolerance.is_none().then(|| time_series::warning(&scenario, true)).flatten();
+    output::warn(warning.as_slice());
     let mut recorder = CsvRecorder::create(csv, true)?;
     let mut trace = Trace::new(scenario.until, picture::DETAIL.min(scenario.until));
     let mut bar = TimeBar::new(scenario.name.clone(), scenario.until);

@@ -150,7 +150,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     }
     let json = serde_json::to_string_pretty(&json(&finished, &written))?;
     output::write(&folder.join("result.json"), &json)?;
-    output::print(&if options.json { json } else { text(&finished, &written) })?;
+    if options.json {
+        output::print_json(&json)?;
+    } else {
+        output::print(&text(&finished, &written))?;
+    }
     output::warn(&finished.warnings);
     let failed = finished.checks.iter().any(Check::failed);
     Ok(if failed { Verdict::Failed } else { Verdict::Passed })

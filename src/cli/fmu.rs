@@ -8,7 +8,6 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
-use super::message::plain;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
@@ -87,7 +86,7 @@ fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bo
     waiting.finish_and_clear();
     let fmus = built?;
     if json {
-        output::print(&serde_json::to_string_pretty(&Built { fmus })?)?;
+        output::print_json(&serde_json::to_string_pretty(&Built { fmus })?)?;
     } else {
         fmus.iter().try_for_each(|path| output::print(&path.display().to_string()))?;
     }
@@ -137,9 +136,9 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
         variables,
     };
     if json {
-        output::print(&serde_json::to_string_pretty(&info)?)?;
+        output::print_json(&serde_json::to_string_pretty(&info)?)?;
     } else {
-        output::print(&plain(&text(&info)))?;
+        output::print(&text(&info))?;
     }
     Ok(())
 }

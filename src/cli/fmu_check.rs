@@ -56,7 +56,7 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
     let (checks, end) = checks(&fmu);
     let passed = checks.iter().all(|check| check.passed);
     if json {
-        output::print(&serde_json::to_string_pretty(&Output { file, passed, checks })?)?;
+        output::print_json(&serde_json::to_string_pretty(&Output { file, passed, checks })?)?;
     } else {
         for check in &checks {
             let (mark, detail) = (if check.passed { "ok    " } else { "FAILED" }, &check.detail);

@@ -1,6 +1,8 @@
 //! Text from elsewhere on its way to a terminal: no characters that control it, reorder or hide text, and of an error one line
 //! that can be read.
 
+use std::io::Write as _;
+
 /// Longest error that is shown, characters.
 const LONGEST: usize = 2000;
 
@@ -29,6 +31,22 @@ fn is_hidden(c: char) -> bool {
     c.is_control() || formats.contains(&c) || ranges.iter().any(|range| range.contains(&c))
 }
 
+/// The same of a JSON document, which stays one: of its own it has ends of lines and no others.
+pub fn plain_json(json: &str) -> String {
+    let spell = |c: char| if is_hidden(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    json.chars().map(spell).collect()
+}
+
+/// Says `message` on stderr in one line. Where nobody listens any more, the program goes on all the same.
+pub fn say(message: &str) {
+    show(&format!("videg: {}", one_line(message)));
+}
+
+/// Writes a line of this project's own on stderr, as it is.
+pub fn show(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -45,6 +63,16 @@ mod tests {
         for c in "\u{200b}\u{200d}\u{200e}\u{200f}\u{2028}\u{2029}\u{202a}\u{202e}\u{2066}\u{2069}\u{feff}".chars() {
             assert_eq!(one_line(&format!("a{c}b")), format!("a{}b", c.escape_default()));
         }
+    }
+
+    #[test]
+    fn a_document_without_control_characters_says_the_same() {
+        let text = "a\u{7f}\u{9b}2J\u{1b}\n\u{202e}b";
+        let json = serde_json::to_string_pretty(&[text]).unwrap();
+        assert!(json.contains('\u{9b}'), "the writer spells them itself by now");
+        let shown = plain_json(&json);
+        assert!(!shown.contains(|c: char| is_hidden(c) && c != '\n'), "{shown:?}");
+        assert_eq!(serde_json::from_str::<[String; 1]>(&shown).unwrap(), [text]);
     }
 
     #[test]

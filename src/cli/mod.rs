@@ -1,7 +1,10 @@
 //! The command-line tool: one verb a file.
 //!
 //! Data goes to stdout, messages and progress to stderr. Exit codes: 0 done; 1 checked, and a check failed; 2 could not
-//! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal.
+//! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal. A reader of either
+//! that has gone changes none of them.
+// `output` and `message` write on both: these two panic where a reader has gone.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod completions;
 mod cosim;
@@ -35,8 +38,10 @@ mod ssp;
 mod streams;
 mod sweep;
 mod sweep_options;
+mod time_series;
 mod worker;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -123,10 +128,8 @@ pub fn main() -> ExitCode {
         Ok(Verdict::Failed) => ExitCode::from(1),
         // As shells say it.
         Ok(Verdict::Stopped(signal)) => ExitCode::from(128 + signal),
-        // A reader that has seen enough (`videg ... | head`) is no failure.
-        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("videg: {}", message::one_line(&format!("{error:#}")));
+            message::say(&format!("{error:#}"));
             ExitCode::from(2)
         }
     }
@@ -135,18 +138,13 @@ pub fn main() -> ExitCode {
 /// Help and version go out as they are; a mistake becomes one line, as every other error here.
 fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        let printed = error.print();
-        return if printed.is_ok() && !error.use_stderr() { ExitCode::SUCCESS } else { ExitCode::from(2) };
+        let is_shown = error.print().map_or_else(|error| error.kind() == ErrorKind::BrokenPipe, |()| true);
+        return if is_shown && !error.use_stderr() { ExitCode::SUCCESS } else { ExitCode::from(2) };
     }
     let text = error.to_string();
     let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
     let message = message::one_line(&message.join(" "));
-    eprintln!("videg: {} (see --help)", message.trim_start_matches("error: "));
+    message::say(&format!("{} (see --help)", message.trim_start_matches("error: ")));
     ExitCode::from(2)
-}
-
-fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    let kind = error.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
-    kind == Some(std::io::ErrorKind::BrokenPipe)
 }

@@ -1,11 +1,12 @@
 //! The folder into which a verb writes, what it writes there, and what it prints.
 
-use std::io::Write as _;
+use std::ffi::OsString;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
-use super::message::one_line;
+use super::message::{plain, plain_json, say};
 use crate::scenario::Scenario;
 use crate::whole;
 
@@ -24,16 +25,37 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     whole::write(path, content).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Prints `text` and an end of line on stdout.
-pub fn print(text: &str) -> std::io::Result<()> {
-    writeln!(std::io::stdout(), "{text}")
+/// Prints `text` and an end of line on stdout, with control characters spelled out, whoever has put them there.
+pub fn print(text: &str) -> io::Result<()> {
+    put(&(plain(text) + "\n"))
+}
+
+/// Prints the document `json` and an end of line on stdout.
+pub fn print_json(json: &str) -> io::Result<()> {
+    put(&(plain_json(json) + "\n"))
+}
+
+/// Writes `text` on stdout as it is. That a reader has seen enough (`videg ... | head`) is no failure, and changes nothing in
+/// how the verb ends.
+pub fn put(text: &str) -> io::Result<()> {
+    let mut stdout = io::stdout();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
 }
 
 /// The command as a user would type it.
 pub fn command_line() -> String {
-    let arguments = std::env::args().skip(1).map(|argument| {
-        let plain = argument.chars().all(|c| c.is_alphanumeric() || "-_.,=/:+".contains(c));
-        if plain { argument } else { format!("'{}'", argument.replace('\'', "'\\''")) }
+    typed(std::env::args_os().skip(1))
+}
+
+/// These arguments as a user would type them. They need be no text: a file may have any name.
+fn typed(arguments: impl Iterator<Item = OsString>) -> String {
+    let arguments = arguments.map(|argument| {
+        let argument = plain(&argument.to_string_lossy());
+        let is_bare = argument.chars().all(|c| c.is_alphanumeric() || "-_.,=/:+".contains(c));
+        if is_bare { argument } else { format!("'{}'", argument.replace('\'', "'\\''")) }
     });
     std::iter::once("videg".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
@@ -41,6 +63,21 @@ pub fn command_line() -> String {
 /// Shows warnings on stderr, one line each.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("videg: warning: {}", one_line(warning));
+        say(&format!("warning: {warning}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(unix)]
+    fn arguments_are_typed_as_they_were_given_even_those_that_are_no_text() {
+        use std::os::unix::ffi::OsStringExt as _;
+        let no_text = OsString::from_vec(b"k\xff.toml".to_vec());
+        let arguments = ["simulate", "--set", "a b=1", "it's", "\u{1b}[2J"].map(OsString::from);
+        let shown = typed(arguments.into_iter().chain([no_text]));
+        assert_eq!(shown, "videg simulate --set 'a b=1' 'it'\\''s' '\\u{1b}[2J' 'k\u{fffd}.toml'");
     }
 }

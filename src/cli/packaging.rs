@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
+use super::message::show;
 use super::progress::spinner;
 use crate::fmi::Fmu;
 use crate::package::{self, FMUS, Options};
@@ -12,7 +13,7 @@ use crate::package::{self, FMUS, Options};
 /// Shows what Cargo is at, where somebody may be looking.
 pub fn follow(line: &str) {
     if std::io::stderr().is_terminal() {
-        eprintln!("{line}");
+        show(line);
     }
 }
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::message::{plain, say};
 use crate::cosim::{CosimError, Observer, Row};
 use crate::crosscheck::Watch;
 use crate::{paper, sweep};
@@ -22,7 +23,7 @@ pub struct TimeBar {
 impl TimeBar {
     /// A bar up to `until`, s.
     pub fn new(message: impl Into<String>, until: f64) -> Self {
-        let bar = ProgressBar::new(PARTS).with_message(message.into());
+        let bar = ProgressBar::new(PARTS).with_message(plain(&message.into()));
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} %, {eta} left");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
         Self { bar, until, shown: 0 }
@@ -106,11 +107,11 @@ impl ItemBar {
 
     /// It is done.
     pub fn end(&self, name: &str, took: Duration) {
-        let line = format!("videg: {name} made in {:.1} s", took.as_secs_f64());
+        let line = format!("{name} made in {:.1} s", took.as_secs_f64());
         if self.bar.is_hidden() {
-            eprintln!("{line}");
+            say(&line);
         } else {
-            self.bar.println(line);
+            self.bar.println(format!("videg: {line}"));
         }
     }
 
@@ -145,7 +146,7 @@ pub struct RunBar {
 impl RunBar {
     /// A bar for the runs of `name`.
     pub fn new(name: String) -> Self {
-        let bar = ProgressBar::new(1).with_message(name);
+        let bar = ProgressBar::new(1).with_message(plain(&name));
         let style = ProgressStyle::with_template(
             "{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left",
         );

@@ -104,7 +104,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     files::summary(&folder.join("summary.csv"), book.findings())?;
     let json = serde_json::to_string_pretty(&book.json(arguments.quick, passed, &report))?;
     output::write(&folder.join("result.json"), &json)?;
-    output::print(&if arguments.json { json } else { book.text(&report) })?;
+    if arguments.json {
+        output::print_json(&json)?;
+    } else {
+        output::print(&book.text(&report))?;
+    }
     output::warn(&book.warnings);
     Ok(if passed { Verdict::Passed } else { Verdict::Failed })
 }

@@ -10,7 +10,7 @@ use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::simulate_contacts::Contacts;
 use super::simulate_law::{self, Law};
-use super::{Verdict, format, output, picture, settings, simulate_both};
+use super::{Verdict, format, output, picture, settings, simulate_both, time_series};
 use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
 use crate::fmi::Fmu;
 use crate::report::{self, Column, Report, Section};
@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let json = serde_json::to_string_pretty(&result)?;
     output::write(&folder.join("result.json"), &json)?;
     if options.json {
-        output::print(&json)?;
+        output::print_json(&json)?;
     } else {
         output::print(&text(&scenario, &mechanics, &files))?;
     }
@@ -118,6 +118,7 @@ pub fn follow(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Mech
     let (mechanical, electrical) = settings::split(fmu.description(), scenario)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
     let circuit: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
+    output::warn(time_series::warning(scenario, false).as_slice());
     let mut recorder = CsvRecorder::create(csv, false)?;
     let detail = picture::DETAIL.min(scenario.until);
     let mut trace = Trace::new(scenario.until, detail);

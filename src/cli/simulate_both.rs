@@ -64,7 +64,7 @@ pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Resu
     let json = serde_json::to_string_pretty(&Output { run, laws: &laws })?;
     output::write(&folder.join("result.json"), &json)?;
     if options.json {
-        output::print(&json)?;
+        output::print_json(&json)?;
     } else {
         let table = simulate_both_report::text_table(&laws);
         let words = simulate_both_report::words(scenario, &laws).join("\n");

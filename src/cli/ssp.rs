@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let warnings: Vec<_> = enumerations(&parameters, [&harvester_fmu, &circuit_fmu]).collect();
     if arguments.json {
         let packaged = Packaged { case: &scenario.name, ssp: &ssp, parameters: &parameters, warnings: &warnings };
-        output::print(&serde_json::to_string_pretty(&packaged)?)?;
+        output::print_json(&serde_json::to_string_pretty(&packaged)?)?;
     } else {
         output::print(&ssp.display().to_string())?;
     }

@@ -11,6 +11,7 @@ use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::isolation::IsolationOptions;
+use super::message::say;
 use super::progress::RunBar;
 use super::simulate::file_list;
 use super::sweep_options::What;
@@ -121,7 +122,7 @@ fn put_together(merge: &Merge) -> anyhow::Result<Verdict> {
     let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
     let elapsed_s = started.elapsed().as_secs_f64();
     if merge.json {
-        output::print(&serde_json::to_string_pretty(&Merged { runs, failed, elapsed_s, files: &files })?)?;
+        output::print_json(&serde_json::to_string_pretty(&Merged { runs, failed, elapsed_s, files: &files })?)?;
     } else {
         output::print(&format!("merged {runs} runs, {failed} of them failed\n\n{}", file_list(&files)))?;
     }
@@ -163,17 +164,19 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
         return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
     }
     let (done, runs) = (report.done, report.runs);
-    eprintln!("videg: interrupted after {done} of {runs} runs; the same command without --fresh goes on from there");
+    say(&format!("interrupted after {done} of {runs} runs; the same command without --fresh goes on from there"));
     Ok(Verdict::Stopped(u8::try_from(signal.load(Ordering::Relaxed))?))
 }
 
 fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Verdict> {
     let (points, samples, runs) = (sweep.points(), sweep.samples(), sweep.runs());
-    output::print(&if arguments.json {
-        serde_json::to_string_pretty(&Counts { case: sweep.name(), design, points, samples, runs })?
+    if arguments.json {
+        let counts = Counts { case: sweep.name(), design, points, samples, runs };
+        output::print_json(&serde_json::to_string_pretty(&counts)?)?;
     } else {
-        format!("sweep {}: {design} of {points} points, {samples} samples each: {runs} runs", sweep.name())
-    })?;
+        let name = sweep.name();
+        output::print(&format!("sweep {name}: {design} of {points} points, {samples} samples each: {runs} runs"))?;
+    }
     Ok(Verdict::Passed)
 }
 
@@ -214,13 +217,13 @@ fn show(
         files: &report.files,
     };
     if arguments.json {
-        output::print(&serde_json::to_string_pretty(&result)?)?;
+        output::print_json(&serde_json::to_string_pretty(&result)?)?;
     } else {
         output::print(&text(&result))?;
     }
     if report.failed > 0 {
         let (failed, runs) = (report.failed, report.runs);
-        eprintln!("videg: warning: {failed} of {runs} runs failed; the column error says why");
+        say(&format!("warning: {failed} of {runs} runs failed; the column error says why"));
     }
     // Whether all runs of the sweep failed is seen when the shards are merged.
     Ok(if arguments.shard.is_some() { Verdict::Passed } else { verdict(report.runs, report.failed) })

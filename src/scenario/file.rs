@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{Origin, ScenarioError, Setting};
+use super::{Origin, ScenarioError, Setting, characters};
 use crate::input;
 
 /// What a case file says.
@@ -69,7 +69,8 @@ pub(crate) fn read_file<T>(
     let shown = path.display().to_string();
     let text = read_text(path)?;
     let content = parse(&text).map_err(|reason| ScenarioError::BadFile { path: shown, reason })?;
-    Ok((content, path.file_stem().map(|stem| stem.to_string_lossy().into_owned())))
+    let stem = path.file_stem().map(|stem| characters::replaced(&stem.to_string_lossy()));
+    Ok((content, stem))
 }
 
 impl CaseFile {
@@ -86,9 +87,11 @@ impl CaseFile {
     /// Reads the text of a case file.
     ///
     /// # Errors
-    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
+    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
     pub fn parse(text: &str) -> Result<Self, String> {
-        Self::of(toml::from_str(text).map_err(|error| toml_error(&error))?)
+        let said = |error: toml::de::Error| toml_error(&error);
+        characters::check(&toml::from_str(text).map_err(said)?)?;
+        Self::of(toml::from_str(text).map_err(said)?)
     }
 
     /// What a table says that is laid out as a case file.
@@ -217,6 +220,8 @@ mod tests {
             ("[set]\nball.mass = [1, 2]", "ball.mass"),
             ("[set]\nball.mass = 2026-01-01", "ball.mass"),
             ("case = ", "line 1"),
+            ("name = \"a\\u001b[2J\"", "name: the character U+001B"),
+            ("[set]\nball.mass = \"\\u0001\"", "set.ball.mass: the character U+0001"),
         ] {
             let reason = CaseFile::parse(text).unwrap_err();
             assert!(reason.contains(named) && reason.lines().count() == 1, "{text}: {reason}");

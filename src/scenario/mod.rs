@@ -1,10 +1,12 @@
 //! What to run: a case of the paper or a case file, settings on top of it, duration and averaging window.
 
+mod characters;
 mod file;
 mod origin;
 mod preset;
 mod times;
 
+pub(crate) use characters::check as check_characters;
 pub use file::{CaseFile, value_text};
 pub(crate) use file::{read_file, toml_error};
 pub use origin::Origin;

@@ -9,7 +9,7 @@ const DEFAULT_STEP: f64 = 1e-3;
 /// Bounds of the duration, s: below, times differ by nothing that can be drawn; above, they have no digits left.
 const SHORTEST: f64 = 1e-6;
 const LONGEST: f64 = 1e9;
-/// Largest number of communication points of the grid: 1e9 rows are some 200 GB of CSV.
+/// Largest number of communication points of the grid: 1e9 rows are 240 to 480 GB of CSV.
 const MAX_STEPS: f64 = 1e9;
 
 /// Times of a run, checked.

@@ -2,7 +2,7 @@
 
 use super::random::Stream;
 use super::vary::{Range, Scale, Spread, Vary};
-use super::{Design, SweepError};
+use super::{Design, SweepError, column};
 use crate::fmi::{Kind, ModelDescription, Value, Variable};
 
 /// A varied variable.
@@ -56,6 +56,18 @@ impl Axis {
         match &self.values {
             Values::List(values) => values.len() as u64,
             Values::Reals(Range { count, .. }) | Values::Integers { count, .. } => count.unwrap_or(0),
+        }
+    }
+
+    /// Most bytes that a value of it takes of a line.
+    pub fn longest(&self) -> usize {
+        /// A number with the quotes that it does not need.
+        const NUMBER: usize = 32;
+        match &self.values {
+            Values::List(values) => {
+                values.iter().map(|value| column::line([column::cell(value).as_str()]).len()).max().unwrap_or(NUMBER)
+            }
+            Values::Reals(_) | Values::Integers { .. } => NUMBER,
         }
     }
 

@@ -33,12 +33,12 @@ pub enum Type {
 impl Column {
     /// A column that is never empty.
     pub(super) fn always(name: &str, kind: Type) -> Self {
-        Self { name: name.to_owned(), kind, optional: false }
+        Self { name: one_line(name), kind, optional: false }
     }
 
     /// A column that may be empty.
     pub(super) fn optional(name: &str, kind: Type) -> Self {
-        Self { name: name.to_owned(), kind, optional: true }
+        Self { name: one_line(name), kind, optional: true }
     }
 }
 
@@ -58,8 +58,7 @@ impl Type {
 pub(super) fn cell(value: &Value) -> String {
     match value {
         Value::Real(value) => real(*value),
-        Value::String(text) => one_line(text),
-        other => other.to_string(),
+        other => one_line(&other.to_string()),
     }
 }
 
@@ -68,9 +67,30 @@ pub(super) fn real(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// `text` in one line, so that a line is a row.
+/// `text` in one line, so that a line is a row, and without zero bytes, which are what a torn write leaves. Whatever an FMU
+/// has a say in comes through here: names of columns and of items of enumerations, values, and why a run failed.
 pub(super) fn one_line(text: &str) -> String {
-    text.split(['\r', '\n']).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    text.split(['\r', '\n', '\0']).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Most that [`reason`] takes of a line, bytes.
+pub(super) const MOST_REASON: usize = 1 << 16;
+
+/// Why a run failed, in one cell: what is too long for that is cut.
+pub(super) fn reason(text: &str) -> String {
+    let text = one_line(text);
+    // A quote takes two bytes, and the cell has one at each end.
+    let most = MOST_REASON / 2 - 8;
+    if text.len() <= most {
+        return text;
+    }
+    let end = text.char_indices().map(|(at, _)| at).take_while(|at| *at <= most).last().unwrap_or(0);
+    format!("{}...", &text[..end])
+}
+
+/// The first line of the results.
+pub(super) fn heading(columns: &[Column]) -> Vec<u8> {
+    line(columns.iter().map(|column| column.name.as_str()))
 }
 
 /// A row as a line of CSV.
@@ -80,4 +100,27 @@ pub(super) fn line<'a>(cells: impl IntoIterator<Item = &'a str>) -> Vec<u8> {
     let written = writer.write_record(cells);
     debug_assert!(written.is_ok());
     writer.into_inner().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_an_fmu_has_a_say_in_is_one_line_without_zero_bytes() {
+        let evil = "two\r\nlines\0and \"quotes\"";
+        let said = "two lines and \"quotes\"";
+        assert_eq!(Column::always(evil, Type::Real).name, said);
+        assert_eq!(Column::optional(evil, Type::Real).name, said);
+        assert_eq!(cell(&Value::String(evil.to_owned())), said);
+        assert_eq!(cell(&Value::Enumeration { value: 1, name: evil.to_owned() }), said);
+        assert_eq!(reason(evil), said);
+    }
+
+    #[test]
+    fn a_reason_that_is_too_long_is_cut_between_letters() {
+        let cut = line([reason(&"\"".repeat(MOST_REASON)).as_str()]);
+        assert!(cut.ends_with(b"...\"\n") && cut.len() <= MOST_REASON, "{} bytes", cut.len());
+        assert!(reason(&"\u{fc}".repeat(MOST_REASON)).ends_with("\u{fc}..."));
+    }
 }

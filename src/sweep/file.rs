@@ -26,7 +26,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::{Design, Vary};
-use crate::scenario::{CaseFile, Origin, ScenarioError, read_file, toml_error};
+use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_file, toml_error};
 
 /// What a sweep file says.
 #[derive(Debug, Default)]
@@ -83,10 +83,11 @@ impl SweepFile {
     /// Reads the text of a sweep file.
     ///
     /// # Errors
-    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have.
+    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(text).map_err(said)?;
+        check_characters(&table)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
         let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =
             own.try_into().map_err(said)?;
@@ -135,6 +136,8 @@ mod tests {
             ("samples = 1.5", "samples"),
             ("[vary]\na.b = 3", "vary.a.b"),
             ("points = ", "line 1"),
+            ("record = ['y', \"y\\u001b[2J\"]", "record: the character U+001B in it"),
+            ("[vary]\na.b = [\"\\u0007\"]", "vary.a.b: the character U+0007 in it"),
         ] {
             let reason = SweepFile::parse(text).unwrap_err();
             assert!(reason.contains(named), "{text}: {reason}");

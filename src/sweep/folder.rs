@@ -127,8 +127,14 @@ pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> R
     check_document(folder, document)
 }
 
+/// Writes a new file at `path`, forced to the disk. What stands there goes: it is of an attempt that was killed, or a link
+/// through which another file would be written.
 pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    let mut file = File::create_new(path)?;
     file.write_all(content)?;
     file.sync_all()
 }
@@ -186,6 +192,24 @@ mod tests {
         drop(at_work);
         claimed(folder.path(), OTHER, true).unwrap();
         assert_eq!(document(folder.path()), OTHER);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn documents_and_results_are_not_written_through_links() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("other"), "of somebody else").unwrap();
+        symlink(at("other"), at("sweep.json.part")).unwrap();
+        drop(claimed(folder.path(), ONE, false).unwrap());
+        assert_eq!(document(folder.path()), ONE);
+        assert!(!at(DOCUMENT).is_symlink());
+        fs::remove_file(at("sweep.csv.part")).unwrap();
+        symlink(at("other"), at("sweep.csv.part")).unwrap();
+        let message = claimed(folder.path(), ONE, true).unwrap_err();
+        assert!(message.contains("sweep.csv.part: it is a symbolic link"), "{message}");
+        assert_eq!(fs::read_to_string(at("other")).unwrap(), "of somebody else");
     }
 
     #[test]

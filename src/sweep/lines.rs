@@ -3,8 +3,10 @@
 use std::io::{self, BufRead, Read as _};
 use std::ops::Range;
 
-/// Longest line that can be one, bytes.
-const LONGEST: u64 = 1 << 20;
+use super::column::{self, Column, Type};
+
+/// Longest line with its end, bytes. None is written that is longer.
+pub(super) const LONGEST: usize = 1 << 20;
 
 /// How far results are what they should be.
 #[derive(Debug, Default, PartialEq)]
@@ -17,61 +19,143 @@ pub(super) struct Extent {
     pub failed: u64,
     /// The last of them.
     pub last: Vec<u8>,
+    /// What comes behind.
+    pub rest: Rest,
+}
+
+/// What stands behind results that are what they should be.
+#[derive(Debug, Default, PartialEq)]
+pub(super) enum Rest {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// What a write leaves that was cut short: part of a line, or zero bytes, which are in no text of an FMU.
+    Torn,
+    /// A whole line, and why it is not the one that is due.
+    Wrong(String),
 }
 
 impl Extent {
     /// That it is all of a file of `length` bytes with the results of the runs `range`; else what is wrong with them.
     pub fn check_whole(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
         let due = range.start + self.lines;
-        if self.bytes == 0 {
-            Err("its first line is not the heading of this sweep".to_owned())
-        } else if due < range.end {
-            Err(format!("line {} is not run {due} of runs {} to {}", self.lines + 2, range.start, range.end - 1))
-        } else if self.bytes < length {
-            Err(format!("{} bytes follow line {}, its last", length - self.bytes, self.lines + 1))
-        } else {
-            Ok(())
+        match &self.rest {
+            _ if self.bytes == 0 => Err(NOT_HEADING.to_owned()),
+            Rest::Wrong(reason) if due < range.end => Err(reason.clone()),
+            _ if due < range.end => Err(not_due(self.lines + 2, due, range)),
+            _ if self.bytes < length => {
+                Err(format!("{} bytes follow line {}, its last", length - self.bytes, self.lines + 1))
+            }
+            _ => Ok(()),
         }
     }
 }
 
-/// Follows results from their heading on, and hands each line of runs `first` and following, of which there are at most
-/// `most`, to `take`. Ends before the first line that is not whole or not that of the run which is due.
+const NOT_HEADING: &str = "its first line is not the heading of this sweep";
+
+fn not_due(line: u64, due: u64, range: &Range<u64>) -> String {
+    format!("line {line} is not run {due} of runs {} to {}", range.start, range.end - 1)
+}
+
+/// Follows results of the runs `range` from their heading on, and hands each line of a run to `take`. Ends before the first
+/// line that is not whole or not that of the run which is due.
 pub(super) fn follow<E: From<io::Error>>(
-    from: impl BufRead,
-    heading: &[u8],
-    first: u64,
-    most: u64,
+    mut from: impl BufRead,
+    columns: &[Column],
+    range: &Range<u64>,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
 ) -> Result<Extent, E> {
-    let (mut from, mut extent, mut line) = (from, Extent::default(), Vec::new());
-    if !next(&mut from, &mut line)? || line != heading {
-        return Ok(extent);
-    }
-    extent.bytes = line.len() as u64;
-    while extent.lines < most && next(&mut from, &mut line)? && is_run(&line, first + extent.lines) {
-        take(&line)?;
+    let heading = column::heading(columns);
+    let (mut extent, mut line, mut cells) = (Extent::default(), Vec::new(), Cells::new(columns));
+    loop {
+        line.clear();
+        from.by_ref().take(LONGEST as u64).read_until(b'\n', &mut line)?;
+        if line.is_empty() {
+            return Ok(extent);
+        }
+        let is_heading = extent.bytes == 0;
+        let checked = match line.last() {
+            _ if line.contains(&0) => Err(Rest::Torn),
+            Some(b'\n') if is_heading && line == heading => Ok(()),
+            Some(b'\n') if is_heading => Err(Rest::Wrong(NOT_HEADING.to_owned())),
+            Some(b'\n') => cells.check(&line, &extent, range).map_err(Rest::Wrong),
+            _ if line.len() < LONGEST => Err(Rest::Torn),
+            _ => Err(Rest::Wrong(format!("line {} has more than {LONGEST} bytes", extent.lines + 2))),
+        };
+        if let Err(rest) = checked {
+            extent.rest = rest;
+            return Ok(extent);
+        }
         extent.bytes += line.len() as u64;
+        if is_heading {
+            continue;
+        }
+        take(&line)?;
         extent.lines += 1;
         extent.failed += u64::from(has_failed(&line));
         extent.last.clone_from(&line);
     }
-    Ok(extent)
 }
 
-/// Reads a line with its end; false if there is no whole one.
-fn next(from: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
-    line.clear();
-    from.take(LONGEST).read_until(b'\n', line)?;
-    Ok(line.last() == Some(&b'\n'))
+/// The cells of a line, in memory that serves one line after the other.
+struct Cells<'a> {
+    columns: &'a [Column],
+    reader: csv_core::Reader,
+    text: Vec<u8>,
+    ends: Vec<usize>,
 }
 
-/// Whether a line is that of run `number`. A zero byte is what a power cut leaves, and in no text of an FMU. A quote that is
-/// not closed would make further lines part of a cell.
-fn is_run(line: &[u8], number: u64) -> bool {
-    !line.contains(&0)
-        && !line.split(|byte| *byte == b'"').count().is_multiple_of(2)
-        && line.strip_prefix(number.to_string().as_bytes()).is_some_and(|rest| rest.first() == Some(&b','))
+impl<'a> Cells<'a> {
+    fn new(columns: &'a [Column]) -> Self {
+        // One end more than there may be: a cell too many is seen.
+        let ends = vec![0; columns.len() + 1];
+        Self { columns, reader: csv_core::Reader::new(), text: Vec::new(), ends }
+    }
+
+    /// That `line` is that of the run which is due behind `extent`, and a row of its own, with cells of the types of the
+    /// columns; else why not.
+    fn check(&mut self, line: &[u8], extent: &Extent, range: &Range<u64>) -> Result<(), String> {
+        let (number, due) = (extent.lines + 2, range.start + extent.lines);
+        if due >= range.end {
+            return Err(format!("line {number} follows that of the last run, {}", range.end - 1));
+        }
+        if line.strip_prefix(due.to_string().as_bytes()).is_none_or(|rest| rest.first() != Some(&b',')) {
+            return Err(not_due(number, due, range));
+        }
+        self.check_cells(line).map_err(|reason| format!("line {number}, of run {due}, {reason}"))
+    }
+
+    fn check_cells(&mut self, line: &[u8]) -> Result<(), String> {
+        self.text.resize(line.len().max(self.text.len()), 0);
+        self.reader.reset();
+        let (read, taken, _, count) = self.reader.read_record(line, &mut self.text, &mut self.ends);
+        // A quote that is not closed would make further lines part of a cell.
+        let is_row = read == csv_core::ReadRecordResult::Record && taken == line.len();
+        if !is_row || count != self.columns.len() {
+            return Err(format!("is no row of {} cells", self.columns.len()));
+        }
+        let mut start = 0;
+        for (column, end) in self.columns.iter().zip(&self.ends) {
+            let cell = &self.text[start..*end];
+            if !is_of(column, cell) {
+                let cell: String = String::from_utf8_lossy(cell).chars().take(40).collect();
+                return Err(format!("has {} = {cell:?}, which is not of its type", column.name));
+            }
+            start = *end;
+        }
+        Ok(())
+    }
+}
+
+fn is_of(column: &Column, cell: &[u8]) -> bool {
+    let Ok(cell) = std::str::from_utf8(cell) else { return false };
+    match column.kind {
+        _ if column.optional && cell.is_empty() => true,
+        Type::Integer => cell.parse::<i64>().is_ok(),
+        Type::Real => cell.parse::<f64>().is_ok(),
+        Type::Boolean => cell.parse::<bool>().is_ok(),
+        Type::Text => true,
+    }
 }
 
 /// Whether the line is that of a run that failed: its last cell, the error, is not empty. A text that ends in a comma
@@ -84,9 +168,9 @@ pub(super) fn has_failed(line: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    fn extent(text: &str, first: u64, most: u64) -> (u64, u64, u64) {
-        let extent = follow(text.as_bytes(), b"run,error\n", first, most, |_| Ok::<_, io::Error>(())).unwrap();
-        (extent.bytes, extent.lines, extent.failed)
+    fn extent(text: &str, range: &Range<u64>) -> Extent {
+        let columns = [Column::always("run", Type::Integer), Column::optional("error", Type::Text)];
+        follow(text.as_bytes(), &columns, range, |_| Ok::<_, io::Error>(())).unwrap()
     }
 
     #[test]
@@ -106,9 +190,55 @@ mod tests {
             ("run,error\n5,\n6,\"\n7,\n", (13, 1, 0)),
             ("run,error\n5,\n6,\n7,\n8,\n", (19, 3, 0)),
         ] {
-            assert_eq!(extent(text, 5, 3), expected, "{text:?}");
+            let Extent { bytes, lines, failed, .. } = extent(text, &(5..8));
+            assert_eq!((bytes, lines, failed), expected, "{text:?}");
         }
     }
+
+    #[test]
+    fn what_a_torn_write_leaves_is_told_from_a_whole_line_that_is_wrong() {
+        let wrong = |reason: &str| Rest::Wrong(reason.to_owned());
+        let long = format!("run,error\n5,{}\n", "x".repeat(LONGEST));
+        for (text, expected) in [
+            ("", Rest::Nothing),
+            ("run,err", Rest::Torn),
+            ("\0\0\0", Rest::Torn),
+            ("run,other\n", wrong("its first line is not the heading of this sweep")),
+            ("run,error\n5,\n", Rest::Nothing),
+            ("run,error\n5,\n6", Rest::Torn),
+            ("run,error\n5,\n\0\0\0\n7,\n", Rest::Torn),
+            ("run,error\n5,\n7,\n", wrong("line 3 is not run 6 of runs 5 to 7")),
+            ("run,error\n5,\n6\n", wrong("line 3 is not run 6 of runs 5 to 7")),
+            ("run,error\n5,\n6,a,b\n", wrong("line 3, of run 6, is no row of 2 cells")),
+            ("run,error\n5,\n6,\"\n", wrong("line 3, of run 6, is no row of 2 cells")),
+            ("run,error\n5,\n6,\r7,\n", wrong("line 3, of run 6, is no row of 2 cells")),
+            ("run,error\n5,\n6,\n7,\n8,", Rest::Torn),
+            ("run,error\n5,\n6,\n7,\n8,\n", wrong("line 5 follows that of the last run, 7")),
+            (&long, wrong("line 2 has more than 1048576 bytes")),
+        ] {
+            assert_eq!(extent(text, &(5..8)).rest, expected, "{text:.40?}");
+        }
+    }
+
+    #[test]
+    fn a_cell_that_is_not_of_the_type_of_its_column_is_named() {
+        for (kind, cell, is_one) in [
+            (Type::Integer, "7", true),
+            (Type::Integer, "7.5", false),
+            (Type::Real, "-inf", true),
+            (Type::Real, "abc", false),
+            (Type::Boolean, "1", false),
+            (Type::Text, "", true),
+            (Type::Real, "", false),
+        ] {
+            let columns = [Column::always("run", Type::Integer), Column::always("x", kind)];
+            let text = format!("run,x\n0,{cell}\n");
+            let extent = follow(text.as_bytes(), &columns, &(0..1), |_| Ok::<_, io::Error>(())).unwrap();
+            let wrong = Rest::Wrong(format!("line 2, of run 0, has x = {cell:?}, which is not of its type"));
+            assert_eq!(extent.rest, if is_one { Rest::Nothing } else { wrong });
+        }
+    }
+
     #[test]
     fn results_that_are_not_whole_are_told_by_what_is_wrong() {
         for (text, expected) in [
@@ -117,8 +247,8 @@ mod tests {
             ("run,error\n5,\n7,\n", Some("line 3 is not run 6 of runs 5 to 6")),
             ("run,error\n5,\n6,\n7,\n", Some("3 bytes follow line 3, its last")),
         ] {
-            let extent = follow(text.as_bytes(), b"run,error\n", 5, 2, |_| Ok::<_, io::Error>(())).unwrap();
-            assert_eq!(extent.check_whole(text.len() as u64, &(5..7)).err().as_deref(), expected, "{text:?}");
+            let checked = extent(text, &(5..7)).check_whole(text.len() as u64, &(5..7));
+            assert_eq!(checked.err().as_deref(), expected, "{text:?}");
         }
     }
 }

@@ -31,14 +31,27 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     let path = output.join(RESULTS);
     let part = whole::partial(&path);
     let file = folder::lock(&part)?;
+    let is_new = !output.join(DOCUMENT).exists();
     folder::write_document(output, &document, &path)?;
-    let failed = join(&shards, &kept, &file, &part)?;
-    file.sync_all().map_err(SweepError::file("write", &part))?;
-    std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
+    let joined = join(&shards, &kept, &file, &part).and_then(|failed| {
+        file.sync_all().map_err(SweepError::file("write", &part))?;
+        std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
+        Ok(failed)
+    });
+    let failed = joined.inspect_err(|_| leave(output, &part, is_new))?;
     let parquet = table::write(&path, &kept.columns, &document, true)?;
     sums::record(output, &document, &[&path, &parquet])?;
     let files = vec![path, output.join(DOCUMENT), parquet];
     Ok(Report { runs: kept.runs, done: kept.runs, failed, resumed_from: 0, files })
+}
+
+/// Removes what a merge that failed has written: the document only if it `is_new`.
+fn leave(output: &Path, part: &Path, is_new: bool) {
+    // Why it failed is what the user is told; a document without results is in nobody's way but that of another sweep.
+    let removed = folder::remove(part);
+    if is_new && removed.is_ok() {
+        let _ = folder::remove(&output.join(DOCUMENT));
+    }
 }
 
 /// The document of the first folder, which the others have as well, without checksums.
@@ -113,7 +126,7 @@ impl From<io::Error> for Broken {
 
 /// Writes the lines of all shards one after the other; how many runs failed.
 fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> Result<u64, SweepError> {
-    let heading = column::line(kept.columns.iter().map(|column| column.name.as_str()));
+    let heading = column::heading(&kept.columns);
     let mut failed = 0;
     let written = |cause| SweepError::file("write", part)(cause);
     let mut out = BufWriter::new(file);
@@ -121,9 +134,7 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> R
     for (shard, path) in shards {
         let range = shard.range(kept.runs);
         let from = BufReader::new(input::open_regular(path).map_err(SweepError::file("open", path))?);
-        let extent = lines::follow(from, &heading, range.start, range.end - range.start, |line| {
-            out.write_all(line).map_err(Broken::Written)
-        });
+        let extent = lines::follow(from, &kept.columns, &range, |line| out.write_all(line).map_err(Broken::Written));
         let extent = extent.map_err(|broken| match broken {
             Broken::Read(cause) => SweepError::file("read", path)(cause),
             Broken::Written(cause) => written(cause),

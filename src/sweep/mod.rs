@@ -15,6 +15,8 @@ mod error;
 mod file;
 mod folder;
 mod lines;
+#[cfg(test)]
+mod lines_tests;
 mod merge;
 mod plan;
 mod random;

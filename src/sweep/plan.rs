@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::column::{self, Column, Type};
 use super::design::{MAX_RUNS, Points};
 use super::document::Document;
+use super::lines::LONGEST;
 use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};
@@ -128,6 +129,7 @@ impl Sweep {
             return Err(SweepError::option("record", "", reason));
         }
         let columns = columns(points.axes(), seeds.as_ref(), averages, &record)?;
+        check_lengths(&columns, points.axes())?;
         let document = Document {
             videg: env!("CARGO_PKG_VERSION"),
             case: &request.name,
@@ -204,8 +206,18 @@ impl Sweep {
         self.points.axes().iter().zip(&run.values).try_for_each(|(axis, value)| value.check(&axis.variable))
     }
 
-    /// The line of the results that belongs to `run`; an error is why it failed.
+    /// The line of the results that belongs to `run`; an error is why it failed. A run whose line would be longer than can
+    /// be read again has failed.
     pub(super) fn line(&self, run: &Run, outcome: &Result<Results, String>) -> Vec<u8> {
+        let line = self.any_line(run, outcome);
+        if line.len() <= LONGEST {
+            return line;
+        }
+        let reason = format!("its results take {} bytes, and a line has at most {LONGEST}", line.len());
+        self.any_line(run, &Err(reason))
+    }
+
+    fn any_line(&self, run: &Run, outcome: &Result<Results, String>) -> Vec<u8> {
         let mut cells: Vec<String> = [run.number, run.point, run.sample].map(|number| number.to_string()).into();
         cells.extend(run.values.iter().map(column::cell));
         cells.extend(run.seed.map(|seed| seed.to_string()));
@@ -217,7 +229,7 @@ impl Sweep {
             cells.extend(recorded.iter().map(column::cell));
         }
         cells.resize(self.columns.len() - 1, String::new());
-        cells.push(outcome.as_ref().err().map_or_else(String::new, |reason| column::one_line(reason)));
+        cells.push(outcome.as_ref().err().map_or_else(String::new, |reason| column::reason(reason)));
         column::line(cells.iter().map(String::as_str))
     }
 }
@@ -269,7 +281,26 @@ fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable,
 
 /// As it stands in the document: however it was written, the same value gives the same text.
 fn as_setting((variable, value): &(Variable, Value)) -> Setting {
-    Setting::new(&variable.name, column::cell(value))
+    let text = if let Value::String(text) = value { text.clone() } else { column::cell(value) };
+    Setting::new(&variable.name, text)
+}
+
+/// That the heading can be read again, and the line of any run whose results do not get into it.
+fn check_lengths(columns: &[Column], axes: &[Axis]) -> Result<(), SweepError> {
+    let heading = column::heading(columns).len();
+    if heading > LONGEST {
+        let reason = format!("the heading of {} columns takes {heading} bytes; at most {LONGEST}", columns.len());
+        return Err(SweepError::option("record", "", reason));
+    }
+    let widest = |axis: &Axis| axis.longest().saturating_add(1);
+    let given = axes.iter().map(widest).fold(columns.len() + column::MOST_REASON + 100, usize::saturating_add);
+    match axes.iter().max_by_key(|axis| axis.longest()) {
+        Some(axis) if given > LONGEST => {
+            let reason = format!("the values of a run take up to {given} bytes of its line; at most {LONGEST}");
+            Err(SweepError::option("vary", &axis.variable.name, reason))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {
@@ -307,7 +338,7 @@ fn columns(
     let mut names = HashSet::new();
     match columns.iter().find(|column| !names.insert(column.name.as_str())) {
         Some(twice) => {
-            let is_recorded = record.iter().any(|variable| variable.name == twice.name);
+            let is_recorded = record.iter().any(|variable| column::one_line(&variable.name) == twice.name);
             let option = if is_recorded { "record" } else { "vary" };
             Err(SweepError::option(option, &twice.name, "the results have a column of that name already"))
         }

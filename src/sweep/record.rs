@@ -7,12 +7,16 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::folder::{self, RESULTS};
-use super::lines::{self, Extent};
-use super::{Shard, Sweep, SweepError, column};
+use super::lines::{self, Extent, Rest};
+use super::{Column, Shard, Sweep, SweepError, column};
 use crate::{input, whole};
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
+
+/// Why a line is not thrown away, and what to do.
+const NOT_TORN: &str = "no interruption leaves a whole line like that, so nothing is thrown away: take out that line and all \
+                        behind it to go on from there, or begin anew with --fresh";
 
 /// What is there of a sweep, or of a shard of it.
 pub(super) enum Found {
@@ -53,19 +57,22 @@ impl Record {
     /// Opens the results of `shard` of `sweep` in `folder`; with `fresh` whatever was there goes.
     ///
     /// # Errors
-    /// Results of another sweep; results that another process is writing; a refusal of the file system.
+    /// Results of another sweep; results that another process is writing; whole lines that are not those of the runs due; a
+    /// refusal of the file system.
     pub fn open(folder: &Path, sweep: &Sweep, shard: Option<Shard>, fresh: bool) -> Result<Found, SweepError> {
         std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
         let path = results_path(folder, shard);
         let file = folder::claim(folder, sweep.document(), &path, fresh)?;
         let part = whole::partial(&path);
         let range = range(sweep, shard);
-        let heading = column::line(sweep.columns().iter().map(|column| column.name.as_str()));
-        if let Some(extent) = complete(&path, &heading, &range)? {
+        if let Some(extent) = complete(&path, sweep.columns(), &range)? {
             folder::remove(&part)?;
             return Ok(Found::Complete { failed: extent.failed });
         }
-        let extent = extent(&file, &part, &heading, &range)?;
+        let extent = extent(&file, &part, sweep.columns(), &range)?;
+        if let Rest::Wrong(reason) = extent.rest {
+            return Err(SweepError::content(&part, format!("{reason}; {NOT_TORN}")));
+        }
         let mut record = Self {
             file,
             part,
@@ -77,7 +84,7 @@ impl Record {
         };
         record.go_on_after(extent.bytes)?;
         if extent.bytes == 0 {
-            record.write(&heading)?;
+            record.write(&column::heading(sweep.columns()))?;
         }
         Ok(Found::Unfinished(record))
     }
@@ -138,13 +145,13 @@ impl Record {
 }
 
 /// How far the results at `path` are complete; none if there are none.
-fn complete(path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
+fn complete(path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
     let file = match input::open_regular(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(SweepError::file("open", path)(error)),
     };
-    let extent = extent(&file, path, heading, range)?;
+    let extent = extent(&file, path, columns, range)?;
     let length = file.metadata().map_err(SweepError::file("read", path))?.len();
     match extent.check_whole(length, range) {
         Ok(()) => Ok(Some(extent)),
@@ -155,9 +162,7 @@ fn complete(path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Option<Ex
     }
 }
 
-fn extent(file: &File, path: &Path, heading: &[u8], range: &Range<u64>) -> Result<Extent, SweepError> {
-    let (mut from, most) = (BufReader::new(file), range.end - range.start);
-    from.rewind()
-        .and_then(|()| lines::follow(from, heading, range.start, most, |_| Ok(())))
-        .map_err(SweepError::file("read", path))
+fn extent(file: &File, path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Extent, SweepError> {
+    let mut from = BufReader::new(file);
+    from.rewind().and_then(|()| lines::follow(from, columns, range, |_| Ok(()))).map_err(SweepError::file("read", path))
 }

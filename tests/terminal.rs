@@ -1,0 +1,97 @@
+//! What reaches a terminal, and how the tool ends where nobody reads what it says.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
+#![cfg(unix)]
+
+use std::fs;
+use std::io::PipeWriter;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A sweep of two short runs into `folder`: of the first, or of both, the ball does not fit.
+fn sweep(folder: &Path, radii: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+    command.args(["sweep", "--until", "2", "--vary", &format!("membrane.initialRadius={radii}")]);
+    command.arg("--output").arg(folder);
+    command
+}
+
+const BOTH: &str = "0.001,0.0011";
+
+fn videg(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+    command.args(arguments);
+    command
+}
+
+/// A pipe whose reader has gone.
+fn gone() -> PipeWriter {
+    std::io::pipe().unwrap().1
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_reader_that_has_gone_leaves_the_exit_code_as_it_would_have_been() {
+    let guard = tempfile::tempdir().unwrap();
+    let [some, all] = ["some", "all"].map(|name| guard.path().join(name));
+    for (mut command, code) in [
+        (sweep(&some, "0.001,0.00315"), 0),
+        (sweep(&all, BOTH), 1),
+        (videg(&["--help"]), 0),
+        (videg(&["--version"]), 0),
+        (videg(&["completions", "bash"]), 0),
+        (videg(&["sweep", "--points", "0"]), 2),
+    ] {
+        let output = command.stdout(gone()).output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{command:?}: {}", said(&output));
+    }
+}
+
+#[test]
+fn messages_that_nobody_reads_end_no_program() {
+    let guard = tempfile::tempdir().unwrap();
+    let [some, all] = ["some", "all"].map(|name| guard.path().join(name));
+    for (mut command, code) in [
+        (sweep(&some, "0.001,0.00315"), 0),
+        (sweep(&all, BOTH), 1),
+        (videg(&["sweep", "--points", "0"]), 2),
+        (videg(&["--nonsense"]), 2),
+        (videg(&["fmu", "info", "missing.fmu"]), 2),
+    ] {
+        let output = command.stderr(gone()).output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{command:?}");
+    }
+}
+
+#[test]
+fn control_characters_reach_no_terminal_and_leave_json_as_it_is() {
+    let guard = tempfile::tempdir().unwrap();
+    let folder = guard.path().join("a\u{1b}[2J\u{9b}b");
+    let output = sweep(&folder, BOTH).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("a\\u{1b}[2J\\u{9b}b"), "{text}");
+    assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text:?}");
+    let output = sweep(&folder, BOTH).arg("--json").output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text:?}");
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["files"][0], folder.join("sweep.csv").to_str().unwrap());
+}
+
+#[test]
+fn files_with_control_characters_are_refused_by_key_and_character() {
+    let guard = tempfile::tempdir().unwrap();
+    for (text, expected) in [
+        ("name = \"a\\u001b[2J\"\n", "my.toml: name: the character U+001B in it is not allowed"),
+        ("description = \"a\\u0001\"\n", "my.toml: description: the character U+0001 in it"),
+    ] {
+        let file = guard.path().join("my.toml");
+        fs::write(&file, text).unwrap();
+        for (verb, option) in [("sweep", None), ("simulate", Some("--case-file")), ("ssp", Some("--case-file"))] {
+            let output = videg(&[verb]).args(option).arg(&file).output().unwrap();
+            assert!(output.status.code() == Some(2) && said(&output).contains(expected), "{verb}: {}", said(&output));
+        }
+    }
+}
