@@ -37,7 +37,7 @@ pub use flight::Side;
 pub use harvester::{
     Direction, Energies, GRAZING_SPEED, Harvester, Impact, Occurrence, Peak, Sensitivities, Snapshot, Totals,
 };
-pub use limits::{Excess, Limit};
+pub use limits::{Excess, Limit, NeglectedMass};
 pub use membrane::Membrane;
 pub use parameters::{Choice, ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
 pub use pulse::{Deflection, Pulse, PulseChange, PulseShape};

@@ -1,8 +1,10 @@
-//! What VHB 4910 stands: bounds of stretch, electric field and tension. Nothing in the motion depends on them.
+//! Where a model is used beyond what it holds for: what VHB 4910 stands, in stretch, electric field and tension, and the
+//! ratio of masses that Eq. (7) neglects. Nothing in the motion depends on them.
 
 use core::fmt;
 
 use crate::membrane::Membrane;
+use crate::parameters::{ContactLaw, Parameters};
 
 /// Stretch, equal in both directions and counted from the unstretched film, beyond which the film ruptures. The value
 /// commonly quoted for VHB; rupture as a limit of generators: Koh, Keplinger, Li, Bauer and Suo 2011, IEEE/ASME
@@ -23,6 +25,37 @@ const BREAKDOWN_STRETCH: f64 = 6.0;
 /// Shear modulus mu of the neo-Hookean film, Pa. The value commonly quoted for VHB; loss of tension as a limit of
 /// generators: Koh et al. 2011, as above.
 const SHEAR_MODULUS: f64 = 68e3;
+
+/// m / M beyond which "the low mass ratio" of Section 3.2 is none: an impact changes the velocity of a free cylinder by up
+/// to (1 + r) m / (m + M) of the relative speed, 18 % at r = 1 and this ratio; in Section 4.2 it is 0.028.
+const LOW_MASS_RATIO: f64 = 0.1;
+
+/// A ratio of masses that is not low, in a model that neglects it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeglectedMass {
+    /// m / M.
+    pub ratio: f64,
+}
+
+impl fmt::Display for NeglectedMass {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            out,
+            "ball.mass / cylinder.mass = {:.3} is above {LOW_MASS_RATIO}, but impacts do not slow the cylinder, as Eq. (7) \
+             neglects it; with contact.law = compliant and contact.reaction = true they do",
+            self.ratio
+        )
+    }
+}
+
+impl Parameters {
+    /// The ratio of masses, if it is not low and contacts do not act back on the cylinder (Section 3.2).
+    pub fn neglected_mass(&self) -> Option<NeglectedMass> {
+        let acts_back = self.contact_law == ContactLaw::Compliant && self.reaction;
+        let ratio = self.ball_mass / self.cylinder_mass;
+        (ratio > LOW_MASS_RATIO && !acts_back).then_some(NeglectedMass { ratio })
+    }
+}
 
 /// A bound of the material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,7 +146,7 @@ fn elastic_stress(stretch: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::{Parameters, VACUUM_PERMITTIVITY};
+    use crate::parameters::VACUUM_PERMITTIVITY;
     use approx::assert_relative_eq;
 
     fn exceeded(membrane: &Membrane, deflection: f64, voltage: f64) -> Vec<Limit> {
@@ -151,5 +184,17 @@ mod tests {
         for limit in [Limit::Field, Limit::Tension] {
             assert!(Excess { limit, ..excess }.to_string().contains("commonly quoted for VHB 4910"));
         }
+    }
+
+    #[test]
+    fn a_heavy_ball_is_neglected_unless_contacts_act_back() {
+        let heavy = Parameters { ball_mass: 0.053, cylinder_mass: 0.012, ..Parameters::default() };
+        let text = heavy.neglected_mass().unwrap().to_string();
+        assert!(text.starts_with("ball.mass / cylinder.mass = 4.417 is above 0.1, "), "{text}");
+        let lasting = Parameters { contact_law: ContactLaw::Compliant, ..heavy };
+        assert!(lasting.neglected_mass().is_some());
+        assert_eq!(Parameters { reaction: true, ..lasting }.neglected_mass(), None);
+        assert_eq!(Parameters { ball_mass: 0.1, cylinder_mass: 1.0, ..heavy }.neglected_mass(), None);
+        assert_eq!(Parameters::default().neglected_mass(), None);
     }
 }

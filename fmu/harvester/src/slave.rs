@@ -165,6 +165,9 @@ impl Slave for Harvester {
                 PulseShape::MIN_RESTITUTION
             ));
         }
+        if let Some(neglected) = self.parameters.neglected_mass() {
+            log.warning(neglected);
+        }
         running(&mut self.model).map(|_| ())
     }
 

@@ -34,6 +34,15 @@ fn the_flashlight_warns_and_the_periodic_case_does_not_under_both_laws() {
 }
 
 #[test]
+fn a_ball_heavier_than_a_tenth_of_the_cylinder_warns_at_the_start() {
+    for (mass, warns) in [(0.012, false), (0.013, true)] {
+        let host = Host::initializing(fmi2CoSimulation, 0.0, &[("ball.mass", mass)]);
+        assert_eq!(host.initialization_warns(), warns, "{mass} kg"); // cylinder.mass is 0.1245 kg
+        assert!(!host.step_warns(0.0, 1e-3));
+    }
+}
+
+#[test]
 fn a_voltage_beyond_a_bound_warns_once() {
     let host = Host::stepping(&[]);
     host.set("right.voltage", 50e3);

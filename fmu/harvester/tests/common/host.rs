@@ -141,7 +141,14 @@ impl Host {
     }
 
     pub fn exit_initialization(&self) {
-        ok(unsafe { fmi2ExitInitializationMode(self.component) });
+        self.initialization_warns();
+    }
+
+    /// Whether the end of the initialisation warns.
+    pub fn initialization_warns(&self) -> bool {
+        let status = unsafe { fmi2ExitInitializationMode(self.component) };
+        ok(status);
+        status == fmi2Warning
     }
 
     pub fn set(&self, name: &str, value: f64) {
