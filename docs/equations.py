@@ -9,9 +9,9 @@ import sys
 
 from latex2mathml.converter import convert
 
-# Code, in which a dollar sign is one, or an equation.
+# Code, in which a dollar sign is one, or an equation. Inline code may go on in the next line, but not past its paragraph.
 PARTS = re.compile(
-    r"(?P<code>^```.*?^```|`[^`\n]+`)|\$\$(?P<block>.+?)\$\$|(?<![\\$])\$(?P<inline>[^\s$](?:[^$]*[^\s$])?)\$(?!\d)",
+    r"(?P<code>^```.*?^```|`(?:[^`\n]|\n(?![ \t]*\n))+`)|\$\$(?P<block>.+?)\$\$|(?<![\\$])\$(?P<inline>[^\s$](?:[^$]*[^\s$])?)\$(?!\d)",
     re.DOTALL | re.MULTILINE,
 )
 # What Markdown would take for marks of its own.

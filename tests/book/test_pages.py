@@ -28,6 +28,11 @@ def test_every_chapter_became_a_page():
     assert chapters and [page for page in chapters if not page.is_file()] == []
 
 
+def test_no_page_shows_the_markup_of_an_equation():
+    shown = [path.name for path in BOOK.rglob("*.html") if "&lt;math" in path.read_text()]
+    assert shown == [], "docs/equations.py took code for an equation"
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [375, 1280])
 def test_every_page_fits_has_its_equations_and_asks_for_nothing(browser, width, scheme):
