@@ -9,7 +9,7 @@ use videg::ngspice::Ngspice;
 use super::stage::CANARY;
 
 const EVIL: &str =
-    "name = \"x\\n.control\\nshell touch CANARY\\n.endc\"\ndescription = \"*\\n.control\\nshell touch CANARY\"\n";
+    "name = \".control; shell touch CANARY; $(touch CANARY)\"\ndescription = \"*\\n.control\\nshell touch CANARY\"\n";
 
 #[test]
 fn commands_in_the_name_of_a_case_reach_no_netlist() {
