@@ -1,5 +1,6 @@
 //! Child processes, each with all that it starts and does not send away: none outlives this process, also when a signal ends
-//! it ([`end_all`]). On Windows there are no such groups: a child alone is ended, and none when a signal ends this process.
+//! the command-line tool (`end_all`). On Windows there are no such groups: a child alone is ended, and none when a signal ends
+//! this process.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -39,6 +40,9 @@ impl Group {
     }
 
     /// Whether the child has ended. It is not reaped by that: its number stays its own, and that of its group.
+    ///
+    /// # Errors
+    /// If the system does not tell.
     #[cfg(unix)]
     pub fn has_ended(&mut self) -> io::Result<bool> {
         use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
@@ -54,6 +58,9 @@ impl Group {
     }
 
     /// Whether the child has ended.
+    ///
+    /// # Errors
+    /// If the system does not tell.
     #[cfg(not(unix))]
     pub fn has_ended(&mut self) -> io::Result<bool> {
         self.child.try_wait().map(|status| status.is_some())
@@ -61,12 +68,15 @@ impl Group {
 
     /// Ends the group, once: when the child is reaped, its number may be given to another. The status is that of the child,
     /// which it had already if it has ended by itself.
+    ///
+    /// # Errors
+    /// If the system does not tell.
     pub fn end(&mut self) -> io::Result<ExitStatus> {
         if !self.is_over {
             self.is_over = true;
-            running().remove(&self.child.id());
             end_group(self.child.id());
             let _ = self.child.kill();
+            running().remove(&self.child.id());
         }
         self.child.wait()
     }
@@ -79,6 +89,7 @@ impl Drop for Group {
 }
 
 /// Ends the children of this process, which is about to end: as long as what is returned lives, it can start no others.
+#[cfg(feature = "tool")]
 pub(crate) fn end_all() -> impl Sized {
     let closed = STARTING.write().unwrap_or_else(PoisonError::into_inner);
     let running = running();

@@ -21,6 +21,16 @@ pub(crate) fn open_once(path: &Path) -> io::Result<File> {
     open(path, |path| path.starts_with("/dev") || path.starts_with("/proc/self/fd"))
 }
 
+/// As [`std::fs::read`], of a regular file.
+///
+/// # Errors
+/// As [`open_regular`].
+#[cfg(feature = "tool")]
+pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    io::Read::read_to_end(&mut open_regular(path)?, &mut bytes).map(|_| bytes)
+}
+
 /// As [`std::fs::read_to_string`], of a regular file.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
 //! Temporary folders of this process: nobody else may look into them, and they are gone when it ends, also when a signal
-//! ends it ([`remove_all`]).
+//! ends the command-line tool.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -60,6 +60,7 @@ impl Drop for TemporaryFolder {
 
 /// Removes the temporary folders of this process, which is about to end: as long as what is returned lives, it can make no
 /// others.
+#[cfg(feature = "tool")]
 pub(crate) fn remove_all() -> impl Sized {
     let mut folders = folders();
     while let Some(folder) = folders.pop_first() {
@@ -134,7 +135,7 @@ mod tests {
         fs::create_dir_all(&inner).unwrap();
         std::os::unix::fs::symlink(outside.path(), folder.path().join("a/link")).unwrap();
         for path in [&inner, &folder.path().join("a")] {
-            fs::set_permissions(path, fs::Permissions::from_mode(0)).unwrap();
+            fs::set_permissions(path, fs::Permissions::from_mode(0o0)).unwrap();
         }
         // The tests may run as one whom rights do not concern, so that removing proves nothing.
         open_up(folder.path());

@@ -52,9 +52,11 @@ fn pipes_that_nobody_writes_are_refused_and_not_waited_for() {
     };
     make("pipe");
     make("shard/sweep.json");
+    make("libVibroImpactHarvester.so");
     for (arguments, named) in [
         (&["fmu", "info", "pipe"][..], "pipe"),
         (&["fmu", "check", "pipe"], "pipe"),
+        (&["fmu", "build", "--add-binary", "linux64=libVibroImpactHarvester.so"], "libVibroImpactHarvester.so"),
         (&["simulate", "--case-file", "pipe", "--output", "out"], "pipe"),
         (&["sweep", "pipe", "--output", "out"], "pipe"),
         (&["sweep", "merge", "shard", "--output", "out"], "shard/sweep.json"),

@@ -9,6 +9,7 @@ use object::{Architecture, BinaryFormat};
 use super::FMUS;
 use super::error::{PackageError, Result};
 use super::platform::Platform;
+use crate::input;
 
 /// The function that makes a library an FMU's.
 const ENTRY_POINT: &str = "fmi2Instantiate";
@@ -39,7 +40,7 @@ impl AddedBinary {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
         let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: path.clone() })?;
-        let data = std::fs::read(&path).map_err(PackageError::io("read", &path))?;
+        let data = input::read(&path).map_err(PackageError::io("read", &path))?;
         check(&data, platform, &path)?;
         Ok(Self { platform, identifier, path })
     }

@@ -227,7 +227,7 @@ impl<'a> FromIterator<&'a CStr> for Texts {
 impl Texts {
     /// Whether they are `count`, and whole.
     pub fn are(&self, count: usize) -> bool {
-        self.0.last().is_none_or(|&last| last == 0) && self.0.iter().filter(|&&byte| byte == 0).count() == count
+        self.0.last().is_none_or(|&last| last == 0) && self.pointers().count() == count
     }
 
     /// Pointers to them, as C wants them; to those only that are whole.
