@@ -145,8 +145,8 @@ pub struct RunBar {
 
 impl RunBar {
     /// A bar for the runs of `name`.
-    pub fn new(name: String) -> Self {
-        let bar = ProgressBar::new(1).with_message(plain(&name));
+    pub fn new(name: &str) -> Self {
+        let bar = ProgressBar::new(1).with_message(plain(name));
         let style = ProgressStyle::with_template(
             "{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left",
         );

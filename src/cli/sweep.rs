@@ -190,7 +190,7 @@ fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBo
         fresh: arguments.fresh,
         stop,
     };
-    let mut bar = RunBar::new(format!("sweep {}", sweep.name()));
+    let mut bar = RunBar::new(&format!("sweep {}", sweep.name()));
     let report = sweep::run(sweep, engine, &job, &mut bar);
     bar.finish();
     report

@@ -1,7 +1,7 @@
 //! `videg ngspice-worker` and `videg fmu-worker`: processes in which a shared library runs that may take its process down:
 //! that of ngspice, for `--circuit ngspice`, and those of isolated FMUs.
 
-use std::io::BufReader;
+use std::io::{self, BufReader};
 
 use anyhow::Context as _;
 
@@ -14,13 +14,19 @@ use crate::ngspice::live;
 pub fn run_fmu() -> anyhow::Result<Verdict> {
     let requests = take_stdin().context("cannot take stdin for the requests")?;
     let replies = take_stdout().context("cannot take stdout for the replies")?;
-    isolated::serve(BufReader::new(requests), replies).context("the process that runs the FMU is gone")?;
-    Ok(Verdict::Passed)
+    unless_gone(isolated::serve(BufReader::new(requests), replies)).context("the process that runs the FMU is gone")
 }
 
 /// Serves one circuit on stdin and stdout.
 pub fn run_ngspice() -> anyhow::Result<Verdict> {
     let replies = take_stdout().context("cannot take stdout for the replies")?;
-    live::serve(replies).context("the process that couples ngspice is gone")?;
-    Ok(Verdict::Passed)
+    unless_gone(live::serve(replies)).context("the process that couples ngspice is gone")
+}
+
+/// A worker whose process has gone in the middle of a reply has nobody to tell: it ends in silence.
+fn unless_gone(served: io::Result<()>) -> io::Result<Verdict> {
+    match served {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
+        _ => Ok(Verdict::Passed),
+    }
 }

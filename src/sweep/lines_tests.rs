@@ -22,10 +22,11 @@ fn description(outputs: usize, letters: usize) -> ModelDescription {
     };
     let mut variables = scalar("label", 0, "parameter", "<String start='text'/>");
     variables += &scalar("two&#10;lines", 1, "output", "<Enumeration declaredType='Mode'/>");
+    let mut units = "<Unknown index='2'/>".to_owned();
     for output in 0..outputs {
         variables += &scalar(&format!("y{output:0letters$}"), 2 + output, "output", "<Integer/>");
+        units.extend(["<Unknown index='", &(output + 3).to_string(), "'/>"]);
     }
-    let units: String = (0..=outputs).map(|output| format!("<Unknown index='{}'/>", output + 2)).collect();
     let text = format!(
         "<fmiModelDescription fmiVersion='2.0' modelName='Toy' guid='toy'><CoSimulation modelIdentifier='Toy'/>\
          <TypeDefinitions><SimpleType name='Mode'><Enumeration><Item name='on&#13;&#10;off' value='1'/></Enumeration>\
@@ -60,8 +61,8 @@ fn sweep(description: &ModelDescription, values: &[&str]) -> Result<Sweep, Sweep
     })
 }
 
-fn recorded(value: Value) -> Result<Results, String> {
-    Ok(Results { averages: None, recorded: vec![value] })
+fn recorded(value: Value) -> Results {
+    Results { averages: None, recorded: vec![value] }
 }
 
 /// Opens the results of `sweep` with these bytes of them in the folder; where it would go on, or why it does not.
@@ -78,10 +79,10 @@ fn resumed(sweep: &Sweep, folder: &Path, bytes: &[u8]) -> Result<u64, String> {
 #[test]
 fn a_run_whose_line_would_be_too_long_has_failed_and_is_gone_on_behind() {
     let sweep = sweep(&description(0, 1), &["a", "b"]).unwrap();
-    let long = sweep.line(&sweep.run(0), &recorded(Value::String("x".repeat(3_000_000))));
+    let long = sweep.line(&sweep.run(0), &Ok(recorded(Value::String("x".repeat(3_000_000)))));
     let reason = "its results take 3000010 bytes, and a line has at most 1048576";
     assert_eq!(String::from_utf8_lossy(&long), format!("0,0,0,a,,\"{reason}\"\n"));
-    let short = sweep.line(&sweep.run(0), &recorded(Value::String("x".repeat(LONGEST - 10))));
+    let short = sweep.line(&sweep.run(0), &Ok(recorded(Value::String("x".repeat(LONGEST - 10)))));
     assert!(short.len() == LONGEST && short.ends_with(b",\n"), "{} bytes", short.len());
     let failed = sweep.line(&sweep.run(1), &Err("\"".repeat(3_000_000)));
     assert!(failed.len() < LONGEST, "{} bytes", failed.len());
@@ -109,7 +110,7 @@ fn a_heading_or_values_that_are_too_long_are_refused_before_the_first_run() {
 fn line_ends_in_names_of_columns_and_items_leave_a_line_a_row() {
     let sweep = sweep(&description(0, 1), &["a"]).unwrap();
     let item = Value::Enumeration { value: 1, name: "on\r\noff".to_owned() };
-    let line = sweep.line(&sweep.run(0), &recorded(item));
+    let line = sweep.line(&sweep.run(0), &Ok(recorded(item)));
     assert_eq!(String::from_utf8_lossy(&line), "0,0,0,a,on off,\n");
     let names: Vec<_> = sweep.columns().iter().map(|column| (column.name.as_str(), column.kind)).collect();
     assert_eq!(names[4], ("two lines", Type::Text));
@@ -154,13 +155,13 @@ fn a_merge_of_cells_of_other_types_names_them_and_leaves_nothing_behind() {
         ("1,1,0,b,,7,,\n", "sweep.2-of-2.csv: line 2, of run 1, is no row of 7 cells"),
     ] {
         fs::write(shards.join("sweep.2-of-2.csv"), format!("{heading}{line}")).unwrap();
-        let message = merge(&[shards.clone()], &output).unwrap_err().to_string();
+        let message = merge(std::slice::from_ref(&shards), &output).unwrap_err().to_string();
         assert!(message.contains(said), "{message}");
         assert_eq!(fs::read_dir(&output).unwrap().count(), 0, "{said}");
     }
     // What another merge left there stays.
     fs::write(output.join(DOCUMENT), sweep.document()).unwrap();
-    merge(&[shards.clone()], &output).unwrap_err();
+    merge(std::slice::from_ref(&shards), &output).unwrap_err();
     assert!(output.join(DOCUMENT).exists() && !output.join("sweep.csv.part").exists());
     fs::write(shards.join("sweep.2-of-2.csv"), format!("{heading}1,1,0,b,,8,\n")).unwrap();
     merge(&[shards], &output).unwrap();
