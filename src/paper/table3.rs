@@ -64,6 +64,9 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
             fast.impacts,
             fast.of_the_paper().impacts,
         ),
+        "Both frequencies have a ball of 53 g in a cylinder of 12 g, while Eq. (7) neglects m / M. contact.law = compliant with \
+         contact.reaction = true does not: P is then about a third."
+            .to_owned(),
         "The capacitance is printed as eps_0 eps_r R_in^2 / h_1 = 2.42e-11 F; that value is eps_0 eps_r pi R_in^2 / h_2. The \
          length of the device is the volume over pi R_in^2. The power density is the power over the printed volume of \
          42.2 cm^3."
