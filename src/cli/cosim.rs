@@ -22,8 +22,14 @@ use crate::report::Drawing;
 use crate::scenario::Scenario;
 use crate::whole;
 
+/// What the circuit is at where nothing is set: not the start values of its FMU.
+const DEFAULTS: &str = "Unless set: supply.voltage is biasVoltage, zener.voltage is supply.voltage (both as in the paper), \
+    storage.voltage is what gains most over the impacts of a run of the mechanics ahead. The FMU HarvestingCircuit alone \
+    starts at fixed values.";
+
 /// Arguments of the verb.
 #[derive(Args)]
+#[command(after_help = DEFAULTS)]
 pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,

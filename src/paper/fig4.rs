@@ -30,7 +30,7 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
             paper: Some(PRINTED[k]),
             videg: fitted[k],
             verdict: if (fitted[k] / PRINTED[k] - 1.0).abs() < 1e-6 { Verdict::Agrees } else { Verdict::Differs },
-            reason: String::new(),
+            reason: "self-check: the force in the FMU is made of the printed K and n".to_owned(),
         },
     );
     let text = vec![

@@ -191,7 +191,8 @@ impl Stability {
             format!(
                 "The paper's own stepping keeps the orbit as long as each impact falls on its own step, and leaves it \
                  ({time:.1} s here) once rounding has one fall on the next, 1e-5 s late. When that happens depends on \
-                 nothing but how a program rounds; the value that the paper prints is that of the orbit to 0.03 %."
+                 nothing but how a program rounds. The value that the paper prints is that of the orbit to 0.03 %; how \
+                 stepping would come to it is open."
             )
         }));
         text

@@ -169,7 +169,7 @@ fn judge(case: &Computed, pooled: &Ensemble) -> (Verdict, String) {
             (Verdict::Agrees, reason)
         }
         Motion::Unstable if case.deviation().abs() <= 1e-3 && nearby.contains(paper) => {
-            (Verdict::Explained, format!("unstable orbit, kept here to the last bit; {range}"))
+            (Verdict::Explained, format!("unstable orbit, kept here as its impacts fall on doubles; {range}"))
         }
         Motion::Chaotic => judge_chaotic(paper, nearby, pooled),
         Motion::Damped(_) | Motion::Unstable => (Verdict::Differs, range),

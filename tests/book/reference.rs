@@ -28,17 +28,28 @@ fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clon
     }
 }
 
+/// Start values that the command line does not use.
+const CIRCUIT_DEFAULTS: &str = "\nThe start values are those of the FMU. `videg cosim`, `crosscheck` and `ssp` start from others, unless they are \
+    set: `supply.voltage` is `biasVoltage` of the harvester, `zener.voltage` is `supply.voltage`, and \
+    `storage.voltage` is [what gains most](../theory/circuit.md#which-voltage) over the impacts of a run of the mechanics ahead. So `--set \
+    supply.voltage=3000` alone runs with a Zener voltage of 3000 V; in other tools `zener.voltage` and `storage.voltage` must be set with \
+    it, since either must be at least `supply.voltage`.\n";
+
 /// Lists every variable with all that its description says.
 #[test]
 fn the_page_of_variables_is_that_of_the_model_descriptions() {
     let mut page = format!(
         "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names, \
-         and in FMI its number, from 1.\n"
+         and in FMI its number, from 1: `impulsive` is 1, `compliant` is 2. Left is the end that the ball meets at $z_M - z_m = +s/2$ \
+         ([drawing](../theory/motion.md)).\n"
     );
     for fmu in FMUS {
         let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
         let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), fmu.identifier).unwrap();
         writeln!(page, "\n## {}\n\n{}.", description.model_name, description.description.as_deref().unwrap()).unwrap();
+        if description.model_name == "HarvestingCircuit" {
+            page.push_str(CIRCUIT_DEFAULTS);
+        }
         for (causality, heading) in [
             (Causality::Parameter, "parameters"),
             (Causality::CalculatedParameter, "calculated parameters"),
