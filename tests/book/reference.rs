@@ -32,8 +32,9 @@ fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clon
 #[test]
 fn the_page_of_variables_is_that_of_the_model_descriptions() {
     let mut page = format!(
-        "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names, \
-         and in FMI its number, from 1.\n"
+        "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names \
+         in `videg` and in a case file, and its number in FMI: `\"contact.law\": 2` in the `start_values` of \
+         FMPy.\n"
     );
     for fmu in FMUS {
         let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
@@ -64,7 +65,7 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
 }
 
 fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value}"));
+    let number = |value: Option<f64>| value.map_or_else(String::new, scientific);
     let (start, bounds) = match &variable.kind {
         Kind::Real { start, min, max, .. } => (number(*start), [number(*min), number(*max)]),
         Kind::Integer { start, min, max } => {
@@ -75,7 +76,7 @@ fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
         Kind::Enumeration { start } => {
             let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
             let name = items.iter().find(|item| Some(item.value) == *start).map(|item| item.name.clone());
-            let all: Vec<_> = items.iter().map(|item| item.name.as_str()).collect();
+            let all: Vec<_> = items.iter().map(|item| format!("{} {}", item.value, item.name)).collect();
             (name.unwrap_or_default(), [all.join(", "), String::new()])
         }
     };
@@ -89,6 +90,11 @@ fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
     };
     let about = variable.description.as_deref().unwrap().replace('|', "\\|");
     writeln!(page, "| `{}` | {unit} | {start} | {bounds} | {about} |", variable.name).unwrap();
+}
+
+/// A number with a power of ten where the digits would be zeros that nobody counts.
+fn scientific(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 
 /// Lists the cases of the paper with what they set.

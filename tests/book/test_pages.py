@@ -16,6 +16,14 @@ PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print
 
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 FLAT = "[...document.querySelectorAll('main math')].filter(math => math.getBoundingClientRect().height < 4).length"
+# Brackets that are less than half as high as what they hold.
+SHORT = """[...document.querySelectorAll('main math[display=block] mrow')].filter(row => {
+    const [first] = row.children
+    const fences = first?.tagName === 'mo' && '([{'.includes(first.textContent) && first.textContent
+    const tall = [...row.querySelectorAll('mtable')].map(it => it.getBoundingClientRect().height)
+    return fences && first.getBoundingClientRect().height < 0.5 * Math.max(0, ...tall)
+}).length"""
+CUT = "[...document.querySelectorAll('main table, main pre > code')].filter(it => it.scrollWidth > it.clientWidth + 1).length"
 BROKEN = "[...document.images].filter(image => image.naturalWidth === 0).map(image => image.src)"
 LATEX = re.compile(r"\$\$|\\(?:t?frac|sqrt|text|left|quad|begin|Delta|omega)\b")
 
