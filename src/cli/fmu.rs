@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use comfy_table::{ColumnConstraint, ContentArrangement};
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
@@ -11,6 +12,9 @@ use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, Kind, ModelDescription, Variable};
 use crate::package::{self, AddedBinary, Options};
+
+/// Columns of a terminal within which descriptions of variables are wrapped.
+const WIDTH: u16 = 120;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -172,6 +176,9 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
 
 fn text(info: &Info) -> String {
     let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
+    let whole = vec![ColumnConstraint::ContentWidth; 4];
+    table.set_constraints(whole);
     for variable in &info.variables {
         let start = variable.start.clone().unwrap_or_default();
         let unit = variable.unit.clone().unwrap_or_else(|| variable.r#type.to_lowercase());
