@@ -67,7 +67,10 @@ def test_every_page_fits_has_its_equations_and_asks_for_nothing(browser, width, 
         )
         if found := LATEX.search(words):
             faults.append(f"{name}: {found[0]} is left of an equation")
-        for what, wrong in (("wide", page.evaluate(OVERFLOW)), ("flat equations", page.evaluate(FLAT))):
+        wrongs = [("wide", OVERFLOW), ("flat equations", FLAT), ("short brackets", SHORT)]
+        if width > 1000:
+            wrongs.append(("cut tables or code", CUT))
+        for what, wrong in ((what, page.evaluate(script)) for what, script in wrongs):
             if wrong > 0:
                 faults.append(f"{name} at {width}: {what}: {wrong}")
         faults += [f"{name}: {image} is not drawn" for image in page.evaluate(BROKEN)]
