@@ -13,6 +13,8 @@ readonly REQUIREMENTS=(
     tests/requirements-browser.txt
     tests/requirements-release.txt
 )
+# Stretches the brackets of the book's equations.
+readonly MATH_FONT=/usr/share/fonts/truetype/dejavu/DejaVuMathTeXGyre.ttf
 # A workspace of its own, see its Cargo.toml.
 readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 
@@ -97,6 +99,7 @@ missing_packages() {
     has_command ngspice || echo ngspice
     has_library libngspice.so.0 || echo libngspice0
     has_command chromium || echo chromium
+    [[ -f $MATH_FONT ]] || echo fonts-dejavu-extra
     has_command shellcheck || echo shellcheck
     has_daemon slurmctld || echo slurmctld
     has_daemon slurmd || echo slurmd

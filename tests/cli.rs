@@ -346,6 +346,8 @@ fn the_fmus_are_built_where_asked_and_described() {
         assert!(variables.iter().any(|variable| variable["name"] == "left.capacitance" && variable["unit"] == "F"));
         let text = videg(&["fmu", "info", path.to_str().unwrap()]);
         assert!(text.code == Some(0) && text.stdout.contains("left.capacitance"), "{}", text.stdout);
+        let widest = text.stdout.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(120), "{widest:?} columns:\n{}", text.stdout);
     }
 }
 

@@ -87,8 +87,8 @@ pub const OVERLAY_CAPTION: &str = "(a) Voltages of the membranes by the embedded
     energies since the start, embedded solver (lines) and ngspice (dots).";
 
 /// What stands below the figure of the sweep.
-pub const SWEEP_CAPTION: &str = "Net gain of the whole run, embedded solver with ideal diodes (lines) and ngspice (dots): (a) what the \
-    mechanics give and (b) what a user gains over the voltage of release; (c) and (d) the same over the load resistance.";
+pub const SWEEP_CAPTION: &str = "Energies of the whole run, embedded solver with ideal diodes (lines) and ngspice (dots): (a) what the \
+    mechanics give, converted, and (b) what a user gains, the surplus, over the voltage of release; (c) and (d) the same over the load resistance.";
 
 /// Net gain over voltage of release and load.
 pub fn sweep(sweep: &Sweep) -> Result<String, ReportError> {
@@ -98,16 +98,17 @@ pub fn sweep(sweep: &Sweep) -> Result<String, ReportError> {
         curves.iter().map(|curve| (curve.circuit.clone(), of(&curve.points), of(&curve.witnesses))).collect()
     };
     let voltage = values.map(|value| lines(&sweep.voltage, |x| 1e-3 * x, value));
-    let load = values.map(|value| lines(&sweep.load, f64::log10, value));
-    let names = ["converted (mJ)", "surplus (mJ)"];
+    let load = values.map(|value| lines(&sweep.load, |x| x, value));
+    let names = ["converted energy (mJ)", "surplus (mJ)"];
     let over_voltage = ["(a)", "(b)"].into_iter().zip(names).zip(&voltage);
     let over_load = ["(c)", "(d)"].into_iter().zip(names).zip(&load);
-    let mut figure = Figure::new("Net gain of six circuits").caption(SWEEP_CAPTION);
+    let mut figure =
+        Figure::new("Converted energy and surplus over voltage of release and load").caption(SWEEP_CAPTION);
     for ((title, name), lines) in over_voltage {
         figure = figure.panel(curves(title, "voltage of release (kV)", name, lines));
     }
     for ((title, name), lines) in over_load {
-        figure = figure.panel(curves(title, "log10 of the load resistance (ohm)", name, lines));
+        figure = figure.panel(curves(title, "load resistance (ohm)", name, lines).log_x());
     }
     render_svg(&figure)
 }
@@ -115,9 +116,11 @@ pub fn sweep(sweep: &Sweep) -> Result<String, ReportError> {
 fn curves<'a>(title: &str, x: &str, y: &str, lines: &'a [(String, Points, Points)]) -> Panel<'a> {
     // The same circuit has the same colour in all panels.
     let colors: &[usize] = if lines.len() == 4 { &[0, 1, 3, 4] } else { &[0, 1, 2, 3, 4, 5] };
-    lines.iter().zip(colors).fold(Panel::new(title, x, y).height(150.0), |panel, ((name, line, markers), &color)| {
+    let all = lines.iter().zip(colors).enumerate();
+    all.fold(Panel::new(title, x, y).height(150.0), |panel, (index, ((name, line, markers), &color))| {
+        let witness = if index == 0 { "dots: ngspice" } else { "" };
         panel
             .series(Series::points(name.clone(), line).color(color))
-            .series(Series::points("", markers).style(Style::Markers).color(color))
+            .series(Series::points(witness, markers).style(Style::Markers).color(color))
     })
 }

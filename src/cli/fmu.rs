@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use comfy_table::{ColumnConstraint, ContentArrangement};
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
@@ -12,6 +13,9 @@ use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
 use crate::fmi::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 use crate::package::{self, AddedBinary, Options};
+
+/// Columns of a terminal within which descriptions of variables are wrapped.
+const WIDTH: u16 = 120;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -186,6 +190,9 @@ fn row<'a>(items: &Items<'a>, variable: &'a Variable) -> Row<'a> {
 
 fn text(info: &Info) -> String {
     let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
+    let whole = vec![ColumnConstraint::ContentWidth; 4];
+    table.set_constraints(whole);
     for variable in &info.variables {
         let unit = variable.unit.map_or_else(|| variable.r#type.to_lowercase(), ToOwned::to_owned);
         let start = variable.start.as_deref().unwrap_or_default().to_owned();

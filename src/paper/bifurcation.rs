@@ -25,6 +25,15 @@ pub struct Path {
     pub start: fn(&Cylinder, f64) -> Start,
 }
 
+/// Distance, mm, of dots that nobody could tell apart.
+const RESOLUTION: f64 = 0.05;
+
+/// Whether a dot of a cloud, which is sorted by x, is one with this to the eye.
+fn hidden(dot: (f64, f64), cloud: &[(f64, f64)]) -> bool {
+    let column = cloud.iter().skip(cloud.partition_point(|other| other.0 < dot.0)).take_while(|other| other.0 == dot.0);
+    column.map(|other| other.1).any(|y| (y - dot.1).abs() < 1.5 * RESOLUTION)
+}
+
 /// How the motion at a value of the parameter is reached.
 const WAYS: [&str; 3] = ["saw-tooth start", "followed upwards", "followed downwards"];
 
@@ -115,7 +124,10 @@ impl Diagram {
 
     /// Displacements over the parameter, each way, and `<U>`.
     pub fn picture(&self, path: &Path) -> Result<Picture, PaperError> {
-        let clouds: Vec<Vec<(f64, f64)>> = self.ways.iter().map(|orbits| self.cloud(orbits)).collect();
+        let mut clouds: Vec<Vec<(f64, f64)>> = self.ways.iter().map(|orbits| self.cloud(orbits)).collect();
+        // Upwards and downwards share a panel, where equal dots would hide each other.
+        let upwards = clouds[1].clone();
+        clouds[2].retain(|dot| !hidden(*dot, &upwards));
         let gain = |orbit: &Orbit| 1e-3 * orbit.voltage_gain(TAKEN as usize);
         let gains: Vec<Vec<(f64, f64)>> =
             self.ways.iter().map(|orbits| self.xs.iter().copied().zip(orbits.iter().map(gain)).collect()).collect();
@@ -123,7 +135,10 @@ impl Diagram {
         let panel = |title: &str, label: &str, height: f64| {
             Panel::new(title, path.axis, label).x_range(from, to).height(height).share_x_with_next()
         };
-        let dots = |index: usize| Series::points(WAYS[index], &clouds[index]).style(Style::Dots).color(index);
+        let dots = |index: usize| {
+            let label = if index == 2 { "followed downwards, where that differs" } else { WAYS[index] };
+            Series::points(label, &clouds[index]).style(Style::Dots).color(index)
+        };
         let displacement = "z_M - z_m (mm)";
         let mut output = panel("(c)", "<U> (kV/s)", 160.0);
         output.share_x_with_next = false;
@@ -138,7 +153,8 @@ impl Diagram {
         let caption = format!(
             "{} Relative displacement at the start of each period, when the cylinder is at the end of its swing: \
              {TAKEN} periods after {TRANSIENT}; (a) from the saw-tooth start, (b) each motion going on from the one \
-             before along the parameter, upwards and downwards; (c) <U> of Eq. (15) over the {TAKEN} periods.",
+             before along the parameter, upwards and downwards; (c) <U> of Eq. (15) over the {TAKEN} periods. Where the ways \
+             differ, several attractors coexist, and the start decides.",
             path.caption
         );
         Ok(Picture::new(path.name, &figure, caption)?)
@@ -146,7 +162,6 @@ impl Diagram {
 
     /// Dots to draw, mm: of those that nobody could tell apart, one.
     fn cloud(&self, orbits: &[Orbit]) -> Vec<(f64, f64)> {
-        const RESOLUTION: f64 = 0.05;
         let dots = |orbit: &Orbit| {
             let mut values: Vec<f64> =
                 orbit.flashes.iter().map(|flash| (1e3 * flash.displacement / RESOLUTION).round()).collect();

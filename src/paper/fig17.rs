@@ -138,7 +138,7 @@ fn curve(points: &[Point]) -> Result<Picture, PaperError> {
     let (means, medians) = (of(|gain| gain.mean), of(|gain| gain.median));
     let interval = |p: &Point| (p.intensity, 1e-3 * p.gain.interval[0], 1e-3 * p.gain.interval[1]);
     let intervals: Vec<_> = points.iter().map(interval).collect();
-    let panel = Panel::new("", "D = sigma^2 (1)", "<U> (kV/s)")
+    let panel = Panel::new("", "D = sigma^2 (rad^2)", "<U> (kV/s)")
         .height(300.0)
         .series(Series::points("mean, with its 95 % interval", &means).style(Style::Crosses).color(0))
         .series(Series::points("median", &medians).style(Style::Dashed).color(1))
@@ -262,7 +262,7 @@ fn plateau(points: &[Point], finding: impl Fn(&str, &str, f64, Verdict, String) 
 
 fn sheet(points: &[Point]) -> Sheet {
     let columns = [
-        "D (1)",
+        "D (rad^2)",
         "mean <U> (V/s)",
         "95 % from (V/s)",
         "95 % to (V/s)",
@@ -282,7 +282,7 @@ fn sheet(points: &[Point]) -> Sheet {
 }
 
 fn samples_sheet(points: &[Point]) -> Sheet {
-    let columns = ["D (1)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"].map(str::to_owned).to_vec();
+    let columns = ["D (rad^2)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"].map(str::to_owned).to_vec();
     let rows = points.iter().enumerate().flat_map(|(index, point)| {
         point.samples.iter().enumerate().map(move |(sample, averages)| {
             let seed = seed(index, sample) as f64;

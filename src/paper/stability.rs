@@ -210,7 +210,7 @@ impl Stability {
         let start = self.nudged[0].points.first().map_or(f64::NAN, |point| point.1);
         let end = (1.0 / start).ln() / self.rate();
         let slope = [(0.0, start), (end, 1.0)];
-        let mut panel = Panel::new("", "time (s)", "distance from the orbit")
+        let mut panel = Panel::new("", "time (s)", "distance from the orbit (units of s/2 and of the ball's speed)")
             .log_y()
             .x_range(0.0, 50.0)
             .y_range(1e-17, 10.0)

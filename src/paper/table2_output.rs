@@ -8,6 +8,10 @@ use crate::report::{Column, Figure, Panel, Series, Style, Table};
 /// Where the free start of Figure 12 stands on the axis of figures.
 const FREE: f64 = 12.5;
 
+/// What is written on that axis.
+const PLACES: [(f64, &str); 7] =
+    [(10.0, "10"), (11.0, "11"), (12.0, "12"), (FREE, "12 free"), (13.0, "13"), (14.0, "14"), (15.0, "15")];
+
 /// How far the paper's value and ours stand beside the bars of nearby starts.
 const BESIDE: f64 = 0.1;
 
@@ -169,7 +173,8 @@ impl Overview {
     }
 
     fn panel(&self) -> Panel<'_> {
-        Panel::new("(a)", "figure (12.5: Figure 12 started free)", "<U> (V/s)")
+        Panel::new("(a)", "figure of the paper", "<U> (V/s)")
+            .x_names(PLACES)
             .x_range(9.5, 15.5)
             .height(240.0)
             .bars(&self.range, 5)
@@ -200,8 +205,9 @@ impl Curves {
         let panel = self.curves.iter().fold(panel, |panel, (label, color, points)| {
             panel.series(Series::points(label.as_str(), points).style(Style::Steps).color(*color))
         });
-        self.printed.iter().fold(panel, |panel, (color, points)| {
-            panel.series(Series::points("", points).style(Style::Dashed).color(*color))
+        self.printed.iter().enumerate().fold(panel, |panel, (index, (color, points))| {
+            let label = if index == 0 { "paper" } else { "" };
+            panel.series(Series::points(label, points).style(Style::Dashed).color(*color))
         })
     }
 }
@@ -223,7 +229,7 @@ pub(super) fn picture(computation: &Computation) -> Result<Picture, PaperError> 
         .panel(stepped.panel("(d) chaotic cases, paper's stepping").x_range(6400.0, 7700.0));
     let caption = format!(
         "Average voltage gain <U> over 50 to 100 s, Eq. (15). (a) The paper (crosses), its starts through the FMU \
-         (dots), and starts with the ball's velocity nudged by up to {NUDGE:e} m/s: all of them and the middle 90 %. \
+         (dots; free: Figure 12 with the ball started outside the gap), and starts with the ball's velocity nudged by up to {NUDGE:e} m/s: all of them and the middle 90 %. \
          (b) Their distribution functions for Figures 11 to 13, r = 1; dashed: the paper's values. (c) The same for \
          Figure 10. (d) As (b) by the paper's method, Runge-Kutta of fourth order at 1e-5 s, with nudges of up to \
          {STEPPED_NUDGE:e} m/s. A few starts of (b) and (d) lie outside.",

@@ -234,7 +234,7 @@ fn picture(compared: &[Compared]) -> Result<Picture, PaperError> {
                 .log_y()
                 .series(Series::points("", impacts).color(1))
                 .series(Series::points("", impacts).style(Style::Markers).color(1))
-                .series(Series::points("", exact).color(0)),
+                .series(Series::points("", exact).style(Style::Dashed).color(0)),
         );
     }
     let caption = "Power by Eq. (14), and impacts counted, by the paper's Runge-Kutta with a fixed step against the step, and \

@@ -18,7 +18,7 @@ pub(super) fn x_axes(figure: &Figure, ticks: usize) -> Result<Vec<Axis>, ReportE
         let shared = above.and_then(|above| axes.get(above).cloned());
         axes.push(match shared {
             Some(axis) if figure.panels[index - figure.columns].log_x == panel.log_x => axis,
-            _ => x_axis(&group(figure, index), ticks)?,
+            _ => x_axis(&group(figure, index), ticks)?.named(&panel.x_names),
         });
     }
     Ok(axes)

@@ -24,6 +24,8 @@ pub(super) struct Axis {
     decimals: usize,
     scientific: bool,
     ticks: Vec<f64>,
+    /// Ticks in drawing units with a name instead of a number.
+    names: Vec<(f64, String)>,
 }
 
 impl Axis {
@@ -38,7 +40,8 @@ impl Axis {
             return None;
         }
         let ticks = Vec::new();
-        let mut axis = Self { low, high, log: false, exponent, decimals: 0, scientific: false, ticks };
+        let names = Vec::new();
+        let mut axis = Self { low, high, log: false, exponent, decimals: 0, scientific: false, ticks, names };
         axis.ticks = RangedCoordf64::from(axis.scaled_range()).key_points(max_ticks);
         axis.choose_format();
         Some(axis)
@@ -56,7 +59,8 @@ impl Axis {
         } else {
             decades(low, high, max_ticks)
         };
-        Some(Self { low, high, log: true, exponent: 0, decimals: 0, scientific: false, ticks })
+        let scientific = ticks.iter().any(|&tick| is_power(tick));
+        Some(Self { low, high, log: true, exponent: 0, decimals: 0, scientific, ticks, names: Vec::new() })
     }
 
     /// [`Self::around`] for logarithms; without data, the decade from 1.
@@ -68,8 +72,20 @@ impl Axis {
         Self::exact_log(low - pad, high + pad, max_ticks)
     }
 
-    /// The same axis with another number of ticks.
+    /// The same axis with these names at its ticks, given in data units; with its numbers if there are none.
+    pub(super) fn named(mut self, names: &[(f64, String)]) -> Self {
+        if !names.is_empty() && !self.log {
+            self.names = names.iter().map(|(x, name)| (self.scaled(*x), name.clone())).collect();
+            self.ticks = self.names.iter().map(|name| name.0).collect();
+        }
+        self
+    }
+
+    /// The same axis with another number of ticks; those with names stay.
     pub(super) fn with_ticks(&self, max_ticks: usize) -> Self {
+        if !self.names.is_empty() {
+            return self.clone();
+        }
         let make = if self.log { Self::exact_log } else { Self::exact };
         make(self.low, self.high, max_ticks).unwrap_or_else(|| self.clone())
     }
@@ -103,8 +119,11 @@ impl Axis {
 
     /// The text at a tick given in drawing units.
     pub(super) fn label(&self, scaled: f64) -> String {
+        if let Some((_, name)) = self.names.iter().find(|(at, _)| (at - scaled).abs() < CONSTANT) {
+            return name.clone();
+        }
         let text = if self.log {
-            plain_or_power(scaled)
+            if self.scientific { power(scaled) } else { plain(scaled) }
         } else if self.scientific {
             scientific(scaled, self.exponent)
         } else {
@@ -193,14 +212,30 @@ fn multiples(low: f64, high: f64, factors: &[f64]) -> Vec<f64> {
     ticks
 }
 
-/// `200`, or `2 x 10^-7`, for its logarithm.
-fn plain_or_power(logarithm: f64) -> String {
+/// Whether a tick of a logarithmic axis, and so all of them, is written as a power of ten.
+fn is_power(logarithm: f64) -> bool {
+    !(-3..=4).contains(&decade_of(logarithm + CONSTANT))
+}
+
+/// Power of ten and factor of the number with this logarithm.
+fn parts(logarithm: f64) -> (i32, f64) {
     let shift = decade_of(logarithm + CONSTANT);
-    let mantissa = (10_f64.powf(logarithm - f64::from(shift)) * 1e6).round() / 1e6;
-    if (-3..=4).contains(&shift) {
-        let decimals = usize::try_from(6 - shift).unwrap_or(0);
-        let text = format!("{:.decimals$}", mantissa * 10_f64.powi(shift));
-        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    (shift, (10_f64.powf(logarithm - f64::from(shift)) * 1e6).round() / 1e6)
+}
+
+/// `200` for its logarithm.
+fn plain(logarithm: f64) -> String {
+    let (shift, mantissa) = parts(logarithm);
+    let decimals = usize::try_from(6 - shift).unwrap_or(0);
+    let text = format!("{:.decimals$}", mantissa * 10_f64.powi(shift));
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// `2 x 10^-7` for its logarithm; 1 stays 1.
+fn power(logarithm: f64) -> String {
+    let (shift, mantissa) = parts(logarithm);
+    if shift == 0 {
+        return mantissa.to_string();
     }
     if mantissa == 1.0 {
         return format!("10{}", superscript(shift));
@@ -321,6 +356,15 @@ mod tests {
         assert_eq!(log_labels(1.0, 20.0), ["1", "2", "5", "10", "20"]);
         assert_eq!(log_labels(2.0, 6.0), ["2", "3", "4", "5", "6"]);
         assert_eq!(log_labels(1e-100, 1e100).len(), 6);
+        assert_eq!(log_labels(0.1, 1e5), ["10\u{207b}\u{b9}", "10\u{b9}", "10\u{b3}", "10\u{2075}"]);
+    }
+
+    #[test]
+    fn names_take_the_place_of_numbers() {
+        let names = [(10.0, "ten".to_owned()), (12.5, "half".to_owned())];
+        let axis = Axis::exact(9.5, 15.5, 6).unwrap().named(&names).with_ticks(2);
+        let labels: Vec<_> = axis.ticks().iter().map(|&tick| axis.label(tick)).collect();
+        assert_eq!(labels, ["ten", "half"]);
     }
 
     #[test]

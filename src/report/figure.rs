@@ -60,6 +60,8 @@ pub struct Panel<'a> {
     pub x_label: String,
     /// Label of the y axis with its unit; empty for none.
     pub y_label: String,
+    /// Places on the x axis with their names, instead of numbers; none for numbers.
+    pub x_names: Vec<(f64, String)>,
     /// Ends of the x axis; `None` spans the data.
     pub x_range: Option<(f64, f64)>,
     /// Ends of the y axis; `None` spans the data within the x range, and the reference lines.
@@ -93,6 +95,7 @@ impl<'a> Panel<'a> {
             title: title.into(),
             x_label: x_label.into(),
             y_label: y_label.into(),
+            x_names: Vec::new(),
             x_range: None,
             y_range: None,
             share_x_with_next: false,
@@ -112,6 +115,13 @@ impl<'a> Panel<'a> {
     #[must_use]
     pub fn x_range(mut self, low: f64, high: f64) -> Self {
         self.x_range = Some((low, high));
+        self
+    }
+
+    /// Names places on the x axis, which then has no numbers; for a linear axis.
+    #[must_use]
+    pub fn x_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = (f64, S)>) -> Self {
+        self.x_names = names.into_iter().map(|(x, name)| (x, name.into())).collect();
         self
     }
 

@@ -108,6 +108,7 @@
       type: of.type, range: of.range, title: { text: of.title, standoff: 6, font: { size: 12 } }, zeroline: false,
       gridcolor: ink.grid, linecolor: ink.ink, showline: true, mirror: true, ticks: "outside", ticklen: 4,
       exponentformat: "power", automargin: false, nticks: 8,
+      ...(of.names?.length > 0 ? { tickmode: "array", tickvals: of.names.map(([x]) => x), ticktext: of.names.map(([, name]) => name) } : {}),
     };
   }
 

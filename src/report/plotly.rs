@@ -44,7 +44,10 @@ fn panel_json(figure: &Figure, plan: &Plan, index: usize) -> Value {
     json!({
         "title": words(&panel.title),
         "height": planned.height.round(),
-        "x": { "type": kind(panel.log_x), "range": [planned.x.low, planned.x.high], "title": words(&panel.x_label) },
+        "x": {
+            "type": kind(panel.log_x), "range": [planned.x.low, planned.x.high], "title": words(&panel.x_label),
+            "names": panel.x_names.iter().map(|(x, name)| (*x, words(name))).collect::<Vec<_>>(),
+        },
         "y": { "type": kind(panel.log_y), "range": [planned.y.low, planned.y.high], "title": words(&panel.y_label) },
         "linked": linked,
         "open": !panel.share_x_with_next,

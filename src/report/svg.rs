@@ -71,6 +71,7 @@ fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
     for panel in &mut figure.panels {
         panel.title = clean(&panel.title);
         panel.x_label = clean(&panel.x_label);
+        panel.x_names.iter_mut().for_each(|(_, name)| *name = clean(name));
         panel.y_label = clean(&panel.y_label);
         panel.series.iter_mut().for_each(|series| series.label = clean(&series.label));
         panel.lines.iter_mut().for_each(|line| line.label = clean(&line.label));

@@ -23,7 +23,7 @@ const PROGRAMS: &[&str] = &[
     "fmpy",
     "ngspice",
     "cc",
-    "./master",
+    "out/master",
     "cat",
     "cd",
     "cmp",

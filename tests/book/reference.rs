@@ -39,9 +39,9 @@ const CIRCUIT_DEFAULTS: &str = "\nThe start values are those of the FMU. `videg 
 #[test]
 fn the_page_of_variables_is_that_of_the_model_descriptions() {
     let mut page = format!(
-        "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names, \
-         and in FMI its number, from 1: `impulsive` is 1, `compliant` is 2. Left is the end that the ball meets at $z_M - z_m = +s/2$ \
-         ([drawing](../theory/motion.md)).\n"
+        "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names \
+         in `videg` and in a case file, and in FMI its number, from 1: `\"contact.law\": 2`, compliant, in the `start_values` of FMPy. \
+         Left is the end that the ball meets at $z_M - z_m = +s/2$ ([drawing](../theory/motion.md)).\n"
     );
     for fmu in FMUS {
         let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
@@ -75,7 +75,7 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
 }
 
 fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value}"));
+    let number = |value: Option<f64>| value.map_or_else(String::new, scientific);
     let (start, bounds) = match &variable.kind {
         Kind::Real { start, min, max, .. } => (number(*start), [number(*min), number(*max)]),
         Kind::Integer { start, min, max } => {
@@ -86,7 +86,7 @@ fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
         Kind::Enumeration { start } => {
             let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
             let name = items.iter().find(|item| Some(item.value) == *start).map(|item| item.name.clone());
-            let all: Vec<_> = items.iter().map(|item| item.name.as_str()).collect();
+            let all: Vec<_> = items.iter().map(|item| format!("{} {}", item.value, item.name)).collect();
             (name.unwrap_or_default(), [all.join(", "), String::new()])
         }
     };
@@ -100,6 +100,11 @@ fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
     };
     let about = variable.description.as_deref().unwrap().replace('|', "\\|");
     writeln!(page, "| `{}` | {unit} | {start} | {bounds} | {about} |", variable.name).unwrap();
+}
+
+/// A number with a power of ten where the digits would be zeros that nobody counts.
+fn scientific(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 
 /// Lists the cases of the paper with what they set.

@@ -12,6 +12,14 @@ PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print
 
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 FLAT = "[...document.querySelectorAll('main math')].filter(math => math.getBoundingClientRect().height < 4).length"
+# Brackets that are less than half as high as what they hold.
+SHORT = """[...document.querySelectorAll('main math[display=block] mrow')].filter(row => {
+    const [first] = row.children
+    const fences = first?.tagName === 'mo' && '([{'.includes(first.textContent) && first.textContent
+    const tall = [...row.querySelectorAll('mtable')].map(it => it.getBoundingClientRect().height)
+    return fences && first.getBoundingClientRect().height < 0.5 * Math.max(0, ...tall)
+}).length"""
+CUT = "[...document.querySelectorAll('main table, main pre > code')].filter(it => it.scrollWidth > it.clientWidth + 1).length"
 BROKEN = "[...document.images].filter(image => image.naturalWidth === 0).map(image => image.src)"
 LATEX = re.compile(r"\$\$|\\(?:t?frac|sqrt|text|left|quad|begin|Delta|omega)\b")
 
@@ -29,7 +37,7 @@ def test_every_chapter_became_a_page():
 
 
 def test_no_page_shows_the_markup_of_an_equation():
-    shown = [path.name for path in BOOK.rglob("*.html") if "&lt;math" in path.read_text()]
+    shown = [path.name for path in BOOK.rglob("*.html") if "&lt;math xmlns" in path.read_text()]
     assert shown == [], "docs/equations.py took code for an equation"
 
 
@@ -50,7 +58,10 @@ def test_every_page_fits_has_its_equations_and_asks_for_nothing(browser, width, 
         )
         if found := LATEX.search(words):
             faults.append(f"{name}: {found[0]} is left of an equation")
-        for what, wrong in (("wide", page.evaluate(OVERFLOW)), ("flat equations", page.evaluate(FLAT))):
+        wrongs = [("wide", OVERFLOW), ("flat equations", FLAT), ("short brackets", SHORT)]
+        if width > 1000:
+            wrongs.append(("cut tables or code", CUT))
+        for what, wrong in ((what, page.evaluate(script)) for what, script in wrongs):
             if wrong > 0:
                 faults.append(f"{name} at {width}: {what}: {wrong}")
         faults += [f"{name}: {image} is not drawn" for image in page.evaluate(BROKEN)]
