@@ -90,8 +90,9 @@ impl CaseFile {
     /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
+        let layout = toml::from_str(text).map_err(said)?;
         characters::check(&toml::from_str(text).map_err(said)?)?;
-        Self::of(toml::from_str(text).map_err(said)?)
+        Self::of(layout)
     }
 
     /// What a table says that is laid out as a case file.
