@@ -32,8 +32,8 @@ fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clon
 const CIRCUIT_DEFAULTS: &str = "\nThe start values are those of the FMU. `videg cosim`, `crosscheck` and `ssp` start from others, unless they are \
     set: `supply.voltage` is `biasVoltage` of the harvester, `zener.voltage` is `supply.voltage`, and \
     `storage.voltage` is [what gains most](../theory/circuit.md#which-voltage) over the impacts of a run of the mechanics ahead. So `--set \
-    supply.voltage=3000` alone runs with a Zener voltage of 3000 V; in other tools `zener.voltage` and `storage.voltage` must be set with \
-    it, since either must be at least `supply.voltage`.\n";
+    supply.voltage=3000` alone runs with a Zener voltage of 3000 V; in other tools the voltage that charge is released at, \
+    `zener.voltage` or with `release = storage` `storage.voltage`, must be set with it: it must be at least `supply.voltage`.\n";
 
 /// Lists every variable with all that its description says.
 #[test]

@@ -55,8 +55,10 @@ TEXT = """
 The energy that the mechanics give in {seconds} s (`energy.converted`) against that of Gauss-Seidel with steps of {reference} s,
 and the residual of the coupling, -1/2 U^2 dC as the circuit books it less what the harvester books, over all the energy that
 went to and fro. Steps include those undone. Gauss-Seidel and Jacobi are of second order in both, plain is of first, once the
-steps are short enough (`cargo test --test masters` compares steps below 1 ms). Errors and residuals are shown without their sign,
-and at coarser steps it changes: {changes}. Close to such a change a value is small by chance.
+steps are short enough (`cargo test --test masters` compares finer ones). Errors and residuals stand here without their sign. Where
+that changes, a value is small by chance, and what follows need not fall at once:
+
+{changes}
 
 ![Error of the converted energy over the number of steps]({figure})
 
@@ -80,15 +82,15 @@ def fixed_steps(error: float, runs: list[Run]) -> float:
 
 
 def changes(fixed: Runs) -> str:
-    """Where the sign changes from one fixed step to the next, in words."""
+    """A list of where the sign changes from one fixed step to the next."""
     found = [
-        f"that of the {what} of {master} between {before.option} and {after.option} s"
+        f"- {master}: {what}, between {before.option} and {after.option} s"
         for master, runs in fixed.items()
         for what in ("error", "residual")
         for before, after in zip(runs, runs[1:])
         if getattr(before, what) * getattr(after, what) < 0.0
     ]
-    return ", ".join(found) if found else "here it does not"
+    return "\n".join(found) if found else "- nowhere"
 
 
 def two_digits(number: float) -> str:
