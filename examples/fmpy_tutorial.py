@@ -4,9 +4,11 @@
 # # C(t) in FMPy
 #
 # You load the harvester into [FMPy](https://fmpy.readthedocs.io), get its capacitances C(t), change parameters, go back in time,
-# ask for derivatives, and couple it with the circuit. It takes a quarter of an hour, a Rust toolchain, and Python with `fmpy` and
-# `matplotlib`. `./test.sh setup` installs the versions that this page was made with into `.venv`; `source .venv/bin/activate`
-# turns them on.
+# ask for derivatives, and couple it with the circuit. It takes a quarter of an hour, a Rust toolchain, a C linker, and Python 3.11 or
+# later with FMPy and matplotlib, in the versions that this page was made with:
+
+# %% [markdown]
+# `./test.sh setup` makes the same `.venv`, but installs all that the tests need into it, and Debian packages besides.
 #
 # The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree,
 # where `videg` stands for `cargo run --release --` unless it is on the PATH (`export PATH=$PWD/target/release:$PATH`).
@@ -75,11 +77,11 @@ print(f"{result['impact.count'][-1]} impacts, <U> = {(gain[100_000] - gain[50_00
 last = result["time"] >= 98.5
 figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(8, 5), layout="constrained")
 top.plot(result["time"][last], 1e3 * result["relativeDisplacement"][last], color="tab:gray")
-top.set_ylabel("$z_M - z_m$, mm")
+top.set_ylabel("$z_M - z_m$ (mm)")
 for side in ("left", "right"):
     bottom.plot(result["time"][last], 1e12 * result[f"{side}.capacitance"][last], label=side)
-bottom.set_ylabel("C, pF")
-bottom.set_xlabel("t, s")
+bottom.set_ylabel("capacitance (pF)")
+bottom.set_xlabel("time (s)")
 bottom.legend()
 figure.savefig(figures / "capacitance.svg")
 
@@ -107,6 +109,20 @@ for restitution in restitutions:
 # %% [markdown]
 # For thousands of runs there is [`videg sweep`](../sweep.md), on all cores.
 #
+# An enumeration goes by its number, which stands with its name in [Variables](../reference/variables.md); FMPy takes no names. A contact
+# that takes time, `contact.law = compliant`:
+
+# %%
+compliant = fmpy.simulate_fmu(
+    HARVESTER,
+    stop_time=60.0,
+    output_interval=10.0,
+    start_values={**fig14, "contact.law": 2},
+    output=["gain.voltage"],
+)
+print(f"compliant: <U> = {(compliant['gain.voltage'][-1] - compliant['gain.voltage'][-4]) / 30:.0f} V/s from 30 to 60 s")
+
+# %% [markdown]
 # A value that makes no sense is refused, and the message says why:
 
 # %%
@@ -202,8 +218,8 @@ exact = slave.getDirectionalDerivative(
     vKnown_ref=[slave.references["externalForce"]],
     dvKnown=[1.0],
 )
-for name, by_fmu, by_difference in zip(outputs, exact, difference):
-    print(f"d {name:17} / dF: {by_fmu:.5e}, by difference {by_difference:.5e}")
+for name, unit, by_fmu, by_difference in zip(outputs, ["m/N", "m/(s N)", "F/N", "F/N"], exact, difference):
+    print(f"d {name:17} / dF: {by_fmu:.5e} {unit}, by difference {by_difference:.5e} {unit}")
 slave.freeFMUstate(state)
 slave.terminate()
 slave.freeInstance()
@@ -258,12 +274,12 @@ subprocess.run("videg cosim --until 20 --json | python -c \"import json, sys; en
 # %%
 last = times >= 18.0
 figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(8, 5), layout="constrained")
-top.plot(times[last], voltage[last], color="tab:gray")
-top.set_ylabel("U, V")
-for name, values, style in zip(BOOKS, books, ("-", "-", "--", "--")):
-    bottom.plot(times[last], 1e3 * values[last], style, label=name)
-bottom.set_ylabel("energy, mJ")
-bottom.set_xlabel("t, s")
+top.plot(times[last], 1e-3 * voltage[last], color="tab:gray")
+top.set_ylabel("voltage (kV)")
+for name, values, style in zip(BOOKS, books, ("-", "-", "--", "-")):
+    bottom.plot(times[last], 1e3 * (values[last] - values[last][0]), style, label=name)
+bottom.set_ylabel("energy since 18 s (mJ)")
+bottom.set_xlabel("time (s)")
 bottom.legend()
 figure.savefig(figures / "energy.svg")
 for instance in (harvester, circuit):
