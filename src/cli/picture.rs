@@ -134,7 +134,7 @@ pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError>
     let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
     let figure = figure.panel(voltages).panel(energies).caption(
         "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
-         and the energies since its start.",
+         and the energies since its start. Lines join capacitances and voltages at communication points.",
     );
     Drawing::new(&figure)
 }
