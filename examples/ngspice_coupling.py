@@ -43,6 +43,7 @@ print(f"{len(rows)} rows; both membranes at rest: {1e12 * rest:.6f} pF")
 # %%
 from pathlib import Path
 
+Path("out/ngspice/own.cir").parent.mkdir(parents=True, exist_ok=True)
 Path("out/ngspice/own.cir").write_text(r"""* Supply, diode, both membranes, diode, storage
 * Voltages in V; capacitance of one membrane at 0 s in pF, half of what the script printed.
 .param supply=2000 storage=2200 rest=15.0147674

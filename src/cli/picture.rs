@@ -1,7 +1,7 @@
 //! The figure of a run: the last cycles in detail, energies over the whole run.
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
-use crate::report::{Drawing, Figure, Panel, ReportError, Series, render_svg};
+use crate::report::{Drawing, Figure, Panel, ReportError, Series, Style, render_svg};
 use crate::scenario::Scenario;
 
 /// Points of one curve: time and value.
@@ -20,6 +20,42 @@ fn column(name: &str) -> impl Fn(&TracePoint) -> f64 + use<> {
     move |point| index.map_or(f64::NAN, |index| point.harvester.columns()[index])
 }
 
+/// Communication points further apart than this, s, are joined by a curve, not by a line.
+const COARSE: f64 = 2e-3;
+
+/// The relative displacement, mm. An adaptive master steps over whole flights: there the curve also has the velocities at both
+/// ends; where an impact ends it, the velocity before that is not known, and the one at the beginning has to do.
+fn displacement(trace: &[TracePoint]) -> Points {
+    let [cylinder, ball, impact] = ["cylinder.velocity", "ball.velocity", "impact.lastVelocity"].map(column);
+    let state = |point: &TracePoint| {
+        (point.time, 1e3 * point.harvester.relative_displacement(), 1e3 * (cylinder(point) - ball(point)))
+    };
+    let mut points: Points = Vec::new();
+    for pair in trace.windows(2) {
+        let [(from, start, speed), (to, end, last)] = [state(&pair[0]), state(&pair[1])];
+        let span = to - from;
+        let last = if impact(&pair[0]).to_bits() == impact(&pair[1]).to_bits() {
+            last
+        } else {
+            2.0 * (end - start) / span - speed
+        };
+        points.push((from, start));
+        let pieces = if span > COARSE { 30_u32 } else { 1 };
+        points.extend((1..pieces).map(|k| {
+            let share = f64::from(k) / f64::from(pieces);
+            (from + share * span, hermite(share, [start, end], [speed * span, last * span]))
+        }));
+    }
+    points.extend(trace.last().map(|point| (state(point).0, state(point).1)));
+    points
+}
+
+/// The cubic over 0 to 1 with these values and slopes at its ends.
+fn hermite(x: f64, [start, end]: [f64; 2], [first, last]: [f64; 2]) -> f64 {
+    let rest = 1.0 - x;
+    rest * rest * ((1.0 + 2.0 * x) * start + x * first) + x * x * ((1.0 + 2.0 * rest) * end - rest * last)
+}
+
 /// The curves of the mechanics.
 struct Mechanics {
     dz: Points,
@@ -30,7 +66,7 @@ struct Mechanics {
 impl Mechanics {
     fn new(trace: &Trace) -> Self {
         Self {
-            dz: points(&trace.detail, |point| 1e3 * point.harvester.relative_displacement()),
+            dz: displacement(&trace.detail),
             left: points(&trace.detail, |point| 1e12 * point.harvester.capacitance()[0]),
             right: points(&trace.detail, |point| 1e12 * point.harvester.capacitance()[1]),
         }
@@ -87,17 +123,18 @@ pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError>
     } else {
         voltages.series(Series::points("left membrane", &left)).series(Series::points("right membrane", &right))
     };
+    // Of two that lie on each other the upper one is dashed, and both show.
     let energies = Panel::new("(d)", "time (s)", "energy (mJ)")
         .height(150.0)
         .series(Series::points("supply", &supply).color(0))
-        .series(Series::points("Zener", &zener).color(1))
+        .series(Series::points("Zener", &zener).style(Style::Dashed).color(1))
         .series(Series::points("load", &load).color(2))
-        .series(Series::points("converted", &converted).color(3))
+        .series(Series::points("converted", &converted).style(Style::Dashed).color(3))
         .series(Series::points("W, Eq. (13)", &eq13).color(6));
     let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
     let figure = figure.panel(voltages).panel(energies).caption(
         "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
-         and the energies since its start.",
+         and the energies since its start. Lines join capacitances and voltages at communication points.",
     );
     Drawing::new(&figure)
 }
@@ -121,4 +158,17 @@ pub fn simulate(trace: &Trace, scenario: &Scenario) -> Result<String, ReportErro
          run, and the sum of the voltage gains since its start.",
     );
     render_svg(&figure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_its_own_curve() {
+        let (cubic, slope) = (|x: f64| 2.0 - x + 3.0 * x * x * x, |x: f64| 9.0 * x * x - 1.0);
+        for x in [0.0, 0.3, 0.8, 1.0] {
+            assert!((hermite(x, [cubic(0.0), cubic(1.0)], [slope(0.0), slope(1.0)]) - cubic(x)).abs() < 1e-12, "{x}");
+        }
+    }
 }

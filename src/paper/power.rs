@@ -210,8 +210,11 @@ fn table(counts: &[Vec<Count>]) -> Table {
     rows.fold(Table::new(columns), Table::row).row(electromagnetic)
 }
 
-/// A bar from 0 to `height` at place number `place`: its area and its outline.
-fn bar(place: usize, height: f64) -> ([(f64, f64, f64); 2], [(f64, f64); 5]) {
+/// Two limits of a bar's area, and the corners of its outline.
+type Bar = ([(f64, f64, f64); 2], [(f64, f64); 5]);
+
+/// A bar from 0 to `height` at place number `place`.
+fn bar(place: usize, height: f64) -> Bar {
     let [left, right] = [-0.35, 0.35].map(|offset| place as f64 + 1.0 + offset);
     let area = [left, right].map(|x| (x, height.min(0.0), height.max(0.0)));
     (area, [(left, 0.0), (left, height), (right, height), (right, 0.0), (left, 0.0)])

@@ -9,9 +9,10 @@ use crate::console;
 use crate::{GOLDEN, root};
 
 /// Chapters and their scripts.
-const SCRIPTS: [(&str, &str); 2] = [
+const SCRIPTS: [(&str, &str); 3] = [
     ("docs/tutorial/fmpy.md", "examples/fmpy_tutorial.py"),
     ("docs/tutorial/ngspice.md", "examples/ngspice_coupling.py"),
+    ("docs/howto/membrane.md", "examples/own_membrane.py"),
 ];
 
 #[test]
@@ -59,7 +60,11 @@ fn code(block: &Block) -> Option<String> {
             Some(format!("import subprocess\n\n{}", runs.collect::<String>()))
         }
         (_, Some(name)) => {
-            Some(format!("from pathlib import Path\n\nPath({name:?}).write_text(r\"\"\"{}\"\"\")\n", block.text))
+            let folder = format!("Path({name:?}).parent.mkdir(parents=True, exist_ok=True)");
+            Some(format!(
+                "from pathlib import Path\n\n{folder}\nPath({name:?}).write_text(r\"\"\"{}\"\"\")\n",
+                block.text
+            ))
         }
         _ => None,
     }

@@ -12,7 +12,7 @@ import harness
 
 @pytest.mark.parametrize(
     "script, figures",
-    [("fmpy_tutorial", ["capacitance.svg", "energy.svg"]), ("ngspice_coupling", ["storage.svg"])],
+    [("fmpy_tutorial", ["capacitance.svg", "energy.svg"]), ("ngspice_coupling", ["storage.svg"]), ("own_membrane", [])],
 )
 def test_a_tutorial_runs_and_draws_its_figures(fmus, tmp_path, script, figures):
     if script == "ngspice_coupling" and not shutil.which("ngspice"):
