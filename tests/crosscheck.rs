@@ -210,8 +210,10 @@ fn hostile_names_run_nothing_and_stay_in_the_folder() {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("inner");
     std::fs::create_dir(&folder).unwrap();
-    let name = "../../evil\\n.control\\nshell touch pwned\\n.endc";
-    std::fs::write(folder.join("case.toml"), format!("name = \"{name}\"\nuntil = 0.3\n")).unwrap();
+    let name = ".control ../../evil; shell touch pwned";
+    let description = "\\n.control\\nshell touch pwned\\n.endc";
+    let case = format!("name = \"{name}\"\ndescription = \"{description}\"\nuntil = 0.3\n");
+    std::fs::write(folder.join("case.toml"), case).unwrap();
     let arguments = ["crosscheck", "--json", "--case-file", "case.toml", "--export", "for\n.control"];
     json(&videg(&folder, &arguments, &[]), 0);
     let within = |folder: &Path| -> Vec<String> {
