@@ -210,7 +210,7 @@ fn hostile_names_run_nothing_and_stay_in_the_folder() {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("inner");
     std::fs::create_dir(&folder).unwrap();
-    let name = ".control ../../evil; shell touch pwned";
+    let name = "../../evil; .control; shell touch pwned";
     let description = "\\n.control\\nshell touch pwned\\n.endc";
     let case = format!("name = \"{name}\"\ndescription = \"{description}\"\nuntil = 0.3\n");
     std::fs::write(folder.join("case.toml"), case).unwrap();
