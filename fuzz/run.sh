@@ -70,7 +70,8 @@ run() {
         code=0
         { time "$scratch/$target" "${folders[@]}" -max_total_time="$((ended - SECONDS))" -timeout="$((10 * jobs))" \
             -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$artifacts" >"$log" 2>&1 || code=$?; } 2>"$log.time"
-        read -r count user system <"$log.time"
+        # Behind what the shell says of a program that was killed.
+        read -r count user system < <(tail -1 "$log.time")
         real=$((real + count)) processor=$((processor + user + system))
         count=$(last 'stat::number_of_executed_units:' "$log")
         [[ -n $count ]] || return 0 # it did not even run
@@ -84,11 +85,14 @@ run() {
 # Fuzzes a target and adds its line.
 fuzz() {
     local target=$1 code=0 real processor executions log=$scratch/$1.log
+    # Until it is known that it did not.
+    touch "$scratch/$target.failed"
     run "$target"
     if [[ $code -ne 0 ]]; then
-        touch "$scratch/$target.failed"
         grep --invert-match '^#[0-9]' "$log" | tail -60 >&2
         [[ $executions -gt 0 ]] || return 0
+    else
+        rm "$scratch/$target.failed"
     fi
     echo "$(date --utc +%F),$commit,$target,$real,$processor,$executions,$(last cov: "$log"),$(last ft: "$log"),$((code != 0))" |
         tee --append "$record"
@@ -100,7 +104,7 @@ commit=$(git rev-parse --short=10 HEAD)
 build "$@"
 [[ -s $record ]] || echo date,commit,target,seconds,cpu_seconds,executions,edges,features,findings >"$record"
 for target in "$@"; do
-    [[ $(jobs -rp | wc --lines) -lt $jobs ]] || wait -n
+    [[ $(jobs -rp | wc --lines) -lt $jobs ]] || wait -n || true
     fuzz "$target" &
 done
 wait

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -85,7 +85,8 @@ fn remove(folder: &Path) {
         }
     }
     if let Err(cause) = result {
-        eprintln!("videg: cannot remove the temporary folder {}: {cause}", folder.display());
+        // Where nobody reads stderr any more, the folder stays without a word.
+        let _ = writeln!(io::stderr(), "videg: cannot remove the temporary folder {}: {cause}", folder.display());
     }
 }
 

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+#[path = "support/signals.rs"]
+mod signals;
 #[path = "hostile/toy.rs"]
 mod toy;
 
@@ -28,7 +30,8 @@ fn has_ended(process: &str) -> bool {
 /// The exit code of `program`, which has `signal` sent to it when the file at `mark` has the number of a child; that child is
 /// gone then, and the folder of temporary files empty.
 fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Path) -> Option<i32> {
-    let mut program = program.env("TMPDIR", temporary).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut program = signals::with_default_signals(program.env("TMPDIR", temporary));
+    let mut program = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let child = wait_for(|| std::fs::read_to_string(mark).ok().filter(|text| text.ends_with('\n')));
     assert!(std::fs::read_dir(temporary).unwrap().count() > 0, "there is a folder to be removed");
     let id = program.id().to_string();
@@ -44,7 +47,7 @@ fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Pat
 
 #[test]
 fn a_signal_leaves_neither_the_worker_of_an_fmu_nor_its_folder() {
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129), ("QUIT", 131)] {
         let folder = tempfile::tempdir().unwrap();
         let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
         std::fs::create_dir(&temporary).unwrap();
@@ -72,4 +75,29 @@ fn a_signal_leaves_neither_ngspice_nor_its_folder() {
     program.args(["crosscheck", "--until", "0.05", "--output"]).arg(folder.path().join("out"));
     program.env("VIDEG_NGSPICE", &ngspice);
     assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary), Some(143));
+}
+
+/// As `nohup` starts it, and a shell in a script what ends in `&`.
+#[test]
+fn a_signal_that_the_program_was_started_to_ignore_stays_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    let mark = folder.path().join("pid");
+    let file = mark.display();
+    // The signals come during the first step.
+    let step = format!(
+        "STEP=static int n; if (!n++) {{ FILE *f = fopen(\"{file}\", \"w\"); fprintf(f, \"\\n\"); fclose(f); sleep(2); }}"
+    );
+    let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
+    let mut program = Command::new("env");
+    program
+        .args(["--default-signal", "--ignore-signal=INT,HUP"])
+        .arg(env!("CARGO_BIN_EXE_videg"))
+        .args(["fmu", "check"]);
+    let mut program = program.arg(path).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_for(|| mark.exists().then_some(()));
+    for signal in ["-INT", "-HUP"] {
+        assert!(Command::new("kill").args([signal, &program.id().to_string()]).status().unwrap().success());
+    }
+    let code = wait_for(|| program.try_wait().unwrap()).code();
+    assert!(!matches!(code, None | Some(129 | 130)), "{code:?}");
 }

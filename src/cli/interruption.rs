@@ -11,6 +11,30 @@ use signal_hook::flag::{register, register_conditional_shutdown, register_usize}
 
 use crate::{children, temporary};
 
+/// Signals that end the program, but for those that it was started to ignore, as `nohup` and a shell's `&` do.
+#[cfg(unix)]
+pub fn signals() -> Vec<i32> {
+    use signal_hook::consts::{SIGHUP, SIGQUIT};
+    [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|signal| !is_ignored(*signal)).collect()
+}
+
+/// As above. Nothing there is ignored.
+#[cfg(not(unix))]
+pub fn signals() -> Vec<i32> {
+    vec![SIGINT, SIGTERM]
+}
+
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let mut present = core::mem::MaybeUninit::<libc::sigaction>::zeroed();
+    // SAFETY: without a new action this only writes the present one; zero bytes are a valid one, too.
+    let present = unsafe {
+        libc::sigaction(signal, core::ptr::null(), present.as_mut_ptr());
+        present.assume_init()
+    };
+    present.sa_sigaction == libc::SIG_IGN
+}
+
 /// How often it is looked whether a signal has come.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -33,7 +57,7 @@ impl Interruption {
         if std::thread::Builder::new().name("signals".into()).spawn(look).is_err() {
             return Ok(this);
         }
-        for signal in [SIGINT, SIGTERM] {
+        for signal in signals() {
             let value = usize::try_from(signal).unwrap_or_default();
             register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))
                 .and_then(|_| register_usize(signal, Arc::clone(&number), value))

@@ -26,8 +26,9 @@ pub fn plain(text: &str) -> String {
 
 /// Whether a character controls the terminal, or text around it: ends a line, changes the direction, takes no place.
 fn is_hidden(c: char) -> bool {
-    let formats = ['\u{61c}', '\u{feff}'];
-    let ranges = ['\u{200b}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2060}'..='\u{206f}'];
+    // Not U+200C and U+200D, which are letters of some scripts and stand in emoji.
+    let formats = ['\u{61c}', '\u{180e}', '\u{200b}', '\u{200e}', '\u{200f}', '\u{feff}'];
+    let ranges = ['\u{fff9}'..='\u{fffb}', '\u{2028}'..='\u{202e}', '\u{2060}'..='\u{206f}'];
     c.is_control() || formats.contains(&c) || ranges.iter().any(|range| range.contains(&c))
 }
 
@@ -60,9 +61,11 @@ mod tests {
 
     #[test]
     fn what_reorders_or_hides_text_is_spelled_out() {
-        for c in "\u{200b}\u{200d}\u{200e}\u{200f}\u{2028}\u{2029}\u{202a}\u{202e}\u{2066}\u{2069}\u{feff}".chars() {
+        for c in "\u{180e}\u{200b}\u{200e}\u{200f}\u{2028}\u{2029}\u{202a}\u{202e}\u{2066}\u{2069}\u{feff}".chars() {
             assert_eq!(one_line(&format!("a{c}b")), format!("a{}b", c.escape_default()));
         }
+        let (letters, emoji) = ("\u{645}\u{6cc}\u{200c}\u{62e}", "\u{1f469}\u{200d}\u{1f527}");
+        assert_eq!((one_line(letters).as_str(), one_line(emoji).as_str()), (letters, emoji));
     }
 
     #[test]

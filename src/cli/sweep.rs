@@ -8,7 +8,6 @@ use std::time::Instant;
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use serde::Serialize;
-use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::isolation::IsolationOptions;
 use super::message::say;
@@ -249,7 +248,7 @@ fn text(result: &Output<'_>) -> String {
 /// A flag that an interruption sets, and its number. The second one ends the process at once.
 fn signals() -> anyhow::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
     let (stop, number) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-    for signal in [SIGINT, SIGTERM] {
+    for signal in super::interruption::signals() {
         let value = usize::try_from(signal).unwrap_or_default();
         signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))
             .and_then(|_| signal_hook::flag::register_usize(signal, Arc::clone(&number), value))

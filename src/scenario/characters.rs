@@ -3,12 +3,17 @@
 
 use toml::{Table, Value};
 
-/// That no key and no text of `table` has a control character, but for ends of lines in the description.
+/// That no key and no text of `table` has a control character, but for ends of lines and tabs in the description.
 ///
 /// # Errors
 /// The first one, by key and number.
 pub(crate) fn check(table: &Table) -> Result<(), String> {
     table.iter().try_for_each(|(key, value)| check_entry(key, value))
+}
+
+/// `text` with ends of lines as editors write them elsewhere than on Windows: TOML keeps those within a text.
+pub(crate) fn with_plain_ends(text: &str) -> String {
+    text.replace("\r\n", "\n")
 }
 
 /// Checks what is called `name`, with the names of the tables around it, and its `value`.
@@ -23,11 +28,11 @@ fn check_entry(name: &str, value: &Value) -> Result<(), String> {
 }
 
 fn check_text(name: &str, text: &str, has_lines: bool) -> Result<(), String> {
-    match text.chars().find(|c| is_refused(*c) && !(has_lines && *c == '\n')) {
+    match text.chars().find(|c| is_refused(*c) && !(has_lines && matches!(c, '\n' | '\t'))) {
         None => Ok(()),
         Some(found) => {
             let (name, number) = (replaced(name), u32::from(found));
-            let allowed = if has_lines { "but ends of lines" } else { "or ends of lines" };
+            let allowed = if has_lines { "but ends of lines and tabs" } else { "or ends of lines" };
             Err(format!(
                 "{name}: the character U+{number:04X} in it is not allowed; allowed is text without control \
                          characters {allowed}"
@@ -49,6 +54,7 @@ pub(super) fn replaced(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::CaseFile;
 
     #[test]
     fn a_control_character_anywhere_is_named_with_its_key() {
@@ -75,10 +81,18 @@ mod tests {
     }
 
     #[test]
+    fn a_file_of_an_editor_on_windows_reads_as_any_other() {
+        let text = "until = 1.0\ndescription = \"\"\"\none\n\ttwo\"\"\"\n";
+        let [plain, other] = [text.to_owned(), text.replace('\n', "\r\n")].map(|text| CaseFile::parse(&text).unwrap());
+        assert_eq!(plain.description.as_deref(), Some("one\n\ttwo"));
+        assert_eq!(plain.description, other.description);
+    }
+
+    #[test]
     fn a_run_called_after_its_file_has_a_name_that_can_be_shown() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a\u{1}b.toml");
         std::fs::write(&path, "until = 1.0\n").unwrap();
-        assert_eq!(crate::scenario::CaseFile::read(&path).unwrap().name.as_deref(), Some("a_b"));
+        assert_eq!(CaseFile::read(&path).unwrap().name.as_deref(), Some("a_b"));
     }
 }

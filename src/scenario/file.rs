@@ -90,6 +90,7 @@ impl CaseFile {
     /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
+        let text = &characters::with_plain_ends(text);
         let layout = toml::from_str(text).map_err(said)?;
         characters::check(&toml::from_str(text).map_err(said)?)?;
         Self::of(layout)

@@ -6,7 +6,7 @@ mod origin;
 mod preset;
 mod times;
 
-pub(crate) use characters::check as check_characters;
+pub(crate) use characters::{check as check_characters, with_plain_ends};
 pub use file::{CaseFile, value_text};
 pub(crate) use file::{read_file, toml_error};
 pub use origin::Origin;

@@ -26,7 +26,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::{Design, Vary};
-use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_file, toml_error};
+use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_file, toml_error, with_plain_ends};
 
 /// What a sweep file says.
 #[derive(Debug, Default)]
@@ -86,7 +86,7 @@ impl SweepFile {
     /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
-        let table: Table = toml::from_str(text).map_err(said)?;
+        let table: Table = toml::from_str(&with_plain_ends(text)).map_err(said)?;
         check_characters(&table)?;
         let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
         let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =

@@ -50,7 +50,12 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     let Some(expected) = read(&document, &text)?.remove(&name(path)) else { return Ok(false) };
     let found = Sum::of(path)?;
     let changed = |what: String| {
-        let reason = format!("{what}; it was changed after it was complete, and --fresh makes it anew");
+        let anew = if path.extension().is_some_and(|it| it == "parquet") {
+            "removed, it is made again"
+        } else {
+            "--fresh makes it anew"
+        };
+        let reason = format!("{what}; it was changed after it was complete: {anew}");
         Err(SweepError::content(path, reason))
     };
     if found.bytes != expected.bytes {
@@ -71,13 +76,14 @@ pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result
     // Only one that this program wrote ends so; others it does not write to.
     let (Some(head), Some(first)) = (document.strip_suffix(END), results.first()) else { return Ok(()) };
     let path = folder.join(DOCUMENT);
+    // Before its turn: others wait for the end of that, and large results take long.
+    let new: Vec<_> =
+        results.iter().map(|result| Ok((name(result), Sum::of(result)?))).collect::<Result<_, SweepError>>()?;
     let turn = wait_for(&folder.join(LOCK))?;
     folder::check_document(folder, document)?;
     let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
     let mut sums = read(&path, &text)?;
-    for result in results {
-        sums.insert(name(result), Sum::of(result)?);
-    }
+    sums.extend(new);
     let sums = serde_json::to_string_pretty(&sums).unwrap_or_default().replace('\n', "\n  ");
     // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
     let part = first.with_extension("json.part");

@@ -8,3 +8,5 @@ mod request;
 mod resume;
 mod runs;
 mod shards;
+#[path = "../support/signals.rs"]
+mod signals;

@@ -6,6 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::command::{NOISY, assert_same_results, done, folder, json, names, refused, stderr, sweep};
+use crate::signals::with_default_signals;
 
 /// A sweep far too long to be over before it is met at work: of 1e6 runs, one after the other.
 fn endless(folder: &Path) -> Command {
@@ -93,7 +94,7 @@ fn results_cut_or_spoilt_anywhere_are_completed_to_the_same_bytes() {
 fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let (_guard, folder) = folder();
-        let mut command = endless(&folder);
+        let mut command = with_default_signals(&endless(&folder));
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         while lines_written(&folder) < 2 && child.try_wait().unwrap().is_none() {
             std::thread::sleep(Duration::from_millis(5));

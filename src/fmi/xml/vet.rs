@@ -11,6 +11,8 @@ const MAX_DEPTH: usize = 64;
 const MAX_ATTRIBUTES: usize = 256;
 /// Longest value of an attribute, bytes as they stand in the document: errors and tables repeat it.
 const MAX_VALUE: usize = 64 << 10;
+/// Attributes of `Unknown`, long where all depends on all, which nobody here reads.
+const UNREAD: [&str; 2] = ["dependencies", "dependenciesKind"];
 /// Most elements: each takes some hundred bytes of memory, though it may have no more than four in the document. A variable has
 /// two, and one more for each list of the model structure that names it.
 const MAX_ELEMENTS: usize = 1_000_000;
@@ -60,7 +62,7 @@ fn bound_attributes(element: &BytesStart<'_>) -> Result<()> {
             return Err(Error::Attributes { element: shown(element.name().as_ref()), allowed: MAX_ATTRIBUTES });
         }
         let found = attribute.value.len();
-        if found > MAX_VALUE {
+        if found > MAX_VALUE && !UNREAD.contains(&attribute.key.as_ref()) {
             let (element, attribute) = (shown(element.name().as_ref()), shown(attribute.key.as_ref()));
             return Err(Error::Value { element, attribute, found, allowed: MAX_VALUE });
         }
