@@ -54,6 +54,8 @@ class Visit:
         self.path, self.name = report
         self.faults = []
         self.context = browser.new_context(**options)
+        # A chart of all events takes long to draw where other programs run, too.
+        self.context.set_default_timeout(180_000)
         self.page = self.context.new_page()
         self.page.on("console", self.heard)
         self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
