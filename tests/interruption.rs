@@ -4,23 +4,15 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 #[path = "support/signals.rs"]
 mod signals;
 #[path = "hostile/toy.rs"]
 mod toy;
+#[path = "support/waiting.rs"]
+mod waiting;
 
-fn wait_for<T>(mut what: impl FnMut() -> Option<T>) -> T {
-    let end = Instant::now() + Duration::from_secs(100);
-    loop {
-        if let Some(found) = what() {
-            return found;
-        }
-        assert!(Instant::now() < end, "it takes too long");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-}
+use waiting::wait_for;
 
 fn has_ended(process: &str) -> bool {
     let stat = std::fs::read_to_string(Path::new("/proc").join(process).join("stat"));

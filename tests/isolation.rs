@@ -13,6 +13,10 @@ use videg::package::{Options, build_all};
 
 #[path = "hostile/toy.rs"]
 mod toy;
+#[path = "support/waiting.rs"]
+mod waiting;
+
+use waiting::wait_for;
 
 fn isolation() -> Isolation {
     let bounds = Bounds { time: Some(Duration::from_secs(20)), memory: Some(1 << 30) };
@@ -295,17 +299,6 @@ fn a_co_simulation_whose_worker_is_killed_keeps_the_series_up_to_there() {
     assert!(stderr.contains("of 'harvester' at t = ") && stderr.contains("(signal: 9 (SIGKILL)"), "{stderr}");
     assert!(stderr.contains("the time series up to there is in out/timeseries.csv.part"), "{stderr}");
     assert!(std::fs::read_to_string(part).unwrap().lines().count() > 10);
-}
-
-fn wait_for<T>(mut what: impl FnMut() -> Option<T>) -> T {
-    let end = Instant::now() + Duration::from_secs(100);
-    loop {
-        if let Some(found) = what() {
-            return found;
-        }
-        assert!(Instant::now() < end, "it takes too long");
-        std::thread::sleep(Duration::from_millis(20));
-    }
 }
 
 fn videg(folder: &Path, arguments: &[&str]) -> Output {

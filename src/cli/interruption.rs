@@ -13,14 +13,14 @@ use crate::{children, temporary};
 
 /// Signals that end the program, but for those that it was started to ignore, as `nohup` and a shell's `&` do.
 #[cfg(unix)]
-pub fn signals() -> Vec<i32> {
+fn signals() -> Vec<i32> {
     use signal_hook::consts::{SIGHUP, SIGQUIT};
     [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|signal| !is_ignored(*signal)).collect()
 }
 
 /// As above. Nothing there is ignored.
 #[cfg(not(unix))]
-pub fn signals() -> Vec<i32> {
+fn signals() -> Vec<i32> {
     vec![SIGINT, SIGTERM]
 }
 
@@ -33,6 +33,18 @@ fn is_ignored(signal: i32) -> bool {
         present.assume_init()
     };
     present.sa_sigaction == libc::SIG_IGN
+}
+
+/// From here on, the first signal sets `flag` and puts its number into `number`. The second one ends the process at once.
+pub fn note(flag: &Arc<AtomicBool>, number: &Arc<AtomicUsize>) -> anyhow::Result<()> {
+    for signal in signals() {
+        let value = usize::try_from(signal).unwrap_or_default();
+        register_conditional_shutdown(signal, 128 + signal, Arc::clone(flag))
+            .and_then(|_| register_usize(signal, Arc::clone(number), value))
+            .and_then(|_| register(signal, Arc::clone(flag)))
+            .with_context(|| format!("cannot wait for signal {signal}"))?;
+    }
+    Ok(())
 }
 
 /// How often it is looked whether a signal has come.
@@ -57,13 +69,7 @@ impl Interruption {
         if std::thread::Builder::new().name("signals".into()).spawn(look).is_err() {
             return Ok(this);
         }
-        for signal in signals() {
-            let value = usize::try_from(signal).unwrap_or_default();
-            register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))
-                .and_then(|_| register_usize(signal, Arc::clone(&number), value))
-                .and_then(|_| register(signal, Arc::clone(&again)))
-                .with_context(|| format!("cannot wait for signal {signal}"))?;
-        }
+        note(&again, &number)?;
         Ok(this)
     }
 

@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
@@ -157,7 +156,8 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
             _ => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
         },
     };
-    let (stop, signal) = signals()?;
+    let (stop, signal) = (Arc::default(), Arc::default());
+    super::interruption::note(&stop, &signal)?;
     let report = follow(arguments, &sweep, &engine, &stop)?;
     if report.is_complete() {
         return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
@@ -243,17 +243,4 @@ fn text(result: &Output<'_>) -> String {
          {runs} runs, {failed} of them failed; {work}\n\n{}",
         file_list(result.files)
     )
-}
-
-/// A flag that an interruption sets, and its number. The second one ends the process at once.
-fn signals() -> anyhow::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
-    let (stop, number) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-    for signal in super::interruption::signals() {
-        let value = usize::try_from(signal).unwrap_or_default();
-        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))
-            .and_then(|_| signal_hook::flag::register_usize(signal, Arc::clone(&number), value))
-            .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
-            .with_context(|| format!("cannot wait for signal {signal}"))?;
-    }
-    Ok((stop, number))
 }
