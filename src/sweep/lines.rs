@@ -116,6 +116,9 @@ impl<'a> Cells<'a> {
     /// columns; else why not.
     fn check(&mut self, line: &[u8], extent: &Extent, range: &Range<u64>) -> Result<(), String> {
         let (number, due) = (extent.lines + 2, range.start + extent.lines);
+        if range.is_empty() {
+            return Err(format!("line {number} is one too many: a share without runs has none"));
+        }
         if due >= range.end {
             return Err(format!("line {number} follows that of the last run, {}", range.end - 1));
         }
@@ -241,6 +244,8 @@ mod tests {
 
     #[test]
     fn results_that_are_not_whole_are_told_by_what_is_wrong() {
+        let of_none = extent("run,error\n0,\n", &(0..0)).rest;
+        assert_eq!(of_none, Rest::Wrong("line 2 is one too many: a share without runs has none".to_owned()));
         for (text, expected) in [
             ("run,error\n5,\n6,\n", None),
             ("run,other\n5,\n6,\n", Some("its first line is not the heading of this sweep")),
