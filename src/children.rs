@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::io;
 use std::process::{Child, Command, ExitStatus};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
+use std::time::{Duration, Instant};
 
 /// Held for reading while a child is started, for writing when all are ended.
 static STARTING: RwLock<()> = RwLock::new(());
@@ -15,6 +16,9 @@ static RUNNING: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
 fn running() -> MutexGuard<'static, BTreeSet<u32>> {
     RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+/// How often it is looked whether a child has ended.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// A child in a process group of its own. Dropping it ends the group.
 #[derive(Debug)]
@@ -64,6 +68,21 @@ impl Group {
     #[cfg(not(unix))]
     pub fn has_ended(&mut self) -> io::Result<bool> {
         self.child.try_wait().map(|status| status.is_some())
+    }
+
+    /// Waits until the child has ended, or the time is up; whether it has ended.
+    ///
+    /// # Errors
+    /// If the system does not tell.
+    pub fn wait(&mut self, limit: Option<Duration>) -> io::Result<bool> {
+        let start = Instant::now();
+        while !self.has_ended()? {
+            if limit.is_some_and(|limit| start.elapsed() >= limit) {
+                return Ok(false);
+            }
+            std::thread::sleep(LOOK);
+        }
+        Ok(true)
     }
 
     /// Ends the group, once: when the child is reaped, its number may be given to another. The status is that of the child,

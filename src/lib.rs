@@ -37,4 +37,5 @@ pub mod report;
 pub mod scenario;
 pub mod sweep;
 pub mod temporary;
+pub(crate) mod threads;
 pub mod whole;

@@ -130,9 +130,11 @@ pub fn lock(part: &Path) -> Result<File, LockError> {
 }
 
 /// Opens what stands at `part`, which is made with `make`, to read and to write. A symbolic link is refused: somebody may
-/// have put it there to have written what it leads to.
+/// have put it there to have written what it leads to. So is a file that has other names: a backup may share it.
 fn open(part: &Path, make: bool) -> io::Result<File> {
     const LINK: &str = "it is a symbolic link, through which nothing is written; remove it";
+    const SHARED: &str =
+        "the file has other names (hard links), whose content would change with it; replace it by a copy";
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(make).truncate(false);
     #[cfg(unix)]
@@ -143,7 +145,9 @@ fn open(part: &Path, make: bool) -> io::Result<File> {
     if cfg!(not(unix)) && part.is_symlink() {
         return Err(io::Error::other(LINK));
     }
-    options.open(part).map_err(|cause| if part.is_symlink() { io::Error::new(cause.kind(), LINK) } else { cause })
+    let is_link = |cause: io::Error| if part.is_symlink() { io::Error::new(cause.kind(), LINK) } else { cause };
+    let file = options.open(part).map_err(is_link)?;
+    if names(&file)? > 1 { Err(io::Error::other(SHARED)) } else { Ok(file) }
 }
 
 /// Locks `file`, which was opened at `part`; whether it is still there.
@@ -182,6 +186,19 @@ fn has_no_locks(cause: &io::Error) -> bool {
     cause.kind() == io::ErrorKind::Unsupported
 }
 
+/// How many names a file has.
+#[cfg(unix)]
+fn names(file: &File) -> io::Result<u64> {
+    Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?))
+}
+
+/// How many names a file has: here, nobody tells.
+#[cfg(not(unix))]
+#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
+fn names(_file: &File) -> io::Result<u64> {
+    Ok(1)
+}
+
 /// Whether `file` is what stands at `path`.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> io::Result<bool> {
@@ -208,7 +225,7 @@ mod tests {
 
     use super::*;
 
-    fn names(folder: &Path) -> Vec<String> {
+    fn entries(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =
             fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
@@ -225,7 +242,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         file.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
-        assert_eq!(names(folder.path()), ["result.json"]);
+        assert_eq!(entries(folder.path()), ["result.json"]);
     }
 
     #[test]
@@ -239,7 +256,7 @@ mod tests {
         };
         assert_eq!(fill(&path, full).unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(
-            (fs::read_to_string(&path).unwrap().as_str(), names(folder.path())),
+            (fs::read_to_string(&path).unwrap().as_str(), entries(folder.path())),
             ("old", vec!["result.json".into()])
         );
     }
@@ -278,13 +295,30 @@ mod tests {
         fs::remove_file(partial(&path)).unwrap();
         std::os::unix::fs::symlink(folder.path().join("nothing"), partial(&path)).unwrap();
         write(&path, "new").unwrap_err();
-        assert_eq!(names(folder.path()), ["other", "result.json.part"]);
+        assert_eq!(entries(folder.path()), ["other", "result.json.part"]);
         assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
         // Under the last name, the link goes and what it leads to stays.
         fs::remove_file(partial(&path)).unwrap();
         std::os::unix::fs::symlink(&other, &path).unwrap();
         write(&path, "new").unwrap();
         assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn nothing_is_written_into_a_file_that_a_backup_shares() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, backup] = ["result.json", "backup"].map(|name| folder.path().join(name));
+        fs::write(partial(&path), "half").unwrap();
+        fs::hard_link(partial(&path), &backup).unwrap();
+        let said = write(&path, "new").unwrap_err().to_string();
+        assert!(said.starts_with("the file has other names (hard links)"), "{said}");
+        assert_eq!(fs::read_to_string(&backup).unwrap(), "half");
+        // Under the last name, the backup keeps what was there.
+        fs::remove_file(partial(&path)).unwrap();
+        fs::hard_link(&backup, &path).unwrap();
+        write(&path, "new").unwrap();
+        assert_eq!(fs::read_to_string(&backup).unwrap(), "half");
     }
 
     #[test]

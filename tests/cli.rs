@@ -273,6 +273,35 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
 }
 
 /// A wrong value is that of the file and the key, or of the option, from which it came.
+/// Stacks that no memory holds stand for a system that gives no more threads.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_system_without_threads_makes_it_slow_or_is_named() {
+    assert_eq!(videg(&["fmu", "build"]).code, Some(0));
+    let folder = tempfile::tempdir().unwrap();
+    let starved = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+        command.args(arguments).current_dir(folder.path());
+        command.env("RUST_MIN_STACK", "99999999999999").env("VIDEG_NO_BUILD", "1");
+        let output = command.output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for verb in [&["cosim", "--until", "1"][..], &["reproduce", "fig4", "--quick"]] {
+        let (code, said) = starved(verb);
+        assert_eq!(code, Some(0), "{verb:?}: {said}");
+    }
+    for (verb, what) in [
+        (&["sweep", "--samples", "2", "--until", "1"][..], "cannot start a thread that computes runs: "),
+        (&["cosim", "--isolate", "--until", "1"], " fmu-worker for the FMU: "),
+        (&["cosim", "--circuit", "ngspice", "--until", "1"], " ngspice-worker: "),
+        (&["crosscheck", "--until", "0.05"], "cannot start "),
+    ] {
+        let (code, said) = starved(verb);
+        let is_one_line = said.lines().count() == 1 && said.starts_with("videg: ");
+        assert!(code == Some(2) && is_one_line && said.contains(what), "{verb:?}: {said}");
+    }
+}
+
 #[test]
 fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
     let folder = tempfile::tempdir().unwrap();

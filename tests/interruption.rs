@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 #[path = "support/signals.rs"]
@@ -20,12 +20,12 @@ fn has_ended(process: &str) -> bool {
 }
 
 /// The exit code of `program`, which has `signal` sent to it when the file at `mark` has the number of a child; that child is
-/// gone then, and the folder of temporary files empty.
-fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Path) -> Option<i32> {
+/// gone then, and so is what was in the folder of temporary files, if anything `is_unpacked`.
+fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Path, is_unpacked: bool) -> Option<i32> {
     let mut program = signals::with_default_signals(program.env("TMPDIR", temporary));
     let mut program = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let child = wait_for(|| std::fs::read_to_string(mark).ok().filter(|text| text.ends_with('\n')));
-    assert!(std::fs::read_dir(temporary).unwrap().count() > 0, "there is a folder to be removed");
+    assert_eq!(std::fs::read_dir(temporary).unwrap().count() > 0, is_unpacked, "to be removed");
     let id = program.id().to_string();
     assert!(Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap().success());
     let status = wait_for(|| program.try_wait().unwrap());
@@ -50,23 +50,59 @@ fn a_signal_leaves_neither_the_worker_of_an_fmu_nor_its_folder() {
         let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
         let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
         program.args(["fmu", "check"]).arg(path);
-        assert_eq!(interrupted(&mut program, signal, &mark, &temporary), Some(code));
+        assert_eq!(interrupted(&mut program, signal, &mark, &temporary, true), Some(code));
     }
+}
+
+/// Once its runs have begun, it ends them in order; before, there is nothing to keep.
+#[test]
+fn a_signal_before_the_first_run_of_a_sweep_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
+    std::fs::create_dir(&temporary).unwrap();
+    let file = mark.display();
+    let load = format!(
+        "LOADING=FILE *f = fopen(\"{file}\", \"w\"); fprintf(f, \"%d\\n\", getpid()); fclose(f); for (;;) pause();"
+    );
+    let path = toy::fmu(folder.path(), "toy.fmu", &[&load]);
+    let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
+    program.args(["sweep", "--samples", "2", "--until", "1", "--fmu"]).arg(path);
+    program.arg("--output").arg(folder.path().join("out"));
+    assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, true), Some(143));
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn a_signal_leaves_no_cargo_that_goes_on_building() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
+    std::fs::create_dir(&temporary).unwrap();
+    let cargo = script(folder.path(), "cargo", &mark);
+    let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
+    program.args(["fmu", "build", "--output"]).arg(folder.path().join("out"));
+    program.env("CARGO", cargo).env_remove("VIDEG_NO_BUILD");
+    assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, false), Some(143));
+}
+
+/// A program that writes its number to `mark` and takes its time.
+fn script(folder: &Path, name: &str, mark: &Path) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt as _;
+    let path = folder.join(name);
+    std::fs::write(&path, format!("#!/bin/sh\necho $$ > '{}'\nsleep 300 & wait\n", mark.display())).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
 }
 
 #[test]
 fn a_signal_leaves_neither_ngspice_nor_its_folder() {
-    use std::os::unix::fs::PermissionsExt as _;
     let folder = tempfile::tempdir().unwrap();
     let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
     std::fs::create_dir(&temporary).unwrap();
-    let ngspice = folder.path().join("ngspice");
-    std::fs::write(&ngspice, format!("#!/bin/sh\necho $$ > '{}'\nsleep 300 & wait\n", mark.display())).unwrap();
-    std::fs::set_permissions(&ngspice, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let ngspice = script(folder.path(), "ngspice", &mark);
     let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
     program.args(["crosscheck", "--until", "0.05", "--output"]).arg(folder.path().join("out"));
     program.env("VIDEG_NGSPICE", &ngspice);
-    assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary), Some(143));
+    assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, true), Some(143));
 }
 
 /// As `nohup` starts it, and a shell in a script what ends in `&`.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 15] = [
+const DOWNWARDS: [&str; 16] = [
     "cli",
     "paper",
     "crosscheck",
@@ -20,6 +20,7 @@ const DOWNWARDS: [&str; 15] = [
     "whole",
     "children",
     "temporary",
+    "threads",
     "input",
 ];
 

@@ -1,5 +1,5 @@
-//! Signals that end the program: it ends its children and removes its temporary folders before. `videg sweep` goes on to the
-//! end of its runs instead.
+//! Signals that end the program: it ends its children and removes its temporary folders before. `videg sweep` ends the runs
+//! that it has begun instead.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -35,53 +35,71 @@ fn is_ignored(signal: i32) -> bool {
     present.sa_sigaction == libc::SIG_IGN
 }
 
-/// From here on, the first signal sets `flag` and puts its number into `number`. The second one ends the process at once.
-pub fn note(flag: &Arc<AtomicBool>, number: &Arc<AtomicUsize>) -> anyhow::Result<()> {
-    for signal in signals() {
-        let value = usize::try_from(signal).unwrap_or_default();
-        register_conditional_shutdown(signal, 128 + signal, Arc::clone(flag))
-            .and_then(|_| register_usize(signal, Arc::clone(number), value))
-            .and_then(|_| register(signal, Arc::clone(flag)))
-            .with_context(|| format!("cannot wait for signal {signal}"))?;
-    }
-    Ok(())
-}
-
 /// How often it is looked whether a signal has come.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The signal that has come.
-pub struct Interruption(Arc<AtomicUsize>);
+/// The signal that has come, once signals are waited for.
+#[derive(Default)]
+pub struct Interruption {
+    /// Its number; before one has come, 0.
+    signal: Arc<AtomicUsize>,
+    has_come: Arc<AtomicBool>,
+    /// Whether somebody else sees to it.
+    is_deferred: Arc<AtomicBool>,
+}
 
 impl Interruption {
     /// Waits for signals from here on. A second one ends the process at once, whatever that leaves; so does the first where
     /// the system gives no thread to wait.
-    pub fn watch() -> anyhow::Result<Self> {
-        let (number, again) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
-        let this = Self(Arc::clone(&number));
-        let seen = Arc::clone(&number);
+    pub fn watch(&self) -> anyhow::Result<()> {
+        let (signal, is_deferred) = (Arc::clone(&self.signal), Arc::clone(&self.is_deferred));
         let look = move || {
             loop {
-                Self::end_if_interrupted(&seen);
+                end_if_interrupted(&signal, &is_deferred);
                 std::thread::sleep(LOOK);
             }
         };
         if std::thread::Builder::new().name("signals".into()).spawn(look).is_err() {
-            return Ok(this);
+            return Ok(());
         }
-        note(&again, &number)?;
-        Ok(this)
+        self.register()
     }
 
-    /// Ends the process if a signal has come: what failed for that reason is nothing to tell.
+    /// From here on, the first signal puts its number down. The second one ends the process at once.
+    fn register(&self) -> anyhow::Result<()> {
+        for signal in signals() {
+            let number = usize::try_from(signal).unwrap_or_default();
+            register_conditional_shutdown(signal, 128 + signal, Arc::clone(&self.has_come))
+                .and_then(|_| register_usize(signal, Arc::clone(&self.signal), number))
+                .and_then(|_| register(signal, Arc::clone(&self.has_come)))
+                .with_context(|| format!("cannot wait for signal {signal}"))?;
+        }
+        Ok(())
+    }
+
+    /// Whether a signal has come, for a caller that ends in order by itself from here on.
+    pub fn defer(&self) -> &AtomicBool {
+        self.is_deferred.store(true, Ordering::Relaxed);
+        &self.has_come
+    }
+
+    /// The number of the signal that has come; before, 0.
+    pub fn signal(&self) -> usize {
+        self.signal.load(Ordering::Relaxed)
+    }
+
+    /// Ends the process if a signal has come and nobody else sees to it: what failed for that reason is nothing to tell.
     pub fn settle(&self) {
-        Self::end_if_interrupted(&self.0);
+        end_if_interrupted(&self.signal, &self.is_deferred);
     }
+}
 
-    fn end_if_interrupted(number: &AtomicUsize) {
-        let Ok(signal @ 1..) = i32::try_from(number.load(Ordering::Relaxed)) else { return };
-        let _closed = (children::end_all(), temporary::remove_all());
-        // As shells say it; without the destructors of libraries whose code may be running.
-        signal_hook::low_level::exit(128 + signal)
+fn end_if_interrupted(signal: &AtomicUsize, is_deferred: &AtomicBool) {
+    let Ok(signal @ 1..) = i32::try_from(signal.load(Ordering::Relaxed)) else { return };
+    if is_deferred.load(Ordering::Relaxed) {
+        return;
     }
+    let _closed = (children::end_all(), temporary::remove_all());
+    // As shells say it; without the destructors of libraries whose code may be running.
+    signal_hook::low_level::exit(128 + signal)
 }

@@ -45,6 +45,7 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
+use interruption::Interruption;
 
 /// Vibro-impact dielectric elastomer generator: co-simulate the harvester FMU with a harvesting circuit.
 #[derive(Parser)]
@@ -92,13 +93,16 @@ pub(crate) enum Verdict {
 
 impl Verb {
     fn run(&self) -> anyhow::Result<Verdict> {
-        let is_watched = !matches!(self, Self::Sweep(_) | Self::NgspiceWorker | Self::FmuWorker);
-        let interruption = is_watched.then(interruption::Interruption::watch).transpose()?;
+        let interruption = Interruption::default();
+        // These end with the process that they work for.
+        if !matches!(self, Self::NgspiceWorker | Self::FmuWorker) {
+            interruption.watch()?;
+        }
         let result = match self {
             Self::Cosim(arguments) => cosim::run(arguments),
             Self::Crosscheck(arguments) => crosscheck::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
-            Self::Sweep(arguments) => sweep::run(arguments),
+            Self::Sweep(arguments) => sweep::run(arguments, &interruption),
             Self::Reproduce(arguments) => reproduce::run(arguments),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),
@@ -106,7 +110,7 @@ impl Verb {
             Self::NgspiceWorker => worker::run_ngspice(),
             Self::FmuWorker => worker::run_fmu(),
         };
-        interruption.iter().for_each(interruption::Interruption::settle);
+        interruption.settle();
         result
     }
 }

@@ -59,7 +59,7 @@ impl TaskBar {
         let bar = ProgressBar::new(1);
         let style = ProgressStyle::with_template("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
-        bar.enable_steady_tick(Duration::from_millis(500));
+        tick(&bar, Duration::from_millis(500));
         Self { bar, name }
     }
 
@@ -92,7 +92,7 @@ impl ItemBar {
         let bar = ProgressBar::new(1);
         let style = ProgressStyle::with_template("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
-        bar.enable_steady_tick(Duration::from_millis(500));
+        tick(&bar, Duration::from_millis(500));
         Self { bar, items, begun: AtomicUsize::new(0) }
     }
 
@@ -175,6 +175,13 @@ impl sweep::Watch for RunBar {
 /// A spinner for work of unknown length.
 pub fn spinner(message: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
-    spinner.enable_steady_tick(Duration::from_millis(100));
+    tick(&spinner, Duration::from_millis(100));
     spinner
+}
+
+/// Has a bar that is seen move by itself, where the system gives a thread for that: the library would panic.
+fn tick(bar: &ProgressBar, every: Duration) {
+    if !bar.is_hidden() && std::thread::Builder::new().spawn(|| ()).is_ok() {
+        bar.enable_steady_tick(every);
+    }
 }

@@ -1,13 +1,13 @@
 //! `videg sweep`: many runs over parameters and seeds; `videg sweep merge`: shards put together.
 
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
+use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::message::say;
 use super::progress::RunBar;
@@ -108,10 +108,10 @@ struct Merged<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
     match &arguments.verb {
         Some(Verb::Merge(merge)) => put_together(merge),
-        None => carry_out(arguments),
+        None => carry_out(arguments, interruption),
     }
 }
 
@@ -132,7 +132,7 @@ fn verdict(runs: u64, failed: u64) -> Verdict {
     if runs > 0 && failed == runs { Verdict::Failed } else { Verdict::Passed }
 }
 
-fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
+fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
     let design = arguments.what.design.or(file.design).unwrap_or_default();
@@ -156,15 +156,13 @@ fn carry_out(arguments: &Arguments) -> anyhow::Result<Verdict> {
             _ => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
         },
     };
-    let (stop, signal) = (Arc::default(), Arc::default());
-    super::interruption::note(&stop, &signal)?;
-    let report = follow(arguments, &sweep, &engine, &stop)?;
+    let report = follow(arguments, &sweep, &engine, interruption.defer())?;
     if report.is_complete() {
         return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
     }
     let (done, runs) = (report.done, report.runs);
     say(&format!("interrupted after {done} of {runs} runs; the same command without --fresh goes on from there"));
-    Ok(Verdict::Stopped(u8::try_from(signal.load(Ordering::Relaxed))?))
+    Ok(Verdict::Stopped(u8::try_from(interruption.signal())?))
 }
 
 fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Verdict> {

@@ -8,6 +8,7 @@ use videg_circuit::Settings;
 
 use crate::cosim::{CircuitSlave as _, NgspiceCircuit};
 use crate::ngspice::{CapacitanceTable, Elements, Ngspice, NgspiceError, Run, Waveforms};
+use crate::threads;
 
 /// What solves a circuit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,7 +130,7 @@ struct Queue<'a, T> {
 /// That of the first task that fails; tasks that have not begun by then are left.
 pub fn in_parallel<T: Send>(tasks: Vec<Task<'_, T>>, watch: &dyn Watch) -> Result<Vec<T>, NgspiceError> {
     let total = tasks.len();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(total);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let queue = Mutex::new(Queue {
         waiting: tasks.into_iter().enumerate().collect(),
         running: Vec::new(),
@@ -137,11 +138,7 @@ pub fn in_parallel<T: Send>(tasks: Vec<Task<'_, T>>, watch: &dyn Watch) -> Resul
         done: 0,
         failure: None,
     });
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| work_off(&queue, total, watch));
-        }
-    });
+    threads::share(cores.min(total), || work_off(&queue, total, watch));
     let queue = queue.into_inner().unwrap_or_else(PoisonError::into_inner);
     match queue.failure {
         Some(failure) => Err(failure),

@@ -4,8 +4,8 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use super::capacitance::CapacitanceTable;
 use super::drain::Drain;
@@ -122,14 +122,18 @@ impl Ngspice {
         let (stdout, stderr) = (group.child.stdout.take(), group.child.stderr.take());
         let stdout = stdout.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
         let stderr = stderr.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
-        let ended = wait(&mut group, self.time_limit).map_err(failed)?;
+        let has_ended = group.wait(Some(self.time_limit)).map_err(failed)?;
+        // With what it has started.
+        let status = group.end().map_err(failed)?;
         let text = [stdout, stderr].map(|drain| drain.map(|drain| drain.text()).unwrap_or_default());
         let said = Said::in_output(&text.concat());
-        match ended {
-            None => Err(NgspiceError::TimeLimit { limit: self.time_limit.as_secs_f64(), said }),
-            Some(status) if !status.success() => Err(NgspiceError::Failed { status, said }),
-            Some(_) => Ok(Finished { folder, said }),
+        if !has_ended {
+            return Err(NgspiceError::TimeLimit { limit: self.time_limit.as_secs_f64(), said });
         }
+        if !status.success() {
+            return Err(NgspiceError::Failed { status, said });
+        }
+        Ok(Finished { folder, said })
     }
 
     fn command(&self, folder: &Path) -> Command {
@@ -159,21 +163,6 @@ impl Finished {
     /// Complaints of ngspice.
     pub fn said(&self) -> &Said {
         &self.said
-    }
-}
-
-/// Waits for the end, and ends what the program started; after `limit` the program too, and returns nothing.
-fn wait(group: &mut Group, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
-    const PAUSE: Duration = Duration::from_millis(5);
-    let start = Instant::now();
-    loop {
-        if group.has_ended()? {
-            return group.end().map(Some);
-        }
-        if start.elapsed() >= limit {
-            return group.end().map(|_| None);
-        }
-        std::thread::sleep(PAUSE);
     }
 }
 

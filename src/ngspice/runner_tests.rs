@@ -1,6 +1,7 @@
 //! The runner against programs that misbehave.
 
 use std::os::unix::fs::PermissionsExt as _;
+use std::time::Instant;
 
 use super::*;
 use videg_circuit::Parameters;

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread::Builder;
 
 use serde::Deserialize;
 
@@ -13,6 +14,7 @@ use super::error::{PackageError, Result};
 use super::platform::Platform;
 use super::target::Target;
 use super::tools;
+use crate::children::Group;
 use crate::fmi::library_extension;
 
 /// How many lines of Cargo's output an error shows.
@@ -43,14 +45,13 @@ pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str
     let program = PathBuf::from(command.get_program());
     let shown = shown(target);
     let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
-    let mut child = command.spawn().map_err(failed)?;
-    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-    let (artifacts, tail) = std::thread::scope(|scope| {
-        let errors = scope.spawn(|| stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default());
-        let artifacts = stdout.map(|stdout| read_artifacts(stdout, platform)).unwrap_or_default();
-        (artifacts, errors.join().unwrap_or_default())
-    });
-    let status = child.wait().map_err(failed)?;
+    let mut cargo = Group::start(&mut command).map_err(failed)?;
+    let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
+    let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
+    let messages = Builder::new().spawn(messages).map_err(failed)?;
+    let artifacts = stdout.map(|stdout| read_artifacts(stdout, platform)).unwrap_or_default();
+    let tail = messages.join().unwrap_or_default();
+    let status = cargo.wait(None).and_then(|_| cargo.end()).map_err(failed)?;
     if !status.success() {
         return Err(PackageError::Build { command: shown, status: status.to_string(), tail });
     }

@@ -7,6 +7,7 @@ use super::PaperError;
 use crate::cosim::{Averages, Gains};
 use crate::fmi::{Fmu, Instance, Logging};
 use crate::scenario::{Request, Setting};
+use crate::threads;
 
 /// How much work the large ensembles may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -111,22 +112,18 @@ impl Workshop<'_> {
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let results = Mutex::new((0..tasks.len()).map(|_| None).collect::<Vec<_>>());
-        std::thread::scope(|scope| {
-            for _ in 0..cores.min(tasks.len()) {
-                scope.spawn(|| {
-                    while let Some((index, task)) = {
-                        let index = next.fetch_add(1, Ordering::Relaxed);
-                        tasks.get(index).map(|task| (index, task))
-                    } {
-                        let result = work(task);
-                        let failed = result.is_err();
-                        results.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
-                        if failed {
-                            next.store(tasks.len(), Ordering::Relaxed); // the rest is of no use
-                        }
-                        self.watch.show(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
-                    }
-                });
+        threads::share(cores.min(tasks.len()), || {
+            while let Some((index, task)) = {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                tasks.get(index).map(|task| (index, task))
+            } {
+                let result = work(task);
+                let failed = result.is_err();
+                results.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
+                if failed {
+                    next.store(tasks.len(), Ordering::Relaxed); // the rest is of no use
+                }
+                self.watch.show(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
             }
         });
         // Tasks are taken in order: what was left out stands behind an error.

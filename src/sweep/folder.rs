@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::document::differences;
-use super::{Shard, SweepError, sums};
+use super::{Shard, SweepError, sums, table};
 use crate::input;
 use crate::whole::{self, LockError, partial};
 
@@ -30,7 +30,7 @@ pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> 
     if fresh {
         // Results go before the document that says whose they are: killed in between, none are taken for another's.
         remove(path)?;
-        remove(&path.with_extension("parquet"))?;
+        remove(&table::path(path))?;
         file.set_len(0).map_err(SweepError::file("empty", &part))?;
         if read_document(folder)?.is_some_and(|there| there != document) {
             remove(&folder.join(DOCUMENT))?;

@@ -35,6 +35,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     folder::write_document(output, &document, &path)?;
     let joined = join(&shards, &kept, &file, &part).and_then(|failed| {
         file.sync_all().map_err(SweepError::file("write", &part))?;
+        sums::forget(output, &document, &[&path, &table::path(&path)])?;
         std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
         Ok(failed)
     });

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::folder::{self, RESULTS};
 use super::lines::{self, Extent, Rest};
-use super::{Column, Shard, Sweep, SweepError, column};
+use super::{Column, Shard, Sweep, SweepError, column, sums, table};
 use crate::{input, whole};
 
 /// How often results are forced to the disk: what a power cut may cost.
@@ -139,7 +139,10 @@ impl Record {
     /// If by now the folder is that of another sweep, or the file system refuses.
     pub fn finish(self, document: &str) -> Result<(), SweepError> {
         self.sync()?;
-        folder::write_document(self.path.parent().unwrap_or(Path::new("")), document, &self.path)?;
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        folder::write_document(folder, document, &self.path)?;
+        // Of those that were there before `fresh`; killed from here on, none are compared with others' checksums.
+        sums::forget(folder, document, &[&self.path, &table::path(&self.path)])?;
         std::fs::rename(&self.part, &self.path).map_err(SweepError::file("rename", &self.part))
     }
 }

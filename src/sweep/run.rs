@@ -10,6 +10,7 @@ use std::time::Duration;
 use super::folder;
 use super::record::{self, Found, Record};
 use super::{Engine, Shard, Sweep, SweepError, sums, table};
+use crate::threads;
 
 /// Runs that may be done before one that is due: what the results wait in.
 const AHEAD: u64 = 4096;
@@ -67,9 +68,10 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
     let runs = range.end - range.start;
     let path = record::results_path(job.folder, job.shard);
     let mut files = vec![path.clone(), job.folder.join(folder::DOCUMENT)];
+    let mut is_summed = false;
     let (done, failed, resumed_from) = match Record::open(job.folder, sweep, job.shard, job.fresh)? {
         Found::Complete { failed } => {
-            sums::check(&path)?;
+            is_summed = sums::check(&path)?;
             (runs, failed, runs)
         }
         Found::Unfinished(mut record) => {
@@ -86,29 +88,19 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
         }
     };
     if done == runs {
-        let parquet =
-            job.shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), resumed_from < runs));
+        let is_new = resumed_from < runs;
+        let parquet = job.shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), is_new));
         let parquet = parquet.transpose()?;
-        let results: Vec<&Path> = [Some(&path), parquet.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
-        settle(job.folder, sweep.document(), &results, resumed_from == runs)?;
+        let mut missing: Vec<&Path> = (!is_summed).then_some(path.as_path()).into_iter().collect();
+        if let Some(parquet) = &parquet
+            && (is_new || !sums::check(parquet)?)
+        {
+            missing.push(parquet);
+        }
+        sums::record(job.folder, sweep.document(), &missing)?;
         files.extend(parquet);
     }
     Ok(Report { runs, done, failed, resumed_from, files })
-}
-
-/// That complete results are as their checksums say; new ones, and those of a sweep that ended before, get theirs.
-fn settle(folder: &Path, document: &str, results: &[&Path], were_there: bool) -> Result<(), SweepError> {
-    let mut missing = Vec::new();
-    for result in results {
-        if !were_there || !sums::check(result)? {
-            missing.push(*result);
-        }
-    }
-    if !missing.is_empty() {
-        return sums::record(folder, document, &missing);
-    }
-    sums::clear(folder);
-    Ok(())
 }
 
 /// That the last line that is there is what this program makes of its run.
@@ -193,8 +185,10 @@ fn compute(
     };
     let stopped = || halt.load(Ordering::Relaxed) || job.stop.load(Ordering::Relaxed);
     std::thread::scope(|scope| {
-        for _ in 0..working {
-            scope.spawn(|| work(&desk, range.end, line, stopped));
+        let (started, cause) = threads::start(scope, working, || work(&desk, range.end, line, stopped));
+        desk.lock().working -= working - started;
+        if let (0, Some(cause)) = (started, cause) {
+            return Err(SweepError::Threads { cause });
         }
         let written = write(&desk, range, record, watch);
         halt.store(true, Ordering::Relaxed); // nobody needs to compute what cannot be written

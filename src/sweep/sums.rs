@@ -67,23 +67,48 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     Ok(true)
 }
 
-/// Adds the checksums of complete `results` to their `document` in the folder.
+/// Adds the checksums of complete `results` to their `document` in the folder; without any, removes what a process left that
+/// was killed while it did.
 ///
 /// # Errors
 /// Another document in the folder; another process that does not come to an end with the same; a refusal of the file
 /// system.
 pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
-    // Only one that this program wrote ends so; others it does not write to.
-    let (Some(head), Some(first)) = (document.strip_suffix(END), results.first()) else { return Ok(()) };
-    let path = folder.join(DOCUMENT);
+    let Some(first) = results.first() else {
+        // It keeps nobody from anything.
+        let _ = whole::remove_abandoned(&folder.join(LOCK));
+        return Ok(());
+    };
     // Before its turn: others wait for the end of that, and large results take long.
     let new: Vec<_> =
         results.iter().map(|result| Ok((name(result), Sum::of(result)?))).collect::<Result<_, SweepError>>()?;
+    change(folder, document, first, |sums| sums.extend(new))
+}
+
+/// Takes out the checksums of `results`, which are about to be replaced.
+///
+/// # Errors
+/// As [`record`].
+pub(super) fn forget(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
+    let (Some(first), path) = (results.first(), folder.join(DOCUMENT)) else { return Ok(()) };
+    let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
+    let sums = read(&path, &text)?;
+    if results.iter().all(|result| !sums.contains_key(&name(result))) {
+        return Ok(());
+    }
+    change(folder, document, first, |sums| sums.retain(|of, _| results.iter().all(|result| name(result) != *of)))
+}
+
+/// Changes the checksums in the `document` of the folder, on behalf of the result at `first`.
+fn change(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut Sums)) -> Result<(), SweepError> {
+    // Only one that this program wrote ends so; others it does not write to.
+    let Some(head) = document.strip_suffix(END) else { return Ok(()) };
+    let path = folder.join(DOCUMENT);
     let turn = wait_for(&folder.join(LOCK))?;
     folder::check_document(folder, document)?;
     let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
     let mut sums = read(&path, &text)?;
-    sums.extend(new);
+    change(&mut sums);
     let sums = serde_json::to_string_pretty(&sums).unwrap_or_default().replace('\n', "\n  ");
     // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
     let part = first.with_extension("json.part");
@@ -93,12 +118,6 @@ pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result
     let removed = folder::remove(&folder.join(LOCK));
     drop(turn);
     removed
-}
-
-/// Removes what a process that was killed left of [`record`].
-pub(super) fn clear(folder: &Path) {
-    // It keeps nobody from anything.
-    let _ = whole::remove_abandoned(&folder.join(LOCK));
 }
 
 /// Waits until no other shard of the folder writes its own: they take turns.
@@ -173,6 +192,21 @@ mod tests {
         assert_eq!(read["results"]["sweep.1-of-2.csv"]["sha256"], known);
         assert_eq!(read["results"]["sweep.2-of-2.csv"]["bytes"], 0);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn what_is_about_to_be_replaced_has_no_checksum() {
+        let folder = tempfile::tempdir().unwrap();
+        let [one, other] = ["sweep.csv", "sweep.parquet"].map(|name| folder.path().join(name));
+        fs::write(&one, "abc").unwrap();
+        fs::write(&other, "").unwrap();
+        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        forget(folder.path(), DECIDES, &[&one]).unwrap();
+        record(folder.path(), DECIDES, &[&one, &other]).unwrap();
+        forget(folder.path(), DECIDES, &[&one]).unwrap();
+        fs::write(&one, "abd").unwrap();
+        assert!(!check(&one).unwrap() && check(&other).unwrap());
+        assert_eq!(identity(&fs::read_to_string(folder.path().join(DOCUMENT)).unwrap()), DECIDES);
     }
 
     #[test]

@@ -22,6 +22,11 @@ const GROUP: usize = 8_192;
 /// Key of the document in the file.
 const KEY: &str = "videg.sweep";
 
+/// Where the table of the results at `csv` is.
+pub(super) fn path(csv: &Path) -> PathBuf {
+    csv.with_extension("parquet")
+}
+
 /// Writes the table beside the results at `csv`, unless it is there and not to be made `anew`; its path.
 pub(super) fn write(
     csv: &Path,
@@ -29,7 +34,7 @@ pub(super) fn write(
     document: &str,
     anew: bool,
 ) -> std::result::Result<PathBuf, SweepError> {
-    let path = csv.with_extension("parquet");
+    let path = path(csv);
     if anew || !path.exists() {
         let filled = whole::fill(&path, |file| fill(csv, columns, document, file));
         filled.map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;

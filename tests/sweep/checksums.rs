@@ -71,3 +71,21 @@ fn results_without_checksums_get_them_and_fresh_ones_replace_them() {
     assert_eq!(fs::read_to_string(&path).unwrap(), sealed);
     done(&mut sweep(&whole, &what));
 }
+
+#[test]
+fn results_that_were_replaced_are_never_compared_with_the_checksums_of_those_before() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0.2:0.9:3"];
+    let document = || serde_json::from_slice::<Value>(&fs::read(folder.join("sweep.json")).unwrap()).unwrap();
+    done(&mut sweep(&folder, &what));
+    assert!(document()["results"]["sweep.csv"].is_object());
+    // New results are complete, but their table cannot be made: as if it had ended in between.
+    fs::create_dir(folder.join("sweep.parquet.part")).unwrap();
+    refused(sweep(&folder, &what).arg("--fresh"));
+    assert!(folder.join("sweep.csv").exists());
+    assert_eq!(document()["results"], serde_json::json!({}));
+    fs::remove_dir(folder.join("sweep.parquet.part")).unwrap();
+    done(&mut sweep(&folder, &what));
+    assert_eq!(document()["results"]["sweep.csv"]["sha256"], sha256(&folder.join("sweep.csv")));
+    assert!(document()["results"]["sweep.parquet"].is_object());
+}

@@ -68,6 +68,18 @@ impl Golden {
     }
 }
 
+/// Holds the model description of an FMU against what its table gives. Run with `UPDATE_MODEL_DESCRIPTION=1` to write the file
+/// after a change of the table. Value references that are known stay, of which `changed` tells from what is kept and what is
+/// made now: to move them nevertheless, which breaks masters, takes `UPDATE_VALUE_REFERENCES=1` as well.
+pub fn model_description(path: &str, made: &str, changed: impl Fn(&str, &str) -> Vec<String>) {
+    if std::env::var_os("UPDATE_VALUE_REFERENCES").is_none() {
+        let changed = changed(&fs::read_to_string(path).unwrap_or_default(), made);
+        let advice = "a new variable goes into a group of its own at the end of VARIABLES, docs/releasing.md";
+        assert!(changed.is_empty(), "{advice}:\n{}", changed.join("\n"));
+    }
+    Golden::new("UPDATE_MODEL_DESCRIPTION", "cargo test --workspace").file(path, made);
+}
+
 fn write(path: &Path, text: &str) {
     fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
@@ -139,6 +151,12 @@ mod tests {
     #[should_panic(expected = "which changes\n+ one\n")]
     fn a_file_that_is_not_there_is_out_of_date() {
         COMPARES.file("no/such/file", "one\n");
+    }
+
+    #[test]
+    #[should_panic(expected = "docs/releasing.md:\nx moved")]
+    fn a_value_reference_that_moves_is_told() {
+        model_description("no/such/file", "one\n", |_, _| vec!["x moved".to_owned()]);
     }
 
     #[test]
