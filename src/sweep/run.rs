@@ -185,14 +185,15 @@ fn compute(
     };
     let stopped = || halt.load(Ordering::Relaxed) || job.stop.load(Ordering::Relaxed);
     std::thread::scope(|scope| {
-        let (started, cause) = threads::start(scope, working, || work(&desk, range.end, line, stopped));
-        desk.lock().working -= working - started;
-        if let (0, Some(cause)) = (started, cause) {
+        let (threads, refused) = threads::start(scope, working, || work(&desk, range.end, line, stopped));
+        desk.lock().working -= working - threads.len();
+        if let (true, Some(cause)) = (threads.is_empty(), refused) {
             return Err(SweepError::Threads { cause });
         }
         let written = write(&desk, range, record, watch);
         halt.store(true, Ordering::Relaxed); // nobody needs to compute what cannot be written
         desk.changed.notify_all();
+        threads::join(threads);
         written
     })
 }
