@@ -1,5 +1,7 @@
 //! The circuit as a user sees it.
 
+use core::cell::Cell;
+
 use crate::devices::Devices;
 use crate::error::{Error, finite, not_negative, positive};
 use crate::exponential::Exponential;
@@ -158,6 +160,7 @@ impl Circuit {
             capacitance: start,
             rate,
             time: self.state.time,
+            trials: Cell::default(),
         };
         let mut internal_step = self.state.internal_step;
         let point = solver.advance(&mut network, dt, &mut internal_step, self.state.load_voltage)?;

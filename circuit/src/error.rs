@@ -113,6 +113,9 @@ pub enum Failure {
     /// `solver.maximumSteps` internal steps did not reach the end of the step.
     #[error("solver.maximumSteps = {0} internal steps did not suffice")]
     Steps(usize),
+    /// Newton's method settles too rarely, and the searches in its place have used up their trial voltages.
+    #[error("the node equations took more than {0} trial voltages")]
+    Trials(usize),
 }
 
 /// A finite value, or an error that names it.

@@ -2,6 +2,8 @@
 //!
 //! A step itself, with the estimate of its error, is in [`crate::step`].
 
+use core::cell::Cell;
+
 use crate::devices::Devices;
 use crate::error::{Error, Failure};
 use crate::network::Network;
@@ -18,6 +20,10 @@ const PLATEAU: u32 = 32;
 /// a transient.
 const REMEMBERED: std::ops::Range<f64> = 0.1..0.8;
 
+/// Most trial voltages in one call. Most steps need none; where Newton's method never settles, one takes thousands, and as
+/// many of these as there may be steps would take minutes.
+const TRIALS: usize = if cfg!(fuzzing) { 50_000 } else { 2_000_000 };
+
 /// One call of [`Exponential::advance`].
 pub(crate) struct Exponential<'a> {
     pub devices: &'a Devices,
@@ -30,6 +36,8 @@ pub(crate) struct Exponential<'a> {
     pub rate: [f64; 2],
     /// Time at the start, for messages (s).
     pub time: f64,
+    /// Trial voltages so far, where Newton's method did not settle.
+    pub trials: Cell<usize>,
 }
 
 impl Exponential<'_> {
@@ -37,7 +45,7 @@ impl Exponential<'_> {
     /// with where that is not the whole call.
     ///
     /// # Errors
-    /// [`Error::Integration`] when steps underflow or are too many.
+    /// [`Error::Integration`] when steps underflow, or are too many or too hard to solve.
     pub fn advance(
         &self,
         network: &mut Network,
@@ -50,6 +58,9 @@ impl Exponential<'_> {
         let mut next = if REMEMBERED.contains(&(*internal_step / dt)) { *internal_step } else { dt };
         let (mut elapsed, mut plateau, mut rejected) = (0.0, 0, false);
         for _ in 0..self.solver.maximum_steps {
+            if self.trials.get() > TRIALS {
+                return Err(self.failed(elapsed, next, Failure::Trials(TRIALS)));
+            }
             let last = next >= dt - elapsed;
             let h = if last { dt - elapsed } else { next };
             if h <= 1e-18 * dt || elapsed + h == elapsed {

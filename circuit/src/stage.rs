@@ -4,6 +4,8 @@
 //! plain Newton iteration over exponentials, this cannot diverge or overflow. Where equations are nested, behind Zener
 //! diodes, Newton's method is tried on all of them at once, which from a good guess is much the quicker.
 
+use core::cell::Cell;
+
 use crate::devices::Devices;
 use crate::parameters::Release;
 use crate::roots::{NEWTON, increasing, newton};
@@ -36,6 +38,8 @@ pub(crate) struct Stage<'a> {
     pub charge: [f64; 2],
     /// Step times the diagonal coefficient (s).
     pub span: f64,
+    /// Counts the trial voltages where Newton's method does not settle.
+    pub trials: &'a Cell<usize>,
 }
 
 impl Stage<'_> {
@@ -58,7 +62,16 @@ impl Stage<'_> {
                 self.capacitance[j] + self.span * (supply_slope + release_slope),
             )
         };
-        newton(balance, guess, self.resolved([guess; 2])).or_else(|| increasing(balance, guess, self.devices.reach()))
+        newton(balance, guess, self.resolved([guess; 2])).or_else(|| self.searched(balance, guess))
+    }
+
+    /// Root of an increasing `balance` near `guess` where Newton's method has not settled: each trial is counted.
+    fn searched(&self, mut balance: impl FnMut(f64) -> (f64, f64), guess: f64) -> Option<f64> {
+        let counted = |voltage| {
+            self.trials.set(self.trials.get().saturating_add(1));
+            balance(voltage)
+        };
+        increasing(counted, guess, self.devices.reach())
     }
 
     /// A step of Newton's method after which there is nothing left to gain (V): the next would be shorter than the last
@@ -131,7 +144,7 @@ impl Stage<'_> {
                 Some((current, slope)) => (g * trial - current, g - slope),
                 None => (f64::NAN, f64::NAN),
             };
-            increasing(balance, guess.load_voltage, self.devices.reach())?
+            self.searched(balance, guess.load_voltage)?
         };
         self.behind_zeners(load_voltage, &mut point)?;
         Some(point)
@@ -244,7 +257,7 @@ impl Stage<'_> {
     fn switches_nested(&self, guess: &Point) -> Option<[f64; 2]> {
         let mut second = guess.voltage[1];
         let balance = |first: f64| self.beside_switch(first, &mut second).unwrap_or((f64::NAN, f64::NAN));
-        let first = increasing(balance, guess.voltage[0], self.devices.reach())?;
+        let first = self.searched(balance, guess.voltage[0])?;
         self.beside_switch(first, &mut second)?;
         Some([first, second])
     }

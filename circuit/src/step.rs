@@ -148,6 +148,7 @@ impl Exponential<'_> {
             capacitance: self.capacitances(t),
             charge: self.charges(flow),
             span,
+            trials: &self.trials,
         }
     }
 

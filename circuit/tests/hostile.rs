@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use videg_circuit::{Circuit, Error, Settings};
+use videg_circuit::{Circuit, DiodeParameters, Diodes, Error, Failure, Parameters, Release, Settings, Topology};
 
 #[path = "../../tests/support/edges.rs"]
 mod edges;
@@ -73,7 +73,8 @@ fn run(settings: &Settings, ramps: &[(f64, [f64; 2])], what: &str) -> Result<(),
 fn assert_explained(error: &Error, what: &str) {
     let text = error.to_string();
     let bounded = ["not above 0", "below 0", "is below supply.voltage", "not a finite number", "differs from"];
-    let ended = ["switching instants", "solver.relativeTolerance", "solver.maximumSteps", "no solution"];
+    let ended =
+        ["switching instants", "solver.relativeTolerance", "solver.maximumSteps", "trial voltages", "no solution"];
     assert!(bounded.iter().chain(&ended).any(|words| text.contains(words)), "{what}: {text}");
 }
 
@@ -126,6 +127,28 @@ fn hostile_number() -> impl Strategy<Value = f64> {
         (-30.0..30.0).prop_map(|e| 10_f64.powf(e)),
         (1.0..40.0).prop_map(|pf| 1e-12 * pf)
     ]
+}
+
+/// Internal steps are bounded, and so is the work for them.
+#[test]
+fn searches_in_place_of_newtons_method_are_bounded() {
+    // A switch that turns on within a billionth of a volt into a short circuit.
+    let diode = DiodeParameters { switch_band: 1e-9, ..DiodeParameters::default() };
+    let parameters = Parameters {
+        topology: Topology::Isolated,
+        release: Release::Switch,
+        load_resistance: 0.0,
+        diodes: Diodes::Exponential(diode),
+        ..Parameters::default()
+    };
+    let mut circuit = Circuit::new(parameters, [15e-12; 2]).unwrap();
+    circuit.advance(5e-3, [25e-12, 15e-12]).unwrap();
+    circuit.advance(5e-3, [15e-12; 2]).unwrap();
+    circuit.advance(0.0, [15e-12, 30e-12]).unwrap();
+    let before = circuit.clone();
+    let error = circuit.advance(0.1, [15e-12; 2]).unwrap_err();
+    assert!(matches!(error, Error::Integration { failure: Failure::Trials(2_000_000), .. }), "{error}");
+    assert_eq!(circuit, before);
 }
 
 proptest! {
