@@ -176,6 +176,8 @@ stage_lint() {
     else
         skip "cargo clippy is not installed"
     fi
+    # Its workspace is of its own, so that nothing else looks whether what it locks is what the packages ask for.
+    run cargo tree --quiet --locked --manifest-path fuzz/Cargo.toml --prefix none --depth 0
     run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
     run release/version.sh check
     run python3 release/interface.py check

@@ -92,6 +92,40 @@ fn the_stages_the_force_law_and_the_shape_are_those_of_the_paper() {
 }
 
 #[test]
+fn a_harvesting_cycle_has_the_corners_of_table_1_and_lies_within_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = made(folder.path(), &["table1", "fig8"]);
+    let stages = columns(&folder.path().join("table1.csv"));
+    let (capacitance, voltage) = (&stages[4], &stages[5]);
+    let number = |quantity: &str| finding(&run, "fig8", "Figure 8(b)", quantity)["videg"].as_f64().unwrap();
+    let enclosed = number("the cycle 2-3-4 over W");
+    assert!((enclosed / (capacitance[2] / capacitance[1] - 1.0) - 1.0).abs() < 1e-9, "{enclosed}");
+    let path = columns(&folder.path().join("fig8.csv"));
+    assert!(path[0].len() > 100 && path[0].windows(2).all(|pair| pair[0] < pair[1]));
+    let largest = |column: usize| path[column].iter().copied().fold(0.0, f64::max);
+    assert!((largest(1) / capacitance[2] - 1.0).abs() < 1e-4, "it goes through stage 3");
+    for kind in 0..3 {
+        let (volts, charge) = (&path[2 + 2 * kind], &path[3 + 2 * kind]);
+        for (k, charge) in charge.iter().enumerate() {
+            assert!((charge - 1e-3 * path[1][k] * volts[k]).abs() < 1e-9, "nC of pF and V");
+            assert!(volts[k] >= voltage[1] - 1e-6 && volts[k] <= voltage[3] + 1e-6);
+        }
+    }
+    // A slow discharge comes near stage 4; a storage holds its voltage; the idle membrane takes its share.
+    assert!(largest(2) > 0.95 * voltage[3] && (largest(4) - 2911.0).abs() < 1e-6 && largest(6) < 0.8 * voltage[3]);
+    let triangle = 0.5e-6 * voltage[1] * voltage[1] * (capacitance[2] - capacitance[1]) * enclosed;
+    let slow = number("converted in a cycle, slow") / triangle;
+    assert!(slow > 0.9 && slow < 1.0, "{slow} of the triangle");
+    // Of a path that closes: what it encloses.
+    let area: f64 = (0..path[0].len())
+        .map(|k| (k, (k + 1) % path[0].len()))
+        .map(|(k, next)| 0.5e-3 * (path[4][k] + path[4][next]) * (path[5][k] - path[5][next]))
+        .sum();
+    let storage = number("converted in a cycle, release into a storage");
+    assert!((area / storage - 1.0).abs() < 1e-3, "{area} uJ for {storage}");
+}
+
+#[test]
 fn a_name_that_does_not_exist_is_an_error_with_a_hint_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let output = reproduce(&folder.path().join("out"), &["fig41"]);

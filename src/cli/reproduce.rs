@@ -203,17 +203,19 @@ impl Book<'_> {
 
     fn text(&self, report: &Path) -> String {
         let mut table = format::table(&["where and what", "unit", "paper", "videg", "deviation", "verdict"]);
-        for finding in self.findings().filter(|finding| finding.is_compared()) {
+        let (compared, beyond): (Vec<_>, Vec<_>) = self.findings().partition(|finding| finding.is_compared());
+        let (shown, left) = if compared.is_empty() { (beyond, Vec::new()) } else { (compared, beyond) };
+        for finding in shown {
             let [place, quantity, unit, paper, videg, deviation, verdict, _] = page::cells(finding);
             table.add_row(format::row(&[format!("{place}: {quantity}"), unit, paper, videg, deviation, verdict]));
         }
         let files: usize = self.chapters.iter().map(|chapter| chapter.files.len()).sum();
-        format!(
-            "{table}\n\n{} more numbers, of which the paper says nothing, are in {}; {files} files with data and pictures; \
-             the report: {}",
-            self.findings().filter(|finding| !finding.is_compared()).count(),
-            self.folder.join("summary.csv").display(),
-            report.display()
-        )
+        let summary = self.folder.join("summary.csv");
+        let summary = summary.display();
+        let more = match left.len() {
+            0 => format!("these numbers are in {summary}, with reasons"),
+            left => format!("{left} more numbers, of which the paper says nothing, are in {summary}"),
+        };
+        format!("{table}\n\n{more}; {files} files with data and pictures; the report: {}", report.display())
     }
 }

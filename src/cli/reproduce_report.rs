@@ -107,12 +107,17 @@ fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
         let compared = chapter.findings.iter().filter(|finding| finding.is_compared());
         compared.map(|finding| row(Some(chapter.name), finding))
     });
-    let table = rows.fold(Table::new(columns()), Table::row);
+    let rows: Vec<_> = rows.collect();
     let legend = "Verdicts: agrees - within what the paper's digits and method allow or, where it prints no number, what it \
                   says in words holds; within ensemble - the motion is chaotic, and the paper's value lies within the \
                   middle 95 % of nearby starts; in the tail - it lies outside of these; explained - the reason beside it \
                   accounts for the difference. Numbers of which the paper says nothing stand with each figure below.";
-    let mut section = Section::new("Summary").id("summary").text(legend).table(table);
+    let section = Section::new("Summary").id("summary");
+    let mut section = if rows.is_empty() {
+        section.text("The paper says nothing of the numbers below.")
+    } else {
+        section.text(legend).table(rows.into_iter().fold(Table::new(columns()), Table::row))
+    };
     if quick {
         section = section.warning("Made with --quick: fewer samples and coarser grids.");
     }

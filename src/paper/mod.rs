@@ -16,6 +16,7 @@ mod fig16;
 mod fig17;
 mod fig4;
 mod fig7;
+mod fig8;
 mod fixed_step;
 mod lyapunov;
 mod motion;
@@ -63,6 +64,7 @@ pub const ITEMS: &[Item] = &[
     Item { name: "table3", title: "Table 3: power density", make: table3::make },
     Item { name: "fig4", title: "Figure 4: force law", make: fig4::make },
     Item { name: "fig7", title: "Figure 7: shape of the membrane", make: fig7::make },
+    Item { name: "fig8", title: "Figure 8(b): one harvesting cycle", make: fig8::make },
     Item { name: "fig9", title: "Figure 9: no impact", make: |workshop| motion::make(workshop, &motion::FIG9) },
     Item { name: "fig10", title: "Figure 10: saw-tooth motion", make: stability::make },
     Item {

@@ -4,12 +4,9 @@ use std::f64::consts::PI;
 
 use videg_model::VACUUM_PERMITTIVITY;
 
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop, peak};
+use super::peak::{self, CASE, WHEN};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
 use crate::report::{Column, Figure, Panel, Series, Style, Table};
-
-/// Whose largest impact makes stage 3, and when, s: the averages of the paper begin there, and twenty periods show all.
-const CASE: &str = "fig14";
-const WHEN: [f64; 2] = [50.0, 60.0];
 
 /// A stage in numbers, SI.
 struct Stage {
@@ -86,7 +83,7 @@ fn stages(workshop: &Workshop<'_>) -> Result<[Stage; 4], PaperError> {
             "biasVoltage",
         ],
     )?;
-    let peak = peak::largest(workshop, CASE, WHEN)?;
+    let peak = peak::stage_3(workshop)?;
     let stage = |radius: Option<f64>, area: f64, thickness: f64, capacitance: f64, voltage: f64| Stage {
         radius,
         area,

@@ -1,0 +1,275 @@
+//! Figure 8(b): one harvesting cycle in the plane of voltage and charge, as drawn in the paper and as circuits go through it.
+
+use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
+
+use super::coupled::circuit;
+use super::peak::{self, Peak};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use crate::cosim::{CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row};
+use crate::report::{Column, Figure, Panel, Series, Style, Table};
+use crate::scenario::Request;
+
+/// Largest error of C(t) within a communication step, relative to its value.
+const TOLERANCE: f64 = 1e-4;
+/// How long before and after the largest deflection to look for the ends of the cycle, s: two periods.
+const AROUND: f64 = 1.0;
+
+/// The circuits, and the panel that each is in.
+const KINDS: [Kind; 3] = [
+    Kind { name: "slow discharge into 32 Gohm", panel: 0, settings: || isolated(Release::Switch, 2000.0) },
+    Kind { name: "release into a storage at 2911 V", panel: 0, settings: || isolated(Release::Storage, 2911.0) },
+    Kind {
+        name: "Zener, 2000 V, 1 Gohm",
+        panel: 1,
+        settings: || circuit(Topology::SharedNode, Release::Zener, 2000.0, 1e9),
+    },
+];
+const PANELS: [&str; 2] = ["(a) isolated membranes", "(b) the paper's circuit: shared node"];
+
+/// A circuit on its way through the cycle.
+struct Kind {
+    name: &'static str,
+    panel: usize,
+    settings: fn() -> Settings,
+}
+
+/// The load is that of the largest net gain of `videg reproduce tuning`.
+fn isolated(release: Release, voltage: f64) -> Settings {
+    let mut settings = circuit(Topology::Isolated, release, voltage, 3.2e10);
+    settings.circuit.storage_voltage = voltage;
+    settings
+}
+
+/// The membrane that is pressed in, at one communication point, SI.
+struct Point {
+    time: f64,
+    deflection: f64,
+    capacitance: f64,
+    /// In the order of [`KINDS`], as all that follows.
+    voltages: [f64; KINDS.len()],
+    /// Of both membranes.
+    ledgers: [Ledger; KINDS.len()],
+}
+
+impl Point {
+    /// U, kV, and Q, nC.
+    fn place(&self, kind: usize) -> (f64, f64) {
+        (1e-3 * self.voltages[kind], 1e9 * self.capacitance * self.voltages[kind])
+    }
+}
+
+/// From the beginning of an impact to that of the next one on the same membrane.
+struct Cycle {
+    points: Vec<Point>,
+    bias_voltage: f64,
+    rest_capacitance: f64,
+    peak: Peak,
+}
+
+/// Makes the picture.
+pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
+    let cycle = Cycle::run(workshop)?;
+    Ok(Artefact {
+        findings: findings(&cycle),
+        text: text(&cycle),
+        tables: vec![table(&cycle)],
+        pictures: vec![picture(&cycle)?],
+        sheets: vec![sheet(&cycle)],
+    })
+}
+
+impl Cycle {
+    /// That of the impact which makes stage 3 of Table 1.
+    fn run(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
+        let peak = peak::stage_3(workshop)?;
+        let request =
+            Request { case: Some(peak::CASE.to_owned()), until: Some(peak.time + AROUND), ..Request::default() };
+        let scenario = request.resolve()?;
+        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
+        let capacitance = harvester.sample()?.capacitance();
+        let bias_voltage = harvester.bias_voltage();
+        let slaves = KINDS.iter().map(|kind| -> Result<Box<dyn CircuitSlave>, CosimError> {
+            Ok(Box::new(EmbeddedCircuit::new(kind.name, &(kind.settings)(), capacitance)?))
+        });
+        let slaves = slaves.collect::<Result<_, _>>()?;
+        let coupling = Coupling { tolerance: Some(TOLERANCE), ..Coupling::default() };
+        let mut course = Course { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
+        Master::new(harvester, slaves, &scenario, coupling)?.run(&mut [&mut course])?;
+        let mut points = course.points;
+        let is_before = |point: &Point| point.time < peak.time && point.deflection <= 0.0;
+        let begin = points.iter().rposition(is_before).unwrap_or(0);
+        points.drain(..begin);
+        // Pressed in, let go, and pressed in again.
+        let away = points.iter().position(|point| point.time > peak.time && point.deflection <= 0.0);
+        let again =
+            away.and_then(|away| points[away..].iter().position(|point| point.deflection > 0.0).map(|k| away + k));
+        points.truncate(again.unwrap_or(points.len()));
+        Ok(Self { points, bias_voltage, rest_capacitance: capacitance[peak.side], peak })
+    }
+
+    /// Energy that a circuit has taken from the ball through this membrane, J: - integral of 1/2 `U^2` dC, exact where the
+    /// charge or the voltage is kept from point to point.
+    fn converted(&self, kind: usize) -> f64 {
+        let steps = self.points.windows(2).map(|pair| {
+            let [u, v] = [0, 1].map(|k| pair[k].voltages[kind]);
+            0.5 * u * v * (pair[0].capacitance - pair[1].capacitance)
+        });
+        steps.sum()
+    }
+
+    /// The corners 2, 3 and 4 of the cycle in the paper: U, kV, and Q, nC.
+    fn corners(&self) -> [(f64, f64); 3] {
+        let (u, c2, c3) = (self.bias_voltage, self.rest_capacitance, self.peak.capacitance);
+        let place = |c: f64, u: f64| (1e-3 * u, 1e9 * c * u);
+        [place(c2, u), place(c3, u), place(c2, formulas::peak_voltage(u, c2, c3))]
+    }
+
+    /// Energy in the triangle that they make, J.
+    fn triangle(&self) -> f64 {
+        formulas::largest_net_gain(self.bias_voltage, self.rest_capacitance, self.peak.capacitance)
+    }
+
+    /// W of this impact, J, Eq. (13).
+    fn eq13(&self) -> f64 {
+        formulas::eq13_energy(self.bias_voltage, self.rest_capacitance, self.peak.capacitance)
+    }
+}
+
+/// Where the energy went, uJ.
+fn table(cycle: &Cycle) -> Table {
+    let columns: [Account; 6] = [
+        ("by both membranes", Ledger::converted),
+        ("from the supply", |ledger| ledger.supply),
+        ("into the load", |ledger| ledger.load),
+        ("into Zener diodes", |ledger| ledger.zener),
+        ("stored more", |ledger| ledger.stored),
+        ("net gain", Ledger::surplus),
+    ];
+    let headings = [Column::words("circuit"), Column::numbers("converted by this membrane (uJ)")];
+    let accounts = columns.iter().map(|(name, _)| Column::numbers(format!("{name} (uJ)")));
+    KINDS.iter().enumerate().fold(Table::new(headings.into_iter().chain(accounts)), |table, (index, kind)| {
+        let over_the_cycle = |account: fn(&Ledger) -> f64| match &cycle.points[..] {
+            [first, .., last] => account(&last.ledgers[index]) - account(&first.ledgers[index]),
+            _ => f64::NAN,
+        };
+        let values = columns.iter().map(|(_, account)| over_the_cycle(*account));
+        let cells = std::iter::once(cycle.converted(index)).chain(values).map(|value| format!("{:.2}", 1e6 * value));
+        table.row(std::iter::once(format!("{}, {}", PANELS[kind.panel], kind.name)).chain(cells))
+    })
+}
+
+/// A heading, and what is under it, J.
+type Account = (&'static str, fn(&Ledger) -> f64);
+
+/// Notes what happens around the largest deflection.
+struct Course {
+    from: f64,
+    side: usize,
+    points: Vec<Point>,
+}
+
+impl Observer for Course {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        if row.time >= self.from {
+            let (mut voltages, mut ledgers) = ([0.0; KINDS.len()], [Ledger::default(); KINDS.len()]);
+            for (kind, circuit) in row.circuits.iter().enumerate().take(KINDS.len()) {
+                voltages[kind] = circuit.voltage[self.side];
+                ledgers[kind] = circuit.ledger;
+            }
+            self.points.push(Point {
+                time: row.time,
+                deflection: row.harvester.deflection()[self.side],
+                capacitance: row.harvester.capacitance()[self.side],
+                voltages,
+                ledgers,
+            });
+        }
+        Ok(())
+    }
+}
+
+fn findings(cycle: &Cycle) -> Vec<Finding> {
+    let beyond = |quantity: String, unit: &str, videg: f64, reason: String| Finding {
+        place: "Figure 8(b)".to_owned(),
+        quantity,
+        unit: unit.to_owned(),
+        paper: None,
+        videg,
+        verdict: Verdict::Beyond,
+        reason,
+    };
+    let (eq13, triangle) = (cycle.eq13(), cycle.triangle());
+    let reason = format!(
+        "{:.2} uJ over {:.2} uJ: it is C3/C2 - 1; W is half of what the supply gives in a cycle, not what the cycle encloses",
+        1e6 * triangle,
+        1e6 * eq13
+    );
+    let mut findings = vec![beyond("the cycle 2-3-4 over W, Eq. (13)".to_owned(), "1", triangle / eq13, reason)];
+    for (index, kind) in KINDS.iter().enumerate() {
+        let converted = cycle.converted(index);
+        let reason = format!("{:.0} % of the cycle 2-3-4", 1e2 * converted / triangle);
+        findings.push(beyond(format!("converted in a cycle, {}", kind.name), "uJ", 1e6 * converted, reason));
+    }
+    findings
+}
+
+fn text(cycle: &Cycle) -> Vec<String> {
+    let [_, _, (voltage, _)] = cycle.corners();
+    vec![
+        format!(
+            "The membrane that takes the largest impact of {} between {} and {} s, stage 3 of Table 1, from the beginning of \
+             that impact to its next. The corners 2, 3 and 4 are those of Table 1: pressed in at U_in it is charged from \
+             C2 U_in to C3 U_in, recovering with its charge kept it reaches U_DE4 = {:.0} V, and into the load it goes back \
+             along Q = C2 U.",
+            peak::CASE,
+            peak::WHEN[0],
+            peak::WHEN[1],
+            1e3 * voltage
+        ),
+        "What a closed path encloses is converted from the motion. A load of 32 Gohm behind a switch at U_in takes the charge so \
+         slowly that the path is nearly the paper's, and ends where the next impact finds it. A storage takes it at its own \
+         voltage, which is half of the triangle at best. In the paper's circuit the load takes it while the membrane recovers, and \
+         the idle membrane lies in parallel; what the Zener burns of it is in the table, which has both membranes, the other one's \
+         impacts in that time included."
+            .to_owned(),
+    ]
+}
+
+fn picture(cycle: &Cycle) -> Result<Picture, PaperError> {
+    let corners = cycle.corners();
+    let [second, third, fourth] = corners;
+    let ideal = [second, third, fourth, second];
+    let paths: Vec<Vec<_>> =
+        (0..KINDS.len()).map(|kind| cycle.points.iter().map(|point| point.place(kind)).collect()).collect();
+    let mut figure = Figure::new("Figure 8(b): one harvesting cycle").columns(2).width(960.0);
+    for (index, title) in PANELS.into_iter().enumerate() {
+        let mut panel = Panel::new(title, "voltage of the membrane (kV)", "charge of the membrane (nC)")
+            .height(340.0)
+            .series(Series::points("2-3-4-2 of the paper", &ideal).style(Style::Dashed).color(6));
+        for (color, (kind, path)) in KINDS.iter().zip(&paths).enumerate() {
+            if kind.panel == index {
+                panel = panel.series(Series::points(kind.name, path).color(color));
+            }
+        }
+        figure =
+            figure.panel(panel.series(Series::points("2, 3, 4: Table 1", &corners).style(Style::Markers).color(6)));
+    }
+    let caption = format!(
+        "Charge over voltage of a membrane through one cycle, case {}, U_in = {:.0} V. At stage 2 it is at rest, at 3 pressed in \
+         the farthest, at 4 recovered with its charge kept. What a path encloses is the energy converted.",
+        peak::CASE,
+        cycle.bias_voltage
+    );
+    Ok(Picture::new("fig8", &figure, caption)?)
+}
+
+fn sheet(cycle: &Cycle) -> Sheet {
+    let of_kinds =
+        KINDS.iter().flat_map(|kind| ["voltage (V)", "charge (nC)"].map(|what| format!("{}: {what}", kind.name)));
+    let columns = ["time (s)", "capacitance (pF)"].map(str::to_owned).into_iter().chain(of_kinds).collect();
+    let row = |point: &Point| {
+        let places = (0..KINDS.len()).map(|kind| (point.voltages[kind], point.place(kind).1));
+        [point.time, 1e12 * point.capacitance].into_iter().chain(places.flat_map(|(u, q)| [u, q])).collect()
+    };
+    Sheet { name: "fig8".to_owned(), columns, rows: cycle.points.iter().map(row).collect() }
+}
