@@ -1,5 +1,6 @@
-//! Child processes, each with all that it starts and does not send away: none outlives this process, also when a signal ends
-//! the command-line tool (`end_all`). On Windows there are no such groups: a child alone is ended, and none when a signal ends
+//! Child processes, each with all that it starts and does not send away. A signal that ends the command-line tool ends them
+//! (`end_all`); where this process is killed, or is of another program, workers see it by the end of their stdin, and Cargo and
+//! ngspice go on to their own end. On Windows there are no such groups: a child alone is ended, and none when a signal ends
 //! this process.
 
 use std::collections::BTreeSet;

@@ -115,13 +115,19 @@ impl From<LockError> for io::Error {
     }
 }
 
-/// Opens `part`, which no other process has open to write, with what is in it.
+/// Opens `part`, which no other process has open to write, with what is in it. A file that has other names is refused: a
+/// backup may share it.
 ///
 /// # Errors
 /// Another process that writes it; a refusal of the file system.
 pub fn lock(part: &Path) -> Result<File, LockError> {
+    const SHARED: &str =
+        "the file has other names (hard links), whose content would change with it; remove it, or replace it by a copy";
     loop {
         let file = open(part, true).map_err(LockError::Open)?;
+        if names(&file).map_err(LockError::Open)? > 1 {
+            return Err(LockError::Open(io::Error::other(SHARED)));
+        }
         // Who had it locked before may have given it its last name in between.
         if own(&file, part)? {
             return Ok(file);
@@ -130,11 +136,9 @@ pub fn lock(part: &Path) -> Result<File, LockError> {
 }
 
 /// Opens what stands at `part`, which is made with `make`, to read and to write. A symbolic link is refused: somebody may
-/// have put it there to have written what it leads to. So is a file that has other names: a backup may share it.
+/// have put it there to have written what it leads to.
 fn open(part: &Path, make: bool) -> io::Result<File> {
     const LINK: &str = "it is a symbolic link, through which nothing is written; remove it";
-    const SHARED: &str =
-        "the file has other names (hard links), whose content would change with it; replace it by a copy";
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(make).truncate(false);
     #[cfg(unix)]
@@ -146,8 +150,7 @@ fn open(part: &Path, make: bool) -> io::Result<File> {
         return Err(io::Error::other(LINK));
     }
     let is_link = |cause: io::Error| if part.is_symlink() { io::Error::new(cause.kind(), LINK) } else { cause };
-    let file = options.open(part).map_err(is_link)?;
-    if names(&file)? > 1 { Err(io::Error::other(SHARED)) } else { Ok(file) }
+    options.open(part).map_err(is_link)
 }
 
 /// Locks `file`, which was opened at `part`; whether it is still there.

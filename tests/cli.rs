@@ -272,8 +272,7 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
     }
 }
 
-/// A wrong value is that of the file and the key, or of the option, from which it came.
-/// Stacks that no memory holds stand for a system that gives no more threads.
+/// Stacks that no address space holds stand for a system that gives no more threads.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_system_without_threads_makes_it_slow_or_is_named() {
@@ -282,7 +281,7 @@ fn a_system_without_threads_makes_it_slow_or_is_named() {
     let starved = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
         command.args(arguments).current_dir(folder.path());
-        command.env("RUST_MIN_STACK", "99999999999999").env("VIDEG_NO_BUILD", "1");
+        command.env("RUST_MIN_STACK", "9999999999999999").env("VIDEG_NO_BUILD", "1");
         let output = command.output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
@@ -302,6 +301,7 @@ fn a_system_without_threads_makes_it_slow_or_is_named() {
     }
 }
 
+/// A wrong value is that of the file and the key, or of the option, from which it came.
 #[test]
 fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
     let folder = tempfile::tempdir().unwrap();

@@ -114,14 +114,14 @@ fn a_harvesting_cycle_has_the_corners_of_table_1_and_lies_within_them() {
     // A slow discharge comes near stage 4; a storage holds its voltage; the idle membrane takes its share.
     assert!(largest(2) > 0.95 * voltage[3] && (largest(4) - 2911.0).abs() < 1e-6 && largest(6) < 0.8 * voltage[3]);
     let triangle = 0.5e-6 * voltage[1] * voltage[1] * (capacitance[2] - capacitance[1]) * enclosed;
-    let slow = number("converted in a cycle, slow") / triangle;
+    let slow = number("converted in a cycle, switch") / triangle;
     assert!(slow > 0.9 && slow < 1.0, "{slow} of the triangle");
     // Of a path that closes: what it encloses.
     let area: f64 = (0..path[0].len())
         .map(|k| (k, (k + 1) % path[0].len()))
         .map(|(k, next)| 0.5e-3 * (path[4][k] + path[4][next]) * (path[5][k] - path[5][next]))
         .sum();
-    let storage = number("converted in a cycle, release into a storage");
+    let storage = number("converted in a cycle, storage");
     assert!((area / storage - 1.0).abs() < 1e-3, "{area} uJ for {storage}");
 }
 

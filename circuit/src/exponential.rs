@@ -21,7 +21,7 @@ const PLATEAU: u32 = 32;
 const REMEMBERED: std::ops::Range<f64> = 0.1..0.8;
 
 /// Most trial voltages in one call. Most steps need none; where Newton's method never settles, one takes thousands, and as
-/// many of these as there may be steps would take minutes.
+/// many of these as there may be steps would take minutes. A fuzzer has less time.
 const TRIALS: usize = if cfg!(fuzzing) { 5_000 } else { 2_000_000 };
 
 /// One call of [`Exponential::advance`].

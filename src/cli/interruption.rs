@@ -77,8 +77,10 @@ impl Interruption {
         Ok(())
     }
 
-    /// Whether a signal has come, for a caller that ends in order by itself from here on.
+    /// Whether a signal has come, for a caller that ends in order by itself from here on. Ends the process if one has come
+    /// before.
     pub fn defer(&self) -> &AtomicBool {
+        self.settle();
         self.is_deferred.store(true, Ordering::Relaxed);
         &self.has_come
     }

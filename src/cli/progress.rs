@@ -179,7 +179,7 @@ pub fn spinner(message: &str) -> ProgressBar {
     spinner
 }
 
-/// Has a bar that is seen move by itself, where the system gives a thread for that: the library would panic.
+/// Has a bar that is seen move by itself, where the system gives a thread for that: if not, the library would panic.
 fn tick(bar: &ProgressBar, every: Duration) {
     if !bar.is_hidden() && std::thread::Builder::new().spawn(|| ()).is_ok() {
         bar.enable_steady_tick(every);

@@ -20,6 +20,16 @@ pub enum PaperError {
     /// A case.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// An impact is not followed by another one, so that there is no cycle to be drawn.
+    #[error("{case}: the impact at {time} s has no rest before it, or no next one, within {within} s")]
+    NoCycle {
+        /// The case.
+        case: &'static str,
+        /// Time of the largest deflection, s.
+        time: f64,
+        /// How far was looked, s.
+        within: f64,
+    },
     /// The model, where an item asks it for a formula.
     #[error(transparent)]
     Model(#[from] videg_model::ModelError),

@@ -97,6 +97,9 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
         {
             missing.push(parquet);
         }
+        if missing.is_empty() {
+            sums::clear(job.folder);
+        }
         sums::record(job.folder, sweep.document(), &missing)?;
         files.extend(parquet);
     }

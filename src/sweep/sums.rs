@@ -67,22 +67,23 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     Ok(true)
 }
 
-/// Adds the checksums of complete `results` to their `document` in the folder; without any, removes what a process left that
-/// was killed while it did.
+/// Adds the checksums of complete `results` to their `document` in the folder.
 ///
 /// # Errors
 /// Another document in the folder; another process that does not come to an end with the same; a refusal of the file
 /// system.
 pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
-    let Some(first) = results.first() else {
-        // It keeps nobody from anything.
-        let _ = whole::remove_abandoned(&folder.join(LOCK));
-        return Ok(());
-    };
+    let Some(first) = results.first() else { return Ok(()) };
     // Before its turn: others wait for the end of that, and large results take long.
     let new: Vec<_> =
         results.iter().map(|result| Ok((name(result), Sum::of(result)?))).collect::<Result<_, SweepError>>()?;
     change(folder, document, first, |sums| sums.extend(new))
+}
+
+/// Removes what a process that was killed left of [`record`].
+pub(super) fn clear(folder: &Path) {
+    // It keeps nobody from anything.
+    let _ = whole::remove_abandoned(&folder.join(LOCK));
 }
 
 /// Takes out the checksums of `results`, which are about to be replaced.

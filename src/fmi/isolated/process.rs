@@ -162,15 +162,7 @@ impl Process {
 
     /// Whether a worker that has closed its pipes ends by itself.
     fn farewell(&mut self) -> bool {
-        let end = Instant::now() + FAREWELL;
-        while Instant::now() < end {
-            match self.has_ended() {
-                Ok(false) => std::thread::sleep(Duration::from_millis(1)),
-                Ok(true) => return true,
-                Err(_) => return false,
-            }
-        }
-        false
+        matches!(self.group.wait(Some(FAREWELL)), Ok(true))
     }
 
     /// The end of what it printed.
