@@ -1,7 +1,9 @@
 """A federate of HELICS that cannot hang: one whose partner, broker or own FMU fails ends with an error."""
 
 import argparse
+import queue
 import socket
+import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -18,6 +20,8 @@ NEVER = helics.HELICS_TIME_MAXTIME
 
 MASTERS = ["gauss-seidel", "plain"]
 TIMEOUT = 30.0
+PATIENCE = 3.0
+"""How long HELICS may take to be taken in by a broker, in times of the timeout: it tries more than once."""
 BROKER = "127.0.0.1:23404"
 CORES = ["zmq_ss", "zmq", "tcp"]
 """Cores of HELICS. Of helics 3.6.1's tcp_ss the message that registers a federate is lost now and then."""
@@ -85,6 +89,31 @@ def reach(host: str, port: int, timeout: float) -> None:
             time.sleep(0.1)
 
 
+def registered(name: str, info: object, broker: str, timeout: float) -> object:
+    """The federate, taken in by the broker. HELICS 3.6.1 waits for ever for one that listens and says nothing, as one does
+    that has just ended because another federate failed."""
+    answers: queue.SimpleQueue = queue.SimpleQueue()
+
+    def register() -> None:
+        try:
+            answers.put(helics.helicsCreateValueFederate(name, info))
+        except helics.HelicsException as error:
+            answers.put(error)
+
+    # Mostly HELICS gives up by itself, and says why.
+    threading.Thread(target=register, daemon=True).start()
+    try:
+        answer = answers.get(timeout=PATIENCE * timeout)
+    except queue.Empty:
+        problem = Problem(f"the broker at {broker} does not answer within {PATIENCE * timeout} s")
+        # Where the process ends in order, the library waits for its threads.
+        problem.at_once = True
+        raise problem from None
+    if isinstance(answer, helics.HelicsException):
+        raise Problem(f"the broker at {broker} does not take it in: {answer}") from answer
+    return answer
+
+
 class Federate:
     """A value federate that publishes and subscribes to doubles. Use it in a `with` statement: what goes wrong within
     ends the whole federation."""
@@ -109,10 +138,7 @@ class Federate:
         for flag, value in flags.items():
             helics.helicsFederateInfoSetFlagOption(info, flag, value)
         helics.helicsFederateInfoSetTimeProperty(info, helics.HELICS_PROPERTY_TIME_GRANT_TIMEOUT, options.timeout)
-        try:
-            self._federate = helics.helicsCreateValueFederate(name, info)
-        except helics.HelicsException as error:
-            raise Problem(f"the broker at {options.broker} does not take it in: {error}") from error
+        self._federate = registered(name, info, options.broker, options.timeout)
         self._name, self._time, self._timeout = name, 0.0, options.timeout
         self._joining = False
         self._publications: list = []

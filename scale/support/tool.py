@@ -16,12 +16,19 @@ ROOT = Path(__file__).resolve().parents[2]
 class Problem(Exception):
     """Why a script cannot run: names the thing, the value and the bound."""
 
+    at_once = False
+    """Whether the process is to end without giving libraries, which hang, the word."""
+
 
 def main(run: Callable[[], int]) -> None:
     """Run a script and end it: with its exit code, or with 2 and one line on stderr."""
     try:
         code = run()
     except Problem as problem:
+        if problem.at_once:
+            tell(problem)
+            sys.stderr.flush()
+            os._exit(2)
         give_up(problem)
     except OSError as error:
         give_up(error)
@@ -29,8 +36,12 @@ def main(run: Callable[[], int]) -> None:
 
 
 def give_up(reason: object) -> NoReturn:
-    print(f"{Path(sys.argv[0]).name}: {reason}", file=sys.stderr)
+    tell(reason)
     sys.exit(2)
+
+
+def tell(reason: object) -> None:
+    print(f"{Path(sys.argv[0]).name}: {reason}", file=sys.stderr)
 
 
 def need(module: str) -> ModuleType:

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import socket
 from pathlib import Path
 
 import psutil
@@ -107,6 +108,14 @@ def test_without_a_broker_a_federate_ends_with_an_error(run, fmus, tmp_path):
     ended = run(*federate("circuit", fmus, tmp_path, address))
     assert ended.returncode == 2
     assert f"circuit_federate.py: no HELICS broker at {address} within 4.0 s" in ended.stderr
+
+
+def test_a_broker_that_listens_and_says_nothing_is_told(run, fmus, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        address = f"127.0.0.1:{mute.getsockname()[1]}"
+        ended = run(*federate("circuit", fmus, tmp_path, address))
+    assert ended.returncode == 2
+    assert f"circuit_federate.py: the broker at {address} does not answer within 12.0 s" in ended.stderr
 
 
 @pytest.mark.parametrize(
