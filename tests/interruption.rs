@@ -5,6 +5,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use tempfile::TempDir;
+
 #[path = "support/signals.rs"]
 mod signals;
 #[path = "hostile/toy.rs"]
@@ -37,16 +39,25 @@ fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Pat
     status.code()
 }
 
+/// A folder, the file in it that takes the number of a child, and the folder in it of temporary files.
+fn folders() -> (TempDir, PathBuf, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
+    std::fs::create_dir(&temporary).unwrap();
+    (folder, mark, temporary)
+}
+
+/// The macro of an FMU that writes the number of its process to `mark` in this place, and takes its time.
+fn pausing(place: &str, mark: &Path) -> String {
+    let file = mark.display();
+    format!("{place}=FILE *f = fopen(\"{file}\", \"w\"); fprintf(f, \"%d\\n\", getpid()); fclose(f); for (;;) pause();")
+}
+
 #[test]
 fn a_signal_leaves_neither_the_worker_of_an_fmu_nor_its_folder() {
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129), ("QUIT", 131)] {
-        let folder = tempfile::tempdir().unwrap();
-        let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
-        std::fs::create_dir(&temporary).unwrap();
-        let file = mark.display();
-        let step = format!(
-            "STEP=FILE *f = fopen(\"{file}\", \"w\"); fprintf(f, \"%d\\n\", getpid()); fclose(f); for (;;) pause();"
-        );
+        let (folder, mark, temporary) = folders();
+        let step = pausing("STEP", &mark);
         let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
         let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
         program.args(["fmu", "check"]).arg(path);
@@ -57,13 +68,8 @@ fn a_signal_leaves_neither_the_worker_of_an_fmu_nor_its_folder() {
 /// Once its runs have begun, it ends them in order; before, there is nothing to keep.
 #[test]
 fn a_signal_before_the_first_run_of_a_sweep_leaves_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
-    std::fs::create_dir(&temporary).unwrap();
-    let file = mark.display();
-    let load = format!(
-        "LOADING=FILE *f = fopen(\"{file}\", \"w\"); fprintf(f, \"%d\\n\", getpid()); fclose(f); for (;;) pause();"
-    );
+    let (folder, mark, temporary) = folders();
+    let load = pausing("LOADING", &mark);
     let path = toy::fmu(folder.path(), "toy.fmu", &[&load]);
     let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
     program.args(["sweep", "--samples", "2", "--until", "1", "--fmu"]).arg(path);
@@ -74,9 +80,7 @@ fn a_signal_before_the_first_run_of_a_sweep_leaves_nothing() {
 
 #[test]
 fn a_signal_leaves_no_cargo_that_goes_on_building() {
-    let folder = tempfile::tempdir().unwrap();
-    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
-    std::fs::create_dir(&temporary).unwrap();
+    let (folder, mark, temporary) = folders();
     let cargo = script(folder.path(), "cargo", &mark);
     let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
     program.args(["fmu", "build", "--output"]).arg(folder.path().join("out"));
@@ -95,9 +99,7 @@ fn script(folder: &Path, name: &str, mark: &Path) -> PathBuf {
 
 #[test]
 fn a_signal_leaves_neither_ngspice_nor_its_folder() {
-    let folder = tempfile::tempdir().unwrap();
-    let (mark, temporary) = (folder.path().join("pid"), folder.path().join("tmp"));
-    std::fs::create_dir(&temporary).unwrap();
+    let (folder, mark, temporary) = folders();
     let ngspice = script(folder.path(), "ngspice", &mark);
     let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
     program.args(["crosscheck", "--until", "0.05", "--output"]).arg(folder.path().join("out"));

@@ -75,18 +75,11 @@ impl Drive {
             window: Some(self.window),
             ..Request::default()
         };
-        let scenario = request.resolve()?;
-        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
-        let [rest_capacitance, other] = harvester.sample()?.capacitance();
-        let bias_voltage = harvester.bias_voltage();
-        let slaves = circuits.iter().map(|settings| -> Result<Box<dyn CircuitSlave>, CosimError> {
-            Ok(Box::new(EmbeddedCircuit::new("embedded", settings, [rest_capacitance, other])?))
-        });
-        let slaves = slaves.collect::<Result<_, _>>()?;
-        let coupling = Coupling { tolerance: Some(self.tolerance), ..Coupling::default() };
+        let Coupled { master, rest_capacitance, bias_voltage } =
+            Coupled::new(workshop, request, circuits, self.tolerance)?;
         let mut books =
             Books { from, bias_voltage, gain: 0.0, start: None, peaks: vec![0.0; circuits.len()], ratios: Vec::new() };
-        let outcome = Master::new(harvester, slaves, &scenario, coupling)?.run(&mut [&mut books])?;
+        let outcome = master.run(&mut [&mut books])?;
         let ends = books.start.iter().flatten().zip(&outcome.circuits);
         Ok(Driven {
             time: to - from,
@@ -94,9 +87,44 @@ impl Drive {
             peaks: books.peaks,
             ratios: books.ratios,
             eq14: outcome.mechanics.average_power_eq13,
-            rest_capacitance,
+            rest_capacitance: rest_capacitance[0],
             bias_voltage,
         })
+    }
+}
+
+/// The harvester and embedded circuits, ready to run.
+pub struct Coupled {
+    /// The master.
+    pub master: Master,
+    /// `C_2` of the membranes, left and right, F.
+    pub rest_capacitance: [f64; 2],
+    /// `U_in`, V.
+    pub bias_voltage: f64,
+}
+
+impl Coupled {
+    /// Couples what `request` asks for with `circuits`; the largest error of C(t) within a communication step, relative to
+    /// its value, is `tolerance`.
+    ///
+    /// # Errors
+    /// What the FMU or a circuit says.
+    pub fn new(
+        workshop: &Workshop<'_>,
+        request: Request,
+        circuits: &[Settings],
+        tolerance: f64,
+    ) -> Result<Self, PaperError> {
+        let scenario = request.resolve()?;
+        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
+        let rest_capacitance = harvester.sample()?.capacitance();
+        let bias_voltage = harvester.bias_voltage();
+        let slaves = circuits.iter().map(|settings| -> Result<Box<dyn CircuitSlave>, CosimError> {
+            Ok(Box::new(EmbeddedCircuit::new("embedded", settings, rest_capacitance)?))
+        });
+        let slaves = slaves.collect::<Result<_, _>>()?;
+        let coupling = Coupling { tolerance: Some(tolerance), ..Coupling::default() };
+        Ok(Self { master: Master::new(harvester, slaves, &scenario, coupling)?, rest_capacitance, bias_voltage })
     }
 }
 

@@ -2,10 +2,10 @@
 
 use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
-use super::coupled::circuit;
+use super::coupled::{Coupled, circuit};
 use super::peak::{self, Peak};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
-use crate::cosim::{CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row};
+use crate::cosim::{CosimError, Observer, Row};
 use crate::report::{Column, Figure, Panel, Series, Style, Table};
 use crate::scenario::Request;
 
@@ -45,7 +45,7 @@ impl Kind {
         }
     }
 
-    fn place(&self) -> &'static str {
+    fn membranes(&self) -> &'static str {
         match self.topology {
             Topology::Isolated => "isolated membranes",
             Topology::SharedNode => "shared node",
@@ -73,8 +73,13 @@ struct Point {
 impl Point {
     /// U, kV, and Q, nC.
     fn place(&self, kind: usize) -> (f64, f64) {
-        (1e-3 * self.voltages[kind], 1e9 * self.capacitance * self.voltages[kind])
+        place(self.capacitance, self.voltages[kind])
     }
+}
+
+/// U, kV, and Q, nC, of a capacitance, F, at a voltage, V.
+fn place(capacitance: f64, voltage: f64) -> (f64, f64) {
+    (1e-3 * voltage, 1e9 * capacitance * voltage)
 }
 
 /// From the beginning of an impact to that of the next one on the same membrane.
@@ -103,17 +108,10 @@ impl Cycle {
         let peak = peak::stage_3(workshop)?;
         let request =
             Request { case: Some(peak::CASE.to_owned()), until: Some(peak.time + AROUND), ..Request::default() };
-        let scenario = request.resolve()?;
-        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
-        let capacitance = harvester.sample()?.capacitance();
-        let bias_voltage = harvester.bias_voltage();
-        let slaves = KINDS.iter().map(|kind| -> Result<Box<dyn CircuitSlave>, CosimError> {
-            Ok(Box::new(EmbeddedCircuit::new(&kind.name(), &kind.settings(), capacitance)?))
-        });
-        let slaves = slaves.collect::<Result<_, _>>()?;
-        let coupling = Coupling { tolerance: Some(TOLERANCE), ..Coupling::default() };
+        let Coupled { master, rest_capacitance, bias_voltage } =
+            Coupled::new(workshop, request, &KINDS.map(|kind| kind.settings()), TOLERANCE)?;
         let mut course = Course { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
-        Master::new(harvester, slaves, &scenario, coupling)?.run(&mut [&mut course])?;
+        master.run(&mut [&mut course])?;
         let points = course.points;
         let none = || PaperError::NoCycle { case: peak::CASE, time: peak.time, within: AROUND };
         let is_before = |point: &Point| point.time < peak.time && point.deflection <= 0.0;
@@ -123,7 +121,7 @@ impl Cycle {
         let away = points.iter().position(is_after).ok_or_else(none)?;
         let again = points.iter().skip(away).position(|point| point.deflection > 0.0).ok_or_else(none)?;
         let points = points.into_iter().take(away + again).skip(begin).collect();
-        Ok(Self { points, bias_voltage, rest_capacitance: capacitance[peak.side], peak })
+        Ok(Self { points, bias_voltage, rest_capacitance: rest_capacitance[peak.side], peak })
     }
 
     /// Energy that a circuit has converted through this membrane, J: - integral of 1/2 `U^2` dC, exact where the
@@ -139,7 +137,6 @@ impl Cycle {
     /// The corners 2, 3 and 4 of the cycle in the paper: U, kV, and Q, nC.
     fn corners(&self) -> [(f64, f64); 3] {
         let (u, c2, c3) = (self.bias_voltage, self.rest_capacitance, self.peak.capacitance);
-        let place = |c: f64, u: f64| (1e-3 * u, 1e9 * c * u);
         [place(c2, u), place(c3, u), place(c2, formulas::peak_voltage(u, c2, c3))]
     }
 
@@ -175,7 +172,7 @@ fn table(cycle: &Cycle) -> Table {
         };
         let values = columns.iter().map(|(_, account)| over_the_cycle(*account));
         let cells = std::iter::once(cycle.converted(index)).chain(values).map(|value| format!("{:.2}", 1e6 * value));
-        table.row(std::iter::once(format!("{}, {}", kind.place(), kind.name())).chain(cells))
+        table.row(std::iter::once(format!("{}, {}", kind.membranes(), kind.name())).chain(cells))
     })
 }
 

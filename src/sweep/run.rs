@@ -99,8 +99,9 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
         }
         if missing.is_empty() {
             sums::clear(job.folder);
+        } else {
+            sums::record(job.folder, sweep.document(), &missing)?;
         }
-        sums::record(job.folder, sweep.document(), &missing)?;
         files.extend(parquet);
     }
     Ok(Report { runs, done, failed, resumed_from, files })

@@ -168,19 +168,28 @@ impl Sum {
 #[cfg(test)]
 mod tests {
     use std::fs;
+    use std::path::PathBuf;
 
     use super::super::document::sha256;
     use super::*;
 
     const DECIDES: &str = "{\n  \"seed\": 1,\n  \"sha256\": \"00\"\n}\n";
 
+    /// A folder with a document, and files of these names and contents at these paths.
+    fn folder<const N: usize>(files: [(&str, &str); N]) -> (tempfile::TempDir, [PathBuf; N]) {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        let paths = files.map(|(name, content)| {
+            let path = folder.path().join(name);
+            fs::write(&path, content).unwrap();
+            path
+        });
+        (folder, paths)
+    }
+
     #[test]
     fn shards_of_one_folder_add_their_checksums_and_what_decides_stays_the_same() {
-        let folder = tempfile::tempdir().unwrap();
-        let [one, other] = ["sweep.1-of-2.csv", "sweep.2-of-2.csv"].map(|name| folder.path().join(name));
-        fs::write(&one, "abc").unwrap();
-        fs::write(&other, "").unwrap();
-        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        let (folder, [one, other]) = folder([("sweep.1-of-2.csv", "abc"), ("sweep.2-of-2.csv", "")]);
         assert!(!check(&one).unwrap(), "nothing is said of it yet");
         record(folder.path(), DECIDES, &[&one]).unwrap();
         record(folder.path(), DECIDES, &[&other]).unwrap();
@@ -197,11 +206,7 @@ mod tests {
 
     #[test]
     fn what_is_about_to_be_replaced_has_no_checksum() {
-        let folder = tempfile::tempdir().unwrap();
-        let [one, other] = ["sweep.csv", "sweep.parquet"].map(|name| folder.path().join(name));
-        fs::write(&one, "abc").unwrap();
-        fs::write(&other, "").unwrap();
-        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        let (folder, [one, other]) = folder([("sweep.csv", "abc"), ("sweep.parquet", "")]);
         forget(folder.path(), DECIDES, &[&one]).unwrap();
         record(folder.path(), DECIDES, &[&one, &other]).unwrap();
         forget(folder.path(), DECIDES, &[&one]).unwrap();
@@ -212,10 +217,7 @@ mod tests {
 
     #[test]
     fn a_changed_file_is_named_with_what_is_expected_and_what_is_found() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("sweep.csv");
-        fs::write(&path, "abc").unwrap();
-        fs::write(folder.path().join(DOCUMENT), DECIDES).unwrap();
+        let (folder, [path]) = folder([("sweep.csv", "abc")]);
         record(folder.path(), DECIDES, &[&path]).unwrap();
         for (content, said) in [
             ("abcd", "sweep.csv: it has 4 bytes, and sweep.json expects 3; it was changed"),
