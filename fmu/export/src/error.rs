@@ -125,7 +125,6 @@ impl CallError {
                 Severity::Error => fmi2Error,
                 Severity::Fatal => fmi2Fatal,
             },
-            Self::IllegalState { state: CallState::Fatal, .. } => fmi2Fatal,
             _ => fmi2Error,
         }
     }

@@ -87,6 +87,10 @@ impl Hasher {
                 hash.text(name);
             }
         });
+        // A mark of its own, so that tables without such states keep their GUID.
+        if variable.reinit() {
+            self.text("reinit");
+        }
         self.text(variable.kind().type_name());
         self.kind(variable.kind());
     }

@@ -265,6 +265,7 @@ fn scalar_variable<M>(xml: &mut Xml, table: &[Variable<M>], index: usize, variab
     element(xml, "ScalarVariable", &attributes, |xml| {
         let mut attributes = type_attributes(variable.kind());
         attributes.extend(variable.derivative_of().map(|state| ("derivative", positions(table, &[state]))));
+        attributes.extend(variable.reinit().then(|| ("reinit", true.to_string())));
         empty(xml, variable.kind().type_name(), &attributes)
     })
 }

@@ -305,6 +305,9 @@ fn after_a_fatal_error_nothing_but_free_is_left() {
     assert_eq!(host.reset(), fmi2Fatal);
     assert_eq!(host.try_real(common::toy::GAIN).0, fmi2Fatal);
     assert_eq!(host.lines()[0].category, "logStatusFatal");
+    let mut stale = core::ptr::dangling_mut();
+    assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut stale) }, fmi2Fatal, "refused");
+    assert_eq!(host.reset(), fmi2Fatal, "a refusal does not lead out");
 }
 
 #[test]

@@ -85,6 +85,14 @@ fn a_variable_that_is_no_known_or_no_unknown_of_the_state_is_refused_by_name() {
 }
 
 #[test]
+fn a_seed_that_is_not_finite_is_blamed_on_itself() {
+    for seed in [f64::NAN, f64::INFINITY] {
+        let error = derivative(&Host::initializing(), &[DOUBLED], &[GAIN], &[seed]).expect_err("no derivative");
+        assert_eq!(error, format!("fmi2GetDirectionalDerivative: dvKnown = {seed}: it must be finite"));
+    }
+}
+
+#[test]
 fn null_arrays_and_panics_are_errors() {
     let host = Host::initialized();
     let (vr, mut value) = (INTEGRAL, 0.0);

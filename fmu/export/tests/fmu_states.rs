@@ -6,6 +6,7 @@ mod common;
 use common::toy::*;
 use common::*;
 use core::ptr::{dangling_mut, null, null_mut, without_provenance_mut};
+use fmi2_export::CallState;
 use fmi2_export::abi::*;
 
 /// Everything that can be read, bit for bit.
@@ -273,6 +274,24 @@ fn times_that_no_call_leads_to_are_refused() {
     let status = changed(&good, |content| content[STATUS_AT] = 77);
     assert_eq!(deserialize(&host, &status, &mut null_mut()), fmi2Error);
     assert!(host.error().contains("77 is no status of a step"), "{}", host.error());
+}
+
+#[test]
+fn call_states_that_are_never_saved_are_refused() {
+    use CallState::*;
+    const STATE_AT: usize = 0;
+    let of_steps = [StepComplete, StepFailed];
+    let of_exchange = [EventMode, ContinuousTimeMode];
+    for (host, wrong) in [(Host::initialized(), of_exchange), (Host::exchanging(), of_steps)] {
+        let good = serialize(&host, host.save());
+        for state in CallState::ALL {
+            let bytes = changed(&good, |content| content[STATE_AT] = state as u8);
+            let refused = wrong.contains(&state) || matches!(state, StepInProgress | StepCanceled | Fatal);
+            let status = deserialize(&host, &bytes, &mut null_mut());
+            assert_eq!(status, if refused { fmi2Error } else { fmi2OK }, "{state}");
+            assert!(!refused || host.error().contains(&format!("no state that is saved is in state {state}")));
+        }
+    }
 }
 
 #[test]

@@ -73,13 +73,13 @@ fn start_and_initial_stand_exactly_where_they_must() {
 
 /// Two tables that differ in one fact.
 macro_rules! slave {
-    ($name:ident, $($row:expr),* $(,)?) => {
+    (@ $name:ident, $info:expr, $($row:expr),*) => {
         #[derive(Clone)]
         #[allow(dead_code)]
         struct $name(f64);
 
         impl Slave for $name {
-            const INFO: ModelInfo = ModelInfo::new("Small");
+            const INFO: ModelInfo = $info;
             fn variables() -> &'static [Variable<Self>] {
                 type V = Variable<$name>;
                 static TABLE: &[V] = &[$($row),*];
@@ -92,6 +92,12 @@ macro_rules! slave {
                 Ok(())
             }
         }
+    };
+    ($name:ident, model_exchange($indicators:literal), $($row:expr),* $(,)?) => {
+        slave!(@ $name, ModelInfo::new("Small").model_exchange($indicators), $($row),*);
+    };
+    ($name:ident, $($row:expr),* $(,)?) => {
+        slave!(@ $name, ModelInfo::new("Small"), $($row),*);
     };
 }
 
@@ -154,6 +160,10 @@ fn mistakes_in_a_table_are_found_and_named() {
     assert!(mistake::<Control>().contains("control character"));
     slave!(Times, V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0));
     assert!(mistake::<Times>().contains("two independent variables"));
+    slave!(Jump, V::output("a", "1", "").reinit().get(|m| m.0));
+    assert_eq!(mistake::<Jump>(), "the FMU is faulty: a: it jumps at events, but this FMU is not for model exchange");
+    slave!(NoState, model_exchange(0), V::output("a", "1", "").reinit().get(|m| m.0));
+    assert_eq!(mistake::<NoState>(), "the FMU is faulty: a: it jumps at events, but is no continuous state");
     slave!(NoUnit, V::output("a", "", "").get(|m| m.0));
     assert!(mistake::<NoUnit>().contains("its unit is empty"));
 }

@@ -81,6 +81,24 @@ fn a_continuous_state_can_be_set_by_name_between_events_with_inputs_or_without()
 }
 
 #[test]
+fn what_is_read_after_the_end_is_of_the_last_time_and_inputs() {
+    let host = Host::exchanging();
+    assert_eq!(unsafe { fmi2SetTime(host.component, 0.25) }, fmi2OK);
+    assert_eq!(host.set_real(INPUT, 3.0), fmi2OK);
+    assert_eq!(host.terminate(), fmi2OK);
+    assert_eq!((host.real(common::toy::TIME), derivative(&host), host.real(INPUT)), (0.25, 6.0, 3.0));
+}
+
+#[test]
+fn an_integrator_may_look_beyond_the_stop_time() {
+    let host = Host::of_kind(fmi2ModelExchange);
+    assert_eq!(host.setup(0.0, Some(1.0)), fmi2OK);
+    assert_eq!(host.initialize(), fmi2OK);
+    assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+    assert_eq!(place(&host, 1.5, 0.5), fmi2OK);
+}
+
+#[test]
 fn counts_and_values_that_make_no_sense_are_refused() {
     let mut values = [0.0; 3];
     let host = Host::exchanging();

@@ -147,7 +147,11 @@ macro_rules! membrane_outputs {
             V::output(
                 $deflection,
                 "m",
-                concat!("x: deflection of the ", $which, " membrane, at most delta of Eq. (10)"),
+                concat!(
+                    "x: deflection of the ",
+                    $which,
+                    " membrane; under the impulsive law at most delta of Eq. (10)"
+                ),
             )
             .nominal(1e-3)
             .output_derivatives(1, |slave, _order| slave.read(|model| model.deflection($side).rate))
@@ -185,11 +189,13 @@ static MOTION: [V; 5] = [
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
         .nominal(1e-2)
+        .reinit()
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::ball_velocity))
         .depends_on(&["cylinder.position", "ball.position"])
         .get(|slave| slave.read(videg_model::Harvester::ball_position)),
     V::output("ball.velocity", "m/s", "z_m': velocity of the ball, Eq. (11)")
         .nominal(1e-1)
+        .reinit()
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output("relativeDisplacement", "m", "z_M - z_m: relative displacement, Eq. (8)")

@@ -139,11 +139,12 @@ fn judge(instance: &Instance, function: Function, answer: &Answer, lines: &[Line
     let discards = matches!(function, Function::DoStep) || function.name().ends_with("Status");
     ensure((fmi2OK..=fmi2Fatal).contains(&status), || "no such status".into())?;
     ensure(status != fmi2Discard || discards, || "it cannot be discarded".into())?;
+    // Nothing leads out of the fatal state.
+    let error = if state == CallState::Fatal { fmi2Fatal } else { fmi2Error };
     if legality == Legality::Illegal {
-        let wanted = if state == CallState::Fatal { fmi2Fatal } else { fmi2Error };
-        ensure(status == wanted, || "illegal calls are errors".into())?;
+        ensure(status == error, || "illegal calls are errors".into())?;
     } else {
-        ensure(!answer.wrong || status == fmi2Error, || "wrong arguments are errors".into())?;
+        ensure(!answer.wrong || status == error, || "wrong arguments are errors".into())?;
         ensure(legality == Legality::Legal || status != fmi2OK, || "tolerated without a warning".into())?;
     }
     if !LOGS {

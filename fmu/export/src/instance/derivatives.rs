@@ -23,6 +23,10 @@ impl<S: Slave> Instance<S> {
         if !S::INFO.directional_derivatives {
             return Err(CallError::Unsupported("directional derivatives"));
         }
+        if let Some(seed) = seeds.iter().find(|seed| !seed.is_finite()) {
+            let bound = "it must be finite".into();
+            return Err(CallError::BadArgument { argument: "dvKnown", value: seed.to_string(), bound });
+        }
         self.update()?;
         let knowns = knowns.iter().map(|&reference| self.known(reference)).collect::<Call<Vec<_>>>()?;
         let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;

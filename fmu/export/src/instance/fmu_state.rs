@@ -110,6 +110,16 @@ impl<S: Slave> Core<S> {
     /// calls off.
     fn check(&self) -> Result<(), StateError> {
         let invalid = |text: String| Err(StateError::Invalid(text));
+        use CallState::{ContinuousTimeMode, EventMode, Fatal, StepCanceled, StepComplete, StepFailed, StepInProgress};
+        let is_possible = match self.state {
+            StepInProgress | StepCanceled | Fatal => false,
+            StepComplete | StepFailed => !self.exchange,
+            EventMode | ContinuousTimeMode => self.exchange,
+            _ => true,
+        };
+        if !is_possible {
+            return invalid(format!("no state that is saved is in state {}", self.state));
+        }
         if !self.time.is_finite() {
             return invalid(format!("time = {} s: it must be finite", self.time));
         }

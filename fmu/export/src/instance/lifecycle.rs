@@ -17,7 +17,7 @@ pub(super) fn fault(experiment: &Experiment) -> Option<(&'static str, f64, Strin
         return Some(("stopTime", stop, format!("it must not lie before {start} s")));
     }
     let tolerance = experiment.tolerance.filter(|it| !(it.is_finite() && *it > 0.0))?;
-    Some(("tolerance", tolerance, "it must be positive".into()))
+    Some(("tolerance", tolerance, "it must be finite and positive".into()))
 }
 
 impl<S: Slave> Instance<S> {
@@ -69,6 +69,7 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2Terminate`
     pub(crate) fn terminate(&mut self) -> Call {
+        self.update()?; // of model exchange: what is read from now on is of the last time and inputs
         self.core.model.terminate(&self.logger)?;
         self.core.state = CallState::Terminated;
         Ok(())

@@ -120,10 +120,11 @@ impl<S: Slave> Instance<S> {
         }
     }
 
-    /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued".
+    /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued". Nothing
+    /// leads out of the fatal one.
     #[cold]
     fn fail(&mut self, function: Function, error: &CallError) -> fmi2Status {
-        let status = error.status();
+        let status = if self.core.state == CallState::Fatal { fmi2Fatal } else { error.status() };
         self.logger.take_warned();
         guard((), || self.logger.status(status, format_args!("{}: {error}", function.name())));
         let state = match status {

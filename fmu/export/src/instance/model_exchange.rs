@@ -63,7 +63,8 @@ impl<S: Slave> Instance<S> {
         Ok(self.core.model.handle_events(&self.logger)?)
     }
 
-    /// `fmi2SetTime`
+    /// `fmi2SetTime`. A time behind the stop time is taken: integrators that choose their own steps go past the end and
+    /// interpolate back.
     pub(crate) fn set_time(&mut self, time: f64) -> Call {
         if !time.is_finite() {
             return Err(CallError::BadArgument {

@@ -27,6 +27,7 @@ pub struct Declaration<T: Copy, A> {
     variability: Variability,
     dependencies: Option<&'static [&'static str]>,
     derivative_of: Option<&'static str>,
+    reinit: bool,
     spec: T,
     access: PhantomData<fn(A)>,
 }
@@ -50,6 +51,7 @@ const fn declare<T: Copy, A>(
         variability,
         dependencies: None,
         derivative_of: None,
+        reinit: false,
         spec,
         access: PhantomData,
     }
@@ -241,6 +243,7 @@ impl<T: Copy, A> Declaration<T, A> {
             kind,
             dependencies: self.dependencies,
             derivative_of: self.derivative_of,
+            reinit: self.reinit,
         }
     }
 }
@@ -315,6 +318,13 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
     /// Says that this is the time derivative of the variable `name`, which is thereby a continuous state.
     pub const fn derivative_of(mut self, name: &'static str) -> Self {
         self.derivative_of = Some(name);
+        self
+    }
+
+    /// Says that [`handle_events`](crate::Slave::handle_events) may change this continuous state. An integrator may take
+    /// any other for continuous.
+    pub const fn reinit(mut self) -> Self {
+        self.reinit = true;
         self
     }
 

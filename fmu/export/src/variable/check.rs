@@ -28,7 +28,8 @@ fn ensure(holds: bool, subject: &str, what: impl FnOnce() -> String) -> Check {
 /// Checks all there is to know about an FMU before it runs.
 pub(crate) fn check_fmu<S: Slave>() -> Check {
     check_info(&S::INFO)?;
-    check_table(S::variables())
+    check_table(S::variables())?;
+    check_states(S::variables(), S::INFO.model_exchange.is_some())
 }
 
 fn check_info(info: &ModelInfo) -> Check {
@@ -79,6 +80,14 @@ fn check_table<M>(table: &[Variable<M>]) -> Check {
     let times = table.iter().filter(|v| v.causality == Causality::Independent);
     ensure(times.count() <= 1, "table", || "there are two independent variables".into())?;
     table.iter().try_for_each(|v| check_dependencies(v, &names))
+}
+
+/// Only a continuous state of model exchange can jump.
+fn check_states<M>(table: &[Variable<M>], exchange: bool) -> Check {
+    table.iter().filter(|v| v.reinit).try_for_each(|v| {
+        ensure(exchange, v.name, || "it jumps at events, but this FMU is not for model exchange".into())?;
+        ensure(v.is_continuous_state(table), v.name, || "it jumps at events, but is no continuous state".into())
+    })
 }
 
 /// XML attributes normalise line breaks and cannot hold other control characters.

@@ -107,6 +107,7 @@ pub struct Variable<M: 'static> {
     pub(crate) kind: Kind<M>,
     pub(crate) dependencies: Option<&'static [&'static str]>,
     pub(crate) derivative_of: Option<&'static str>,
+    pub(crate) reinit: bool,
 }
 
 // Derived impls would ask for `M: Clone`, which fn pointers do not need.
@@ -183,6 +184,11 @@ impl<M> Variable<M> {
     /// Name of the continuous state whose time derivative this is.
     pub const fn derivative_of(&self) -> Option<&'static str> {
         self.derivative_of
+    }
+
+    /// Whether this is a continuous state that jumps at events of model exchange.
+    pub const fn reinit(&self) -> bool {
+        self.reinit
     }
 }
 

@@ -93,6 +93,7 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
     V::output("integral", "N.s/m", "Integral of k u")
         .depends_on(&[])
         .output_derivatives(1, |m, _order| m.gain * m.input)
+        .reinit()
         .get(|m| m.integral),
     V::integer_parameter("seed", 1, "Seed").min(0).max(9).access(|m| m.seed, |m, v| m.seed = v),
     V::integer_output("count", "Number of steps").get(|m| m.count),
