@@ -10,7 +10,8 @@ use super::{output, packaging};
 use crate::fmi::{Bounds, Fmu, Isolation};
 use crate::package;
 
-/// Longest time limit, s.
+/// Shortest and longest time limit, s.
+const SHORTEST: f64 = 1e-3;
 const LONGEST: f64 = 1e9;
 
 /// How FMUs are run.
@@ -33,8 +34,8 @@ pub struct IsolationOptions {
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {
-    let time = text.trim().parse().ok().filter(|time| (0.0..=LONGEST).contains(time));
-    time.ok_or_else(|| format!("a time from 0 to {LONGEST:e} s is expected"))
+    let time = text.trim().parse().ok().filter(|time| *time == 0.0 || (SHORTEST..=LONGEST).contains(time));
+    time.ok_or_else(|| format!("0 or a time from {SHORTEST:e} to {LONGEST:e} s is expected"))
 }
 
 impl IsolationOptions {

@@ -28,17 +28,19 @@ impl FmuCircuit {
         until: f64,
     ) -> Result<Self, CosimError> {
         let mut instance = fmu.instantiate("circuit", Logging::default())?;
-        for setting in settings {
-            instance.set_by_name(&setting.name, &setting.value)?;
-        }
+        instance.begin_initialization(
+            0.0,
+            Some(until),
+            settings,
+            |it| &it.name,
+            |instance, setting| instance.set_by_name(&setting.name, &setting.value),
+        )?;
         let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
         let inputs = [reference("left.capacitance")?, reference("right.capacitance")?];
         let mut outputs = [0; CircuitSample::NAMES.len()];
         for (slot, name) in outputs.iter_mut().zip(CircuitSample::NAMES) {
             *slot = reference(name)?;
         }
-        instance.setup_experiment(0.0, Some(until), None)?;
-        instance.enter_initialization_mode()?;
         instance.set_real(&inputs, &capacitance)?;
         instance.exit_initialization_mode()?;
         Ok(Self { label: label.to_owned(), instance, inputs, outputs, kept: Kept::default() })

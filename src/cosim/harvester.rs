@@ -108,10 +108,16 @@ impl HarvesterFmu {
     /// A setting that the FMU refuses, or an FMU that lacks a variable.
     pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
         let mut instance = fmu.instantiate("harvester", Logging::default())?;
-        for setting in settings {
-            let set = instance.set_by_name(&setting.name, &setting.value);
-            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })?;
-        }
+        instance.begin_initialization(
+            0.0,
+            Some(scenario.until),
+            settings,
+            |it| &it.name,
+            |instance, setting| {
+                let set = instance.set_by_name(&setting.name, &setting.value);
+                set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
+            },
+        )?;
         let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
         let mut reals = [0; REALS.len()];
         for (slot, name) in reals.iter_mut().zip(REALS) {
@@ -120,8 +126,6 @@ impl HarvesterFmu {
         let counts = [reference("impact.count")?, reference("solver.events")?];
         let voltages = [reference("left.voltage")?, reference("right.voltage")?];
         let bias = [reference("biasVoltage")?];
-        instance.setup_experiment(0.0, Some(scenario.until), None)?;
-        instance.enter_initialization_mode()?;
         instance.exit_initialization_mode()?;
         let mut bias_voltage = [0.0];
         instance.get_real(&bias, &mut bias_voltage)?;

@@ -5,7 +5,7 @@ use std::ptr;
 
 use fmi2_abi::{fmi2Boolean, fmi2False};
 
-use super::description::{Kind, Variable};
+use super::description::{Causality, Kind, Variable};
 use super::error::{FmiError, Result, ValueError};
 use super::instance::Instance;
 use super::value::Value;
@@ -187,6 +187,28 @@ impl Instance {
         let value = Value::parse(self.description(), variable, text)?;
         let reference = variable.value_reference;
         self.set_value(reference, &value)
+    }
+
+    /// Sets what was chosen for an experiment from `start` to `stop`, s, and leaves the instance in initialization mode: inputs
+    /// are set there, where FMI 2.0 wants them, all else before.
+    ///
+    /// # Errors
+    /// The first of `set`, or of a call in between.
+    pub fn begin_initialization<T, E: From<FmiError>>(
+        &mut self,
+        start: f64,
+        stop: Option<f64>,
+        choices: &[T],
+        name: impl Fn(&T) -> &str,
+        mut set: impl FnMut(&mut Self, &T) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
+        let is_input =
+            |choice: &&T| self.description().variable(name(choice)).is_ok_and(|it| it.causality == Causality::Input);
+        let (inputs, others): (Vec<_>, Vec<_>) = choices.iter().partition(is_input);
+        others.into_iter().try_for_each(|choice| set(self, choice))?;
+        self.setup_experiment(start, stop, None)?;
+        self.enter_initialization_mode()?;
+        inputs.into_iter().try_for_each(|choice| set(self, choice))
     }
 
     /// Reads the variable of this name.

@@ -174,13 +174,13 @@ pub enum FmiError {
         owner: String,
     },
     /// A serialised state is too large.
-    #[error("{function} of '{instance}': the FMU asks for {found} bytes, allowed are {allowed}")]
+    #[error("{function} of '{instance}': a state of {found} bytes, allowed are {allowed}")]
     StateSize {
         /// The function.
         function: &'static str,
         /// Name of the instance.
         instance: String,
-        /// What the FMU asks for.
+        /// Its size.
         found: usize,
         /// Bound.
         allowed: usize,

@@ -52,8 +52,9 @@ impl Core {
         if self.loaded.is_dead() {
             return Err(self.dead(function));
         }
+        let before = self.environment.count();
         let status = call(&self.loaded.functions, self.component);
-        if status == fmi2OK || status == fmi2Warning { Ok(()) } else { Err(self.failed(function, status)) }
+        if status == fmi2OK || status == fmi2Warning { Ok(()) } else { Err(self.failed(function, status, before)) }
     }
 
     /// Asks for warnings and errors alone, in the categories that FMI 2.0 reserves for them, so that errors can say
@@ -72,8 +73,9 @@ impl Core {
         });
     }
 
+    /// The error of a call that began after the first `before` messages.
     #[cold]
-    fn failed(&self, function: &'static str, status: fmi2Status) -> FmiError {
+    fn failed(&self, function: &'static str, status: fmi2Status, before: usize) -> FmiError {
         if self.loaded.pool().is_some() {
             // SAFETY: the component is that of a living isolated instance.
             if let Some(verdict) = unsafe { isolated::verdict(self.component) } {
@@ -82,7 +84,7 @@ impl Core {
         } else if status == fmi2Fatal {
             self.loaded.kill();
         }
-        let (instance, messages) = (self.text_name.clone(), self.environment.last());
+        let (instance, messages) = (self.text_name.clone(), self.environment.last(before));
         FmiError::Call { function, instance, status: status.into(), messages }
     }
 
@@ -154,7 +156,7 @@ impl Instance {
         let component = instantiate(&loaded, &name, &environment, &callbacks, logging.enabled)?;
         if component.is_null() {
             let model = loaded.description.co_simulation.model_identifier.clone();
-            let (guid, messages) = (loaded.description.guid.clone(), environment.last());
+            let (guid, messages) = (loaded.description.guid.clone(), environment.last(0));
             return Err(FmiError::Instantiate { instance: text_name, model, guid, messages });
         }
         let core = Core { loaded, component, name, text_name, environment, callbacks };

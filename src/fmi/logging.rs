@@ -5,6 +5,7 @@ use std::ffi::{CStr, c_char, c_void};
 use std::fmt;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use fmi2_abi::{
@@ -122,6 +123,8 @@ impl Logging {
 /// The `componentEnvironment` of one instance.
 pub(super) struct Environment {
     log: Mutex<Log>,
+    /// Messages so far.
+    count: AtomicUsize,
 }
 
 struct Log {
@@ -131,12 +134,20 @@ struct Log {
 
 impl Environment {
     pub(super) fn new(sink: Option<LogSink>) -> Arc<Self> {
-        Arc::new(Self { log: Mutex::new(Log { remembered: VecDeque::new(), sink }) })
+        let log = Mutex::new(Log { remembered: VecDeque::new(), sink });
+        Arc::new(Self { log, count: AtomicUsize::new(0) })
     }
 
-    /// The last messages, oldest first, as errors show them: of complaints, or else of all.
-    pub(super) fn last(&self) -> Vec<LogRecord> {
-        let all = self.all();
+    /// How many messages there were so far.
+    #[inline]
+    pub(super) fn count(&self) -> usize {
+        self.count.load(Ordering::Relaxed)
+    }
+
+    /// The last messages after the first `before`, oldest first, as errors show them: of complaints, or else of all.
+    pub(super) fn last(&self, before: usize) -> Vec<LogRecord> {
+        let mut all = self.all();
+        all.drain(..all.len().saturating_sub(self.count() - before));
         let complaints: Vec<_> = all.iter().filter(|record| record.status != Status::Ok).cloned().collect();
         let shown = if complaints.is_empty() { all } else { complaints };
         let skipped = shown.len().saturating_sub(SHOWN);
@@ -165,6 +176,7 @@ impl Environment {
             log.remembered.pop_front();
         }
         log.remembered.push_back(record);
+        self.count.fetch_add(1, Ordering::Relaxed);
     }
 
     /// The callbacks to pass to `fmi2Instantiate`; they must not outlive this environment.
@@ -253,7 +265,7 @@ unsafe fn text(pointer: *const c_char) -> String {
 mod tests {
     use std::sync::mpsc;
 
-    use super::{Environment, LogRecord, REMEMBERED, Status};
+    use super::{Environment, LogRecord, REMEMBERED, SHOWN, Status};
 
     fn send(environment: &std::sync::Arc<Environment>, message: &std::ffi::CStr, argument: &std::ffi::CStr) {
         let callbacks = environment.callbacks();
@@ -303,7 +315,19 @@ mod tests {
         let environment = Environment::new(Some(Box::new(|_| panic!("sink"))));
         send(&environment, c"first", c"");
         send(&environment, c"second", c"");
-        assert_eq!(environment.last(), [record("first"), record("second")]);
+        assert_eq!(environment.last(0), [record("first"), record("second")]);
+    }
+
+    #[test]
+    fn an_error_shows_what_was_said_since_its_call_began() {
+        let environment = Environment::new(None);
+        send(&environment, c"of an earlier call", c"");
+        let before = environment.count();
+        assert_eq!(environment.last(before), []);
+        for _ in 0..REMEMBERED + 20 {
+            send(&environment, c"again", c"");
+        }
+        assert_eq!(environment.last(before), vec![record("again"); SHOWN]);
     }
 
     #[test]

@@ -85,10 +85,7 @@ impl Instance {
         self.core().call("fmi2SerializedFMUstateSize", |functions, component| unsafe {
             (functions.serialized_state_size)(component, state.state, &raw mut size)
         })?;
-        if size > LONGEST_STATE {
-            let (instance, found, allowed) = (self.name().to_owned(), size, LONGEST_STATE);
-            return Err(FmiError::StateSize { function: name, instance, found, allowed });
-        }
+        self.check_size(name, size)?;
         let mut bytes = vec![0_u8; size];
         // SAFETY: as above, and the buffer has the size that the FMU has asked for.
         self.core().call(name, |functions, component| unsafe {
@@ -100,10 +97,11 @@ impl Instance {
     /// Makes a saved state from bytes. The bytes are for the FMU to check: pass only what it has serialized.
     ///
     /// # Errors
-    /// When the FMU does not declare `canSerializeFMUstate`, or does not take the bytes.
+    /// When the FMU does not declare `canSerializeFMUstate`, there are more than 256 MiB, or it does not take the bytes.
     pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let name = "fmi2DeSerializeFMUstate";
         self.require_serialization(name)?;
+        self.check_size(name, bytes.len())?;
         let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
         // SAFETY: the buffer has the size that is passed with it.
         self.core().call(name, |functions, component| unsafe {
@@ -120,6 +118,11 @@ impl Instance {
     fn require_serialization(&self, function: &'static str) -> Result<()> {
         let supported = self.description().co_simulation.can_serialize_fmu_state;
         self.core().require(function, supported, "canSerializeFMUstate")
+    }
+
+    fn check_size(&self, function: &'static str, found: usize) -> Result<()> {
+        let (instance, allowed) = (self.name().to_owned(), LONGEST_STATE);
+        if found <= allowed { Ok(()) } else { Err(FmiError::StateSize { function, instance, found, allowed }) }
     }
 
     fn require_own(&self, function: &'static str, state: &FmuState) -> Result<()> {

@@ -83,11 +83,13 @@ impl Workshop<'_> {
     /// A setting that the FMU refuses.
     pub fn start(&self, settings: &[Setting]) -> Result<Instance, PaperError> {
         let mut instance = self.fmu.instantiate("harvester", Logging::default())?;
-        for setting in settings {
-            instance.set_by_name(&setting.name, &setting.value)?;
-        }
-        instance.setup_experiment(0.0, None, None)?;
-        instance.enter_initialization_mode()?;
+        instance.begin_initialization(
+            0.0,
+            None,
+            settings,
+            |it| &it.name,
+            |instance, setting| instance.set_by_name(&setting.name, &setting.value),
+        )?;
         instance.exit_initialization_mode()?;
         Ok(instance)
     }

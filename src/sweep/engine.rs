@@ -46,6 +46,11 @@ impl Engine {
         }
     }
 
+    /// Whether the outcome of a run hangs on the machine as well: on limits of time and memory.
+    pub(super) fn is_isolated(&self) -> bool {
+        matches!(self, Self::Fmu(fmu) if fmu.is_isolated())
+    }
+
     /// What `run` comes to; the inner error is why it failed.
     ///
     /// # Errors
@@ -164,17 +169,18 @@ impl Driven for Harvester {
 
 fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
     let mut instance = fmu.instantiate("sweep", Logging::default())?;
-    for (variable, value) in &sweep.settings {
-        instance.set_value(variable.value_reference, value)?;
-    }
-    for (axis, value) in sweep.points.axes().iter().zip(&run.values) {
-        instance.set_value(axis.variable.value_reference, value)?;
-    }
-    if let Some((seeds, seed)) = sweep.seeds.as_ref().zip(run.seed) {
-        instance.set_integer(&[seeds.variable.value_reference], &[seed])?;
-    }
-    instance.setup_experiment(0.0, None, None)?;
-    instance.enter_initialization_mode()?;
+    let seed = run.seed.map(Value::Integer);
+    let settings = sweep.settings.iter().map(|(variable, value)| (variable, value));
+    let point = sweep.points.axes().iter().map(|axis| &axis.variable).zip(&run.values);
+    let seed = sweep.seeds.iter().map(|seeds| &seeds.variable).zip(&seed);
+    let choices: Vec<_> = settings.chain(point).chain(seed).collect();
+    instance.begin_initialization(
+        0.0,
+        None,
+        &choices,
+        |(variable, _)| &variable.name,
+        |instance, (variable, value)| instance.set_value(variable.value_reference, value),
+    )?;
     instance.exit_initialization_mode()?;
     let gains = if sweep.averages { Some(GainReferences::of(fmu)?) } else { None };
     let mut slave = Slave { instance, gains };

@@ -126,7 +126,7 @@ fn falls_while_it_is_instantiated_freed_and_unloaded_are_told() {
     assert!(error.contains("fmi2Instantiate of 'toy' ended its process (signal: 4 (SIGILL)"), "{error}");
     let (_folder, fmu) = toy(&["FREE=raise(SIGFPE);"]);
     let error = initialised(&fmu).free().unwrap_err().to_string();
-    assert!(error.contains("fmi2FreeInstance of 'toy' ended its process (signal: 8 (SIGFPE)"), "{error}");
+    assert!(error.contains("fmi2FreeInstance of 'toy' at t = 0 s ended its process (signal: 8 (SIGFPE)"), "{error}");
     drop(initialised(&fmu)); // tells nobody, and harms nobody
     let (_folder, fmu) = toy(&["UNLOADING=abort();"]);
     let error = initialised(&fmu).free().unwrap_err().to_string();
@@ -208,9 +208,51 @@ fn a_state_of_absurd_size_is_refused() {
         let instance = initialised(&fmu);
         let state = instance.save_state().unwrap();
         let error = instance.serialize_state(&state).unwrap_err().to_string();
-        let wanted = "the FMU asks for 4611686018427387904 bytes, allowed are 268435456";
+        let wanted = "a state of 4611686018427387904 bytes, allowed are 268435456";
         assert!(error.contains(wanted), "{error}");
     }
+}
+
+#[test]
+fn bytes_that_are_too_many_for_a_state_are_refused_and_the_instance_lives() {
+    let (_folder, fmu) = toy(&[]);
+    let mut instance = initialised(&fmu);
+    let error = instance.deserialize_state(&vec![0; (256 << 20) + 1]).unwrap_err().to_string();
+    assert_eq!(error, "fmi2DeSerializeFMUstate of 'toy': a state of 268435457 bytes, allowed are 268435456");
+    instance.do_step(0.0, 1.0).unwrap();
+}
+
+#[test]
+fn the_time_told_is_that_of_the_state_restored_or_of_the_new_experiment() {
+    let (_folder, fmu) = toy(&["FREE=abort();"]);
+    let stepped = || {
+        let mut instance = initialised(&fmu);
+        instance.do_step(0.0, 1.0).unwrap();
+        let state = instance.save_state().unwrap();
+        instance.do_step(1.0, 1.0).unwrap();
+        (instance, state)
+    };
+    let end = |instance: Instance| instance.free().unwrap_err().to_string();
+    let (instance, _state) = stepped();
+    assert!(end(instance).contains("fmi2FreeInstance of 'toy' at t = 2 s"));
+    let (mut instance, state) = stepped();
+    instance.restore_state(&state).unwrap();
+    assert!(end(instance).contains("fmi2FreeInstance of 'toy' at t = 1 s"));
+    let (mut instance, _state) = stepped();
+    instance.reset().unwrap();
+    assert!(end(instance).contains("fmi2FreeInstance of 'toy' ended"));
+    let (mut instance, _state) = stepped();
+    instance.reset().unwrap();
+    instance.setup_experiment(0.5, None, None).unwrap();
+    assert!(end(instance).contains("fmi2FreeInstance of 'toy' at t = 0.5 s"));
+}
+
+#[test]
+fn an_error_tells_nothing_of_earlier_calls() {
+    let (_folder, fmu) = toy(&["STEP=if (time > 0) return 3; LOG(1, \"%s\", \"an old story\");"]);
+    let mut instance = initialised(&fmu);
+    instance.do_step(0.0, 1.0).unwrap();
+    assert_eq!(instance.do_step(1.0, 1.0).unwrap_err().to_string(), "fmi2DoStep of 'toy' returned Error");
 }
 
 #[test]

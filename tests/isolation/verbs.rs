@@ -48,6 +48,17 @@ fn a_worker_whose_host_is_killed_ends() {
     wait_for(|| is_gone().then_some(()));
 }
 
+#[test]
+#[cfg(target_os = "linux")]
+fn the_memory_limit_told_is_the_one_in_force() {
+    let folder = tempfile::tempdir().unwrap();
+    toy::fmu(folder.path(), "toy.fmu", &["STEP=abort();"]);
+    let line = format!("ulimit -v 3145728 && exec {} fmu check toy.fmu", env!("CARGO_BIN_EXE_videg"));
+    let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("(signal: 6 (SIGABRT); memory limit 3072 MiB)"), "{stderr}");
+}
+
 /// The workers of a process.
 fn workers(host: u32) -> Vec<String> {
     let children = std::fs::read_to_string(format!("/proc/{host}/task/{host}/children")).unwrap_or_default();

@@ -48,6 +48,17 @@ pub struct Bounds {
     pub memory: Option<u64>,
 }
 
+impl Bounds {
+    /// These, or lower ones where the user of this process may not have so much.
+    fn in_force(self) -> Self {
+        #[cfg(unix)]
+        let most = rustix::process::getrlimit(rustix::process::Resource::As).maximum;
+        #[cfg(not(unix))]
+        let most: Option<u64> = None;
+        Self { memory: self.memory.map(|bytes| most.map_or(bytes, |most| bytes.min(most))), ..self }
+    }
+}
+
 impl Default for Bounds {
     fn default() -> Self {
         Self { time: Some(Duration::from_secs(60)), memory: Some(4 << 30) }

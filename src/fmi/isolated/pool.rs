@@ -38,7 +38,8 @@ impl Pool {
     ///
     /// # Errors
     /// If the worker cannot be started or the library not be loaded.
-    pub fn new(isolation: Isolation, path: &Path, folder: &Path, entry: &str) -> Result<Self> {
+    pub fn new(mut isolation: Isolation, path: &Path, folder: &Path, entry: &str) -> Result<Self> {
+        isolation.bounds = isolation.bounds.in_force();
         let opening = Opening {
             host: std::process::id(),
             library: folder.join(entry).into(),

@@ -1,5 +1,6 @@
 //! What stands behind the component of an isolated instance: its worker, and what has become of it.
 
+use std::collections::HashMap;
 use std::ffi::c_char;
 use std::path::{Path, PathBuf};
 use std::ptr;
@@ -10,7 +11,7 @@ use fmi2_abi::{fmi2Component, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use super::Bounds;
 use super::ending::{Ending, How};
 use super::process::Process;
-use super::protocol::{Given, Request, Texts};
+use super::protocol::{Given, Plain, Request, Texts};
 use crate::fmi::logging::{Environment, LogRecord};
 
 /// An instance in a worker.
@@ -22,6 +23,8 @@ pub(super) struct Remote {
     environment: Arc<Environment>,
     /// Time that the instance has reached, s.
     time: Option<f64>,
+    /// That of its saved states.
+    times: HashMap<u64, Option<f64>>,
     fate: Fate,
     /// Whether the last call was not passed on.
     is_refused: bool,
@@ -61,8 +64,8 @@ pub(in crate::fmi) unsafe fn verdict(component: fmi2Component) -> Option<Verdict
 
 impl Remote {
     pub fn new(process: Process, path: &Path, bounds: Bounds, name: String, environment: Arc<Environment>) -> Self {
-        let (path, time, texts) = (path.to_owned(), None, Texts::default());
-        Self { process, path, bounds, name, environment, time, fate: Fate::Alive, is_refused: false, texts }
+        let (path, time, times, texts) = (path.to_owned(), None, HashMap::new(), Texts::default());
+        Self { process, path, bounds, name, environment, time, times, fate: Fate::Alive, is_refused: false, texts }
     }
 
     /// The component, or NULL where the FMU refuses.
@@ -87,10 +90,26 @@ impl Remote {
             Ok((status, given)) => {
                 if status == fmi2Fatal {
                     self.fate = Fate::Over;
+                } else if is_done(status) {
+                    self.follow(request, &given);
                 }
                 (status, given)
             }
             Err(how) => (self.end(function, how), Given::Nothing),
+        }
+    }
+
+    /// Keeps in mind where the instance is after a call.
+    fn follow(&mut self, request: &Request, given: &Given) {
+        match (request, given) {
+            (Request::SetupExperiment { start, .. }, _) => self.time = Some(*start),
+            (Request::DoStep { time, step, .. }, _) => self.time = Some(time + step),
+            (Request::Plain(Plain::Reset), _) => self.time = None,
+            (Request::GetState { .. }, Given::Number(state)) => drop(self.times.insert(*state, self.time)),
+            (Request::DeserializeState { .. }, Given::Number(state)) => drop(self.times.insert(*state, None)),
+            (Request::SetState { state }, _) => self.time = self.times.get(state).copied().flatten(),
+            (Request::FreeState { state }, _) => drop(self.times.remove(state)),
+            _ => {}
         }
     }
 
@@ -107,7 +126,7 @@ impl Remote {
             call: format!("{function} of '{}'{at}", self.name),
             how,
             bounds: self.bounds,
-            messages: self.environment.last(),
+            messages: self.environment.last(0),
             printed: self.process.printed(),
         }));
         fmi2Fatal
@@ -120,7 +139,7 @@ impl Remote {
         (status, given): (fmi2Status, Given),
         into: &mut [T],
     ) -> fmi2Status {
-        if status != fmi2OK && status != fmi2Warning {
+        if !is_done(status) {
             return status;
         }
         match T::of(given) {
@@ -136,7 +155,7 @@ impl Remote {
     pub fn number(&mut self, function: &str, (status, given): (fmi2Status, Given)) -> (fmi2Status, u64) {
         match given {
             Given::Number(number) => (status, number),
-            _ if status != fmi2OK && status != fmi2Warning => (status, 0),
+            _ if !is_done(status) => (status, 0),
             _ => (self.end(function, How::Garbled("something else than a number".to_owned())), 0),
         }
     }
@@ -146,11 +165,7 @@ impl Remote {
         if matches!(self.fate, Fate::Alive) {
             self.time = Some(time);
         }
-        let status = self.plain("fmi2DoStep", &Request::DoStep { time, step, keeps_no_state });
-        if status == fmi2OK || status == fmi2Warning {
-            self.time = Some(time + step);
-        }
-        status
+        self.plain("fmi2DoStep", &Request::DoStep { time, step, keeps_no_state })
     }
 
     /// Keeps texts until the next ones; pointers to them.
@@ -175,6 +190,10 @@ impl Remote {
             self.fate = Fate::Over;
         }
     }
+}
+
+fn is_done(status: fmi2Status) -> bool {
+    status == fmi2OK || status == fmi2Warning
 }
 
 /// Numbers that getters give.
