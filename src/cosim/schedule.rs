@@ -9,8 +9,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Shortest step, in units of the regular one. A ball that comes to rest has knots without end; those closer to
-    /// another communication point than this are not landed on.
+    /// Shortest step, in units of the regular one, but for an edge of the window. A ball that comes to rest has knots without
+    /// end; those closer to another communication point than this are not landed on.
     const CLOSEST: f64 = 1e-3;
 
     /// A grid of `step`, s, up to `until`, s, with the edges of `window`, s.
@@ -25,7 +25,7 @@ impl Schedule {
         self.land(now, index * self.step, knot)
     }
 
-    /// The next communication point at most `step`, s, after `now`, off the grid; the rest as for [`Schedule::next`].
+    /// The next communication point some `step`, s, after `now` or earlier, off the grid; the rest as for [`Schedule::next`].
     pub fn within(&self, now: f64, step: f64, knot: f64) -> f64 {
         self.land(now, now + step.max(self.closest()), knot)
     }
@@ -37,10 +37,11 @@ impl Schedule {
 
     fn land(&self, now: f64, target: f64, knot: f64) -> f64 {
         let closest = self.closest();
-        let edges = self.window.into_iter().filter(|&edge| edge > now + closest);
-        let target = edges.fold(target.min(self.until), f64::min);
         // Stop a hair after `until` rather than a hair before it.
         let target = if self.until - target < closest { self.until } else { target };
+        // Averages are those of the window only if its edges are met: one that is just behind takes the place of the point.
+        let edges = self.window.into_iter().filter(|&edge| now < edge && edge < target + closest);
+        let target = edges.reduce(f64::min).unwrap_or(target).min(self.until);
         // A knot that is too close is passed with the shortest step, so that it does not hide the one behind it.
         let landing = knot.max(now + closest);
         if landing < target - closest { landing } else { target }
@@ -68,6 +69,22 @@ mod tests {
         let fine = points(Schedule::new(1e-3, 100.0, [50.0, 100.0]), 100.0, &[]);
         assert_eq!(fine.len(), 100_000);
         assert!(fine.contains(&50.0) && fine.last() == Some(&100.0));
+    }
+
+    #[test]
+    fn an_edge_of_the_window_is_met_however_close_it_is_to_a_point_of_the_grid_a_knot_or_the_end() {
+        let met = |window: [f64; 2], until: f64, knots: &[f64]| {
+            let found = points(Schedule::new(0.5, until, window), until, knots);
+            assert!(window.iter().all(|edge| found.contains(edge)), "{window:?}: {found:?}");
+            assert_eq!(found.last(), Some(&until));
+            found
+        };
+        assert_eq!(met([1.000_4, 1.5], 2.0, &[]), [0.5, 1.000_4, 1.5, 2.0]);
+        assert_eq!(met([0.999_6, 1.5], 2.0, &[]), [0.5, 0.999_6, 1.5, 2.0]);
+        assert_eq!(met([0.000_4, 1.0], 1.0, &[]), [0.000_4, 0.5, 1.0]);
+        assert_eq!(met([0.5, 1.999_8], 2.0, &[]), [0.5, 1.0, 1.5, 1.999_8, 2.0]);
+        assert_eq!(met([0.7, 0.700_1], 1.0, &[]), [0.5, 0.7, 0.700_1, 1.0]);
+        assert_eq!(met([0.700_4, 1.0], 1.0, &[0.7]), [0.5, 0.700_4, 1.0]);
     }
 
     #[test]

@@ -42,6 +42,11 @@ pub(super) struct Points {
 }
 
 impl Points {
+    /// Whether they are those of a grid, whose number nobody asked for.
+    pub fn is_grid(&self) -> bool {
+        self.design == Design::Grid
+    }
+
     /// The points of a `design` over `axes`, of which there are `asked` if the design draws them.
     ///
     /// # Errors

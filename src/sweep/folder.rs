@@ -47,24 +47,20 @@ fn check(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<(), 
         return Ok(());
     }
     let own = [path.to_owned(), partial(path)];
-    if fresh {
-        return match results(folder)?.into_iter().find(|other| !own.contains(other)) {
-            Some(other) => {
-                let reason = "results of another sweep; remove them, or choose another --output";
-                Err(SweepError::content(&other, reason))
-            }
-            None => Ok(()),
-        };
-    }
-    match there {
-        Some(there) => Err(foreign(folder, &there, document, WAY_OUT)),
-        None => match results(folder)?.first() {
-            Some(found) => {
-                let reason = format!("{DOCUMENT}, which says what sweep it belongs to, is not there; {WAY_OUT}");
-                Err(SweepError::content(found, reason))
-            }
-            None => Ok(()),
-        },
+    let obstacle = match there {
+        _ if fresh => results(folder)?.into_iter().find(|other| !own.contains(other)).map(|other| {
+            SweepError::content(&other, "results of another sweep; remove them, or choose another --output")
+        }),
+        Some(there) => Some(foreign(folder, &there, document, WAY_OUT)),
+        None => results(folder)?.first().map(|found| {
+            let reason = format!("{DOCUMENT}, which says what sweep it belongs to, is not there; {WAY_OUT}");
+            SweepError::content(found, reason)
+        }),
+    };
+    match obstacle {
+        // A shard of this sweep that has begun meanwhile has written the document first, then results.
+        Some(obstacle) if read_document(folder)?.as_deref() != Some(document) => Err(obstacle),
+        _ => Ok(()),
     }
 }
 
@@ -225,6 +221,23 @@ mod tests {
             message.contains("sweep.csv.part: sweep.json, which says what sweep it belongs to, is not"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn shards_that_begin_at_once_do_not_take_each_other_for_another_sweep() {
+        for _ in 0..50 {
+            let folder = tempfile::tempdir().unwrap();
+            std::thread::scope(|scope| {
+                for number in 1..=8 {
+                    let folder = folder.path();
+                    scope.spawn(move || {
+                        let results = folder.join(format!("sweep.{number}-of-8.csv"));
+                        let mut file = claim(folder, ONE, &results, number % 2 == 0).unwrap();
+                        file.write_all(b"run,").unwrap();
+                    });
+                }
+            });
+        }
     }
 
     #[test]

@@ -17,8 +17,8 @@ pub(super) struct Extent {
     pub lines: u64,
     /// Those of them that are runs that failed.
     pub failed: u64,
-    /// The last of them.
-    pub last: Vec<u8>,
+    /// The last of them that is of a run that did not fail, and the number of that run.
+    pub last: Option<(u64, Vec<u8>)>,
     /// What comes behind.
     pub rest: Rest,
 }
@@ -91,9 +91,14 @@ pub(super) fn follow<E: From<io::Error>>(
             continue;
         }
         take(&line)?;
+        if has_failed(&line) {
+            extent.failed += 1;
+        } else {
+            let (run, last) = extent.last.get_or_insert_default();
+            *run = range.start + extent.lines;
+            last.clone_from(&line);
+        }
         extent.lines += 1;
-        extent.failed += u64::from(has_failed(&line));
-        extent.last.clone_from(&line);
     }
 }
 
@@ -195,6 +200,19 @@ mod tests {
         ] {
             let Extent { bytes, lines, failed, .. } = extent(text, &(5..8));
             assert_eq!((bytes, lines, failed), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_last_run_that_did_not_fail_is_known() {
+        for (text, expected) in [
+            ("run,error\n", None),
+            ("run,error\n5,bad\n", None),
+            ("run,error\n5,\n6,\n", Some((6, "6,\n"))),
+            ("run,error\n5,\n6,bad\n7,bad\n", Some((5, "5,\n"))),
+        ] {
+            let expected = expected.map(|(run, line): (u64, &str)| (run, line.into()));
+            assert_eq!(extent(text, &(5..8)).last, expected, "{text:?}");
         }
     }
 

@@ -117,7 +117,7 @@ impl Sweep {
         let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
         let points = Points::new(design, axes, request.points)?;
         let seeds = seeds(request, &settings, &vary)?;
-        let runs = count_runs(points.count(), request.samples, seeds.as_ref())?;
+        let runs = count_runs(&points, request.samples, seeds.as_ref())?;
         let record = request.record.iter().map(|name| {
             let found = description.variable(name).cloned();
             found.map_err(|error| SweepError::option("record", name, error.to_string()))
@@ -303,11 +303,13 @@ fn check_lengths(columns: &[Column], axes: &[Axis]) -> Result<(), SweepError> {
     }
 }
 
-fn count_runs(points: u64, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {
+fn count_runs(points: &Points, samples: u64, seeds: Option<&Seeds>) -> Result<u64, SweepError> {
+    let (is_grid, points) = (points.is_grid(), points.count());
     let most = if seeds.is_some_and(|seeds| !seeds.common) { seeds::MOST } else { MAX_RUNS };
     if points > most {
         let reason = format!("{points} points have no seeds of their own: at most {most}, or --common-seeds");
-        return Err(SweepError::option("points", points.to_string(), reason));
+        let option = if is_grid { ("vary", String::new()) } else { ("points", points.to_string()) };
+        return Err(SweepError::option(option.0, option.1, reason));
     }
     let runs = points.checked_mul(samples).filter(|runs| (1..=most).contains(runs));
     let bound = || format!("with {points} points it must lie from 1 to {}", most / points);

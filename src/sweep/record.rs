@@ -38,8 +38,8 @@ pub(super) struct Record {
     pub next: u64,
     /// Runs in it that failed.
     pub failed: u64,
-    /// Its last line, if it has any.
-    pub last: Vec<u8>,
+    /// The last run in it that did not fail, and its line.
+    pub last: Option<(u64, Vec<u8>)>,
     synced: Instant,
 }
 

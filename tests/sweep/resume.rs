@@ -153,6 +153,28 @@ fn results_of_another_build_are_not_gone_on_with() {
 }
 
 #[test]
+fn a_row_that_failed_stays_and_the_one_before_it_is_compared() {
+    let (_guard, folder) = folder();
+    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
+    done(&mut sweep(&folder, &what));
+    let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    let mut lines: Vec<_> = text.lines().take(4).map(str::to_owned).collect();
+    let cells: Vec<_> = lines[3].split(',').collect();
+    lines[3] = format!("{},,,,took too long", cells[..4].join(","));
+    let go_on_with = |lines: &[String]| {
+        let _ = fs::remove_file(folder.join("sweep.csv"));
+        fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
+        sweep(&folder, &what)
+    };
+    done(&mut go_on_with(&lines));
+    let results = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    assert!(results.starts_with(&lines.join("\n")) && results.lines().last() == text.lines().last(), "{results}");
+    lines[2] = lines[2].replace(",0.000", ",0.001");
+    let (_, message) = refused(&mut go_on_with(&lines));
+    assert!(message.contains("run 1 comes out otherwise here"), "{message}");
+}
+
+#[test]
 fn a_complete_file_that_was_changed_is_not_taken_for_complete() {
     let (_guard, folder) = folder();
     let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
