@@ -25,7 +25,9 @@ pub fn applies_and_passes(diff: &str) -> Result<(), String> {
         let mut check = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
         let task = test.map_or(vec!["check"], |test| vec!["test", "--test", test]);
         check.args(task).args(["--quiet", "--offline", "--package", package]).current_dir(&folder);
-        run(check.env("CARGO_TARGET_DIR", root().join("target")))?;
+        // A folder of its own: for Cargo, packages of a copy are those of the original, and what is compiled of the one
+        // would be taken for the other.
+        run(check.env("CARGO_TARGET_DIR", root().join("target/book/build")))?;
     }
     Ok(())
 }
