@@ -15,7 +15,7 @@ const MOST: usize = 3;
 fn check(bytes: &[u8]) -> bool {
     let folder = tempfile::tempdir().unwrap();
     let mut parts = bytes.splitn(MOST + 1, |byte| *byte == 0);
-    fs::write(folder.path().join("sweep.json"), parts.next().unwrap_or_default()).unwrap();
+    fs::write(folder.path().join("sweep.json"), of_this_version(parts.next().unwrap_or_default())).unwrap();
     let shards: Vec<_> = parts.collect();
     for (index, shard) in shards.iter().enumerate() {
         fs::write(folder.path().join(format!("sweep.{}-of-{}.csv", index + 1, shards.len())), shard).unwrap();
@@ -31,6 +31,23 @@ fn check(bytes: &[u8]) -> bool {
     assert_eq!(sweeps::rows(&results) as u64, report.runs, "a line is not a row");
     assert_eq!(fs::read_dir(&output).unwrap().count(), 3, "results, document and table");
     true
+}
+
+/// The document as this program writes it: an input is not to be refused, as it would be, because it is older.
+fn of_this_version(document: &[u8]) -> Vec<u8> {
+    const BEFORE: &[u8] = b"\"videg\": \"";
+    let Some(at) = document.windows(BEFORE.len()).position(|bytes| bytes == BEFORE) else { return document.to_vec() };
+    let (before, rest) = document.split_at(at + BEFORE.len());
+    let version = rest.iter().position(|byte| *byte == b'"').unwrap_or(rest.len());
+    [before, env!("CARGO_PKG_VERSION").as_bytes(), &rest[version..]].concat()
+}
+
+#[test]
+fn an_input_of_another_version_is_taken() {
+    let seed = String::from_utf8(seeds().remove(0)).unwrap();
+    let version = concat!("\"videg\": \"", env!("CARGO_PKG_VERSION"), "\"");
+    let older = seed.replace(version, "\"videg\": \"0.0.7\"");
+    assert!(older != seed && check(older.as_bytes()));
 }
 
 /// A sweep of three runs, one of which failed, in one, two and three shards.
