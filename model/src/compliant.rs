@@ -203,7 +203,7 @@ impl Touch {
     pub(crate) fn plan(&mut self, law: &Law<'_>, limit: f64) {
         self.pass = Pass { steps: Vec::new(), end: self.start.time, ending: Ending::Cut };
         let (mut from, mut length) = (self.start, self.proposal);
-        while self.pass.steps.len() < MAX_STEPS && from.time < limit && !law.pulled_in(from.x) {
+        while self.pass.steps.len() < MAX_STEPS && from.time < limit && !law.is_too_deep(from.x) {
             let rest = limit - from.time;
             // Below this, time has no digits left.
             let shortest = 16.0 * f64::EPSILON * from.time.abs().max(f64::MIN_POSITIVE);

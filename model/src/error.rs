@@ -39,12 +39,12 @@ pub enum ModelError {
         /// Why.
         reason: &'static str,
     },
-    /// The Maxwell force has overcome the membrane.
+    /// A contact under a Maxwell force that goes deeper than any membrane.
     #[error(
-        "at t = {time} s the membrane is pressed in by {deflection} m, more than {bound} m: the Maxwell force of \
-         {voltage} V overcomes the membrane (pull-in)"
+        "at t = {time} s the membrane is pressed in by {deflection} m: with contact.electrostaticFeedback, at {voltage} V, \
+         at most {bound} m (100 R_2) are resolved"
     )]
-    PullIn {
+    TooDeep {
         /// Time, s.
         time: f64,
         /// Deflection, m.

@@ -38,6 +38,7 @@ fn the_voltage_gain_falls_with_the_intensity_of_the_noise_as_in_fig_17() {
     assert!((none - 31_700.0).abs() < 1_500.0, "{none} V/s without noise");
     assert!((3_000.0..26_000.0).contains(&weak), "{weak} V/s at D = 4");
     assert!((500.0..20_000.0).contains(&strong), "{strong} V/s at D = 10");
+    assert!(strong < weak && weak < none, "{strong} V/s at D = 10, {weak} at D = 4, {none} without noise");
 }
 
 #[test]

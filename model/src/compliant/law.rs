@@ -115,16 +115,17 @@ impl Law<'_> {
         0.5 * voltage * voltage * self.membrane.capacitance_slope(x)
     }
 
-    /// Largest deflection, m, with feedback.
-    pub(crate) fn pull_in(&self) -> f64 {
-        /// In units of `R_2`: no membrane reaches that; the Maxwell force, which grows as x^3, has won.
+    /// Largest deflection, m, with feedback: a Maxwell force may exceed that of a membrane whose exponent is small at any
+    /// depth.
+    pub(crate) fn deepest(&self) -> f64 {
+        /// In units of `R_2`: no membrane reaches that.
         const BOUND: f64 = 100.0;
         BOUND * self.membrane.radius()
     }
 
-    /// Whether the Maxwell force has overcome the membrane at `x`, m.
-    pub(crate) fn pulled_in(&self, x: f64) -> bool {
-        self.parameters.electrostatic_feedback && x > self.pull_in()
+    /// Whether `x`, m, is deeper than is resolved.
+    pub(crate) fn is_too_deep(&self, x: f64) -> bool {
+        self.parameters.electrostatic_feedback && x > self.deepest()
     }
 
     /// Size of the terms of the push about `time`, s, whose rounding it carries, m/s^2.

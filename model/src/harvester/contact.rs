@@ -147,9 +147,9 @@ impl Harvester {
         let (time, steps) = (touch.end(), touch.steps());
         let law = self.law(touch.side);
         let deflection = touch.at(time).x;
-        if law.pulled_in(deflection) {
+        if law.is_too_deep(deflection) {
             let voltage = law.voltage.at(time);
-            return Err(ModelError::PullIn { time, deflection, bound: law.pull_in(), voltage });
+            return Err(ModelError::TooDeep { time, deflection, bound: law.deepest(), voltage });
         }
         if steps == 0 {
             return Err(self.too_many_events(time)); // no step is short enough

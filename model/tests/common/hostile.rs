@@ -172,7 +172,7 @@ pub fn assert_explained(error: &ModelError, what: &str) {
         ModelError::Bounds { name, min, max, .. } => text.contains(name) && text.contains(&format!("[{min}, {max}]")),
         ModelError::Order { name, bound_name, .. } => text.contains(name) && text.contains(bound_name),
         ModelError::TooManyEvents { limit, .. } => text.contains(&limit.to_string()),
-        ModelError::PullIn { .. } => text.contains("pull-in"),
+        ModelError::TooDeep { bound, .. } => text.contains(&format!("at most {bound} m")),
         _ => false,
     };
     assert!(explained, "{what}: {text}");
