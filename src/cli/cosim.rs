@@ -114,8 +114,8 @@ pub struct Finished {
     pub coupling: CouplingSummary,
     /// The energy balance, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
-    /// Supply voltage, V.
-    pub supply_voltage: f64,
+    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C.
+    pub cycle_charge: f64,
     /// What the user should know before believing the numbers.
     pub warnings: Vec<String>,
     /// The figure.
@@ -156,7 +156,8 @@ pub fn couple(
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
     let ratios = electrical::capacitance_ratios(fmu, &scenario, &mechanical)?;
     let settings = electrical::resolve(&of_circuit, harvester.bias_voltage(), ratios.best)?;
-    let voltage_warning = voltage_warning(&settings, harvester.bias_voltage());
+    let bias = harvester.bias_voltage();
+    let voltage_warning = voltage_warning(&settings, bias);
     let circuits = circuits(backend, &scenario, &settings, ratios, &harvester);
     let circuits = circuits.map_err(|error| settings::placed(&of_circuit, error))?;
     let labels: Vec<_> = circuits.iter().map(|circuit| circuit.label().to_owned()).collect();
@@ -183,8 +184,9 @@ pub fn couple(
     let summaries = samples.iter().map(|sample| CircuitSummary::new(sample, mechanics.energy_eq13));
     let circuits = labels.into_iter().zip(summaries).map(|(label, summary)| Compared { label, summary }).collect();
     let drawing = picture::cosim(&trace, &scenario)?;
-    let supply_voltage = settings.circuit.supply_voltage;
-    Ok(Finished { scenario, mechanics, circuits, coupling, balance, supply_voltage, warnings, drawing })
+    // W of Eq. (13) is 1/2 U_b^2 dC, with the bias voltage of the harvester.
+    let cycle_charge = 2.0 * mechanics.energy_eq13 / bias.powi(2) * settings.circuit.supply_voltage;
+    Ok(Finished { scenario, mechanics, circuits, coupling, balance, cycle_charge, warnings, drawing })
 }
 
 pub fn voltage_warning(settings: &Settings, bias: f64) -> Option<String> {

@@ -9,8 +9,8 @@ use crate::report::{self, Column, Report, ReportError, Section, Table};
 pub const EXPLANATION: [&str; 10] = [
     "Why they differ: an impact moves the charge dQ = U_in dC from the supply, which gives U_in dQ. W of Eq. (13) is half",
     "of that: the change of the stored energy, not a gain. A Zener in series then burns U_z dQ, and the load sees only what",
-    "is above U_z. At U_z = U_in the paper's circuit thus gains at most U_in^2 dC (dC/(2 C2) - 1), a loss unless C3/C2 is",
-    "above 3, or 5 with both membranes on one node. An ideal switch at U_z = U_in into a quick load hands on what the supply",
+    "is above U_z. At U_z = U_in a charge q let out at U thus gains q (U - 2 U_in): the paper's circuit loses unless C3/C2 is",
+    "above 2, or 3 with both membranes on one node. An ideal switch at U_z = U_in into a quick load hands on what the supply",
     "gave; with U_z above U_in the mechanics' work reaches the load, the more so with isolated membranes. It does so without",
     "a switch to be driven where a diode leads into a storage at U_out, whose intake counts as the load's: a quick release,",
     "which gains (C3 U_in - C2 U_out) (U_out - U_in), the most at U_out = U_in (C3/C2 + 1)/2. Where impacts differ, the switch",
@@ -45,11 +45,9 @@ fn cells(finished: &Finished) -> Vec<Vec<String>> {
             std::iter::once((*name).to_owned()).chain(values).collect()
         })
         .collect();
-    // Eq. (13) is 1/2 U_in (U_in dC): the charge that the paper has in mind is twice its sum over U_in.
-    let ideal = 2.0 * finished.mechanics.energy_eq13 / finished.supply_voltage;
-    let ratio = |circuit: &Compared| format::significant(circuit.summary.charge.supply / ideal, DIGITS);
+    let ratio = |circuit: &Compared| format::significant(circuit.summary.charge.supply / finished.cycle_charge, DIGITS);
     let charge = std::iter::once("supply charge / (U_in dC)".to_owned()).chain(finished.circuits.iter().map(ratio));
-    if ideal > 0.0 {
+    if finished.cycle_charge > 0.0 {
         rows.push(charge.collect());
     }
     rows

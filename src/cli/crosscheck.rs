@@ -140,6 +140,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
         scenario.until_place,
         scenario.until
     );
+    if let Some(folder) = &arguments.export {
+        files::check_export(folder)?;
+    }
     let ngspice = Ngspice::find(None)?;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;

@@ -165,6 +165,11 @@ pub fn export(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>
     Ok(folder_for_ngspice::write(folder, &title, &items)?)
 }
 
+/// That nothing of somebody else's is in the way of an export: before the solvers run for nothing.
+pub fn check_export(folder: &Path) -> anyhow::Result<()> {
+    Ok(folder_for_ngspice::check(folder)?)
+}
+
 fn expected(compared: &Compared) -> Vec<Expected> {
     let (ngspice, embedded) = (&compared.ngspice, &compared.embedded);
     let value = |name, ngspice: f64, embedded: f64, unit| Expected {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use clap::Args;
 
 use super::options::{Window, parse_window};
@@ -11,7 +12,7 @@ use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Design, Request, SweepFile, Times, Vary};
 
 /// What is swept. An option wins over the same key of the file.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct What {
     /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
     #[arg(value_name = "FILE.toml")]
@@ -78,18 +79,15 @@ impl What {
         let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
         let name = case.name.clone();
         let scenario = self.scenario(case, description, is_harvester)?;
-        let own_step = || description.default_experiment.step_size.unwrap_or(scenario.until / 1000.0);
+        let step =
+            if is_harvester { step } else { Some(step.map_or_else(|| own_step(description, scenario.until), Ok)?) };
         let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<_, _>>()?;
         Ok(Request {
             description,
             fmu: fingerprint,
             isolation,
             settings: if is_harvester { mechanical(description, &scenario)? } else { scenario.changes().to_vec() },
-            times: Times {
-                until: scenario.until,
-                step: if is_harvester { step } else { Some(step.unwrap_or_else(own_step)) },
-                window: scenario.window,
-            },
+            times: Times { until: scenario.until, step, window: scenario.window },
             name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
             vary: [vary, asked].concat(),
             design: self.design.or(design).unwrap_or_default(),
@@ -123,12 +121,29 @@ impl What {
         is_harvester: bool,
     ) -> Result<Scenario, ScenarioError> {
         let own_end = || description.default_experiment.stop_time.filter(|_| !is_harvester);
-        let until = self.until.or_else(|| if file.until.is_none() { own_end() } else { None });
+        let proposed = if self.until.is_none() && file.until.is_none() { own_end() } else { None };
+        let until = self.until.or(proposed);
         let settings = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
         let window = self.window.map(|Window(window)| window);
         scenario::Request { case: self.case.clone(), file: Some(file), settings, until, step: self.step, window }
             .resolve()
+            .map_err(|error| match error {
+                ScenarioError::Time { name, value, bound } if proposed.is_some() && name == "--until" => {
+                    let name = format!("DefaultExperiment of {}: stopTime", description.model_name);
+                    ScenarioError::Time { name, value, bound: format!("{bound}, or give --until") }
+                }
+                other => other,
+            })
     }
+}
+
+/// The step that an FMU proposes, s, or a thousandth of the run.
+fn own_step(description: &ModelDescription, until: f64) -> anyhow::Result<f64> {
+    let Some(step) = description.default_experiment.step_size else { return Ok(until / 1000.0) };
+    let model = &description.model_name;
+    scenario::check_proposed_step(step, until)
+        .map_err(|bound| anyhow!("DefaultExperiment of {model}: stepSize = {step} s: {bound}, or give --step"))?;
+    Ok(step)
 }
 
 /// The settings of the harvester. Those of a circuit are left out with a warning.
@@ -139,4 +154,37 @@ fn mechanical(description: &ModelDescription, scenario: &Scenario) -> anyhow::Re
         output::warn(&[format!("{} left out: sweep runs no circuit", names.join(", "))]);
     }
     Ok(mechanical)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a sweep without options says of an FMU whose default experiment has these attributes.
+    fn request(experiment: &str) -> Result<Times, String> {
+        let attributes = "startTime=\"0\" stopTime=\"1e1\"";
+        let text = include_str!("../fmi/testdata/good.xml").replace(attributes, experiment);
+        let description = ModelDescription::parse(text.as_bytes(), "good.xml").unwrap();
+        let made = What::default().request(SweepFile::default(), &description, None, None);
+        made.map(|request| request.times).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn times_that_an_fmu_proposes_are_taken_or_blamed_on_it() {
+        let times = |experiment| request(experiment).map(|times| (times.until, times.step));
+        assert_eq!(times("stopTime=\"10\""), Ok((10.0, Some(0.01))));
+        assert_eq!(times("stopTime=\"10\" stepSize=\"0.5\""), Ok((10.0, Some(0.5))));
+        for step in ["1e-12", "0", "-1", "NaN"] {
+            let message = times(&format!("stopTime=\"1\" stepSize=\"{step}\"")).unwrap_err();
+            assert!(
+                message.contains(": stepSize = ") && message.ends_with("for a run of 1 s, or give --step"),
+                "{message}"
+            );
+        }
+        let message = times("stopTime=\"0\"").unwrap_err();
+        assert!(
+            message.contains(": stopTime = 0 s: must lie from") && message.ends_with("or give --until"),
+            "{message}"
+        );
+    }
 }

@@ -77,37 +77,41 @@ pub struct TracePoint {
     pub circuits: Vec<CircuitSample>,
 }
 
-/// What a figure shows: every point near the end of the run, and a thinned-out rest.
+/// What a figure shows: the end of the run closely, and the whole of it. Memory does not grow with the number of points.
 pub struct Trace {
-    detail_from: f64,
-    spacing: f64,
-    due: f64,
-    /// Every communication point from `detail_from` on.
+    /// Distance of the points kept, s, and when the next is due: of the detail and of the overview.
+    spacing: [f64; 2],
+    due: [f64; 2],
+    /// Communication points near the end of the run: all, unless there are very many.
     pub detail: Vec<TracePoint>,
     /// Points of the whole run, about evenly spaced.
     pub overview: Vec<TracePoint>,
 }
 
 impl Trace {
+    /// Most points of the detail: several for each pixel.
+    const DETAIL: f64 = 40_000.0;
     /// Points of the overview.
     const OVERVIEW: f64 = 1000.0;
 
-    /// A trace of a run up to `until`, s, with its last `detail`, s, in full.
+    /// A trace of a run up to `until`, s, with its last `detail`, s, closely.
     pub fn new(until: f64, detail: f64) -> Self {
-        let spacing = until / Self::OVERVIEW;
-        Self { detail_from: until - detail, spacing, due: 0.0, detail: Vec::new(), overview: Vec::new() }
+        let spacing = [detail / Self::DETAIL, until / Self::OVERVIEW];
+        Self { spacing, due: [until - detail, 0.0], detail: Vec::new(), overview: Vec::new() }
     }
 }
 
 impl Observer for Trace {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
         let point = || TracePoint { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() };
-        if row.time >= self.detail_from {
+        let [detail_due, due] = &mut self.due;
+        if row.time >= *detail_due {
             self.detail.push(point());
+            *detail_due = row.time + self.spacing[0];
         }
-        if row.time >= self.due {
+        if row.time >= *due {
             self.overview.push(point());
-            self.due += self.spacing;
+            *due += self.spacing[1];
         }
         Ok(())
     }

@@ -115,7 +115,7 @@ impl Findings<'_> {
             Check { name: name.to_owned(), unit: "V", analytic: Some(mean(&analytic)), values, agreement, claim }
         };
         let pair = |solver: Solver, tolerance| {
-            let deviation = largest_deviation(open(solver)?, open(Solver::Batch)?);
+            let deviation = largest_deviation(open(solver)?, open(Solver::Batch)?).abs();
             Some(Agreement::new(format!("{} and {}", solver.name(), Solver::Batch.name()), deviation, tolerance))
         };
         let pairs = [pair(Solver::Exponential, 3e-4), pair(Solver::Ideal, 1e-3)];

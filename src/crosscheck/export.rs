@@ -217,6 +217,14 @@ pub fn write(folder: &Path, title: &str, items: &[Item]) -> Result<Vec<PathBuf>,
     Ok(files)
 }
 
+/// That the folder is empty, not there, or of an earlier export.
+///
+/// # Errors
+/// Something else that is there.
+pub fn check(folder: &Path) -> Result<(), ExportError> {
+    refuse_foreign(&folder.join(PAGE), &[folder.join(PAGE)])
+}
+
 fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), ExportError> {
     let kind = |path: &Path| std::fs::symlink_metadata(path).map(|metadata| metadata.file_type());
     let regular = |path: &Path| kind(path).is_ok_and(|kind| kind.is_file());

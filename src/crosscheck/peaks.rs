@@ -124,8 +124,21 @@ fn rows_of_impacts<'a>(times: &'a [f64], impacts: &'a [Impact]) -> impl Iterator
     impacts.windows(2).map(move |pair| [row(&pair[0]), row(&pair[1])])
 }
 
-/// Largest deviation of `found` from `expected`, relative to it; not a number without any.
+/// Largest deviation of `found` from `expected`, relative to it, with its sign; not a number without any.
 pub fn largest_deviation(found: &[f64], expected: &[f64]) -> f64 {
+    let deviations = found.iter().zip(expected).map(|(a, b)| a / b - 1.0);
     // In the total order, what is not a number lies above everything else.
-    found.iter().zip(expected).map(|(a, b)| (a / b - 1.0).abs()).max_by(f64::total_cmp).unwrap_or(f64::NAN)
+    deviations.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest_deviation;
+
+    #[test]
+    fn the_largest_deviation_has_its_sign_and_what_is_not_a_number_is_larger_than_all() {
+        assert_eq!(largest_deviation(&[1.25, 0.5, 1.0], &[1.0; 3]), -0.5);
+        assert_eq!(largest_deviation(&[1.5, 0.75], &[1.0; 2]), 0.5);
+        assert!(largest_deviation(&[f64::NAN, 9.0], &[1.0; 2]).is_nan() && largest_deviation(&[], &[]).is_nan());
+    }
 }

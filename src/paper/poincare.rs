@@ -84,7 +84,7 @@ impl Section {
     fn finding(&self) -> Finding {
         let comes_back = match self.orbit.recurrence(TOLERANCE) {
             Some(n) => format!("the motion comes back after {n} periods"),
-            None => format!("the motion does not come back in {} periods", self.orbit.flashes.len() - 1),
+            None => format!("the motion does not come back within {} periods", (self.orbit.flashes.len() - 1) / 2),
         };
         let (claim, holds) = match self.case {
             "fig13" => ("almost chaotic", self.exponent > 0.0),

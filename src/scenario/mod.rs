@@ -10,6 +10,7 @@ pub(crate) use characters::{check as check_characters, with_plain_ends};
 pub use file::{CaseFile, value_text};
 pub(crate) use file::{read_file, toml_error};
 pub use origin::Origin;
+pub use times::check_proposed_step;
 
 use serde::Serialize;
 use thiserror::Error;

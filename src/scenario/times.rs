@@ -58,6 +58,16 @@ fn check_end(until: f64, place: &str) -> Result<(), ScenarioError> {
     fail(place, until, format!("must lie from {SHORTEST} to {LONGEST:e} s"))
 }
 
+/// That a `step`, s, which nobody asked for divides a run up to `until`, s, into no more parts than it may have; else
+/// what is allowed.
+///
+/// # Errors
+/// What is allowed.
+pub fn check_proposed_step(step: f64, until: f64) -> Result<(), String> {
+    let least = until / MAX_STEPS;
+    if step >= least { Ok(()) } else { Err(format!("must be at least {least:e} s for a run of {until} s")) }
+}
+
 fn check_step(step: f64, place: &str, until: f64, end: &str) -> Result<(), ScenarioError> {
     if !(step > 0.0 && step <= until) {
         return fail(place, step, format!("must lie above 0 and not above {end} = {until} s"));

@@ -4,7 +4,7 @@ use std::io::{self, BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
@@ -106,8 +106,10 @@ impl Worker {
         let (from, to) = (ramp.from, ramp.to);
         // A worker that has died says why in its last reply, so that is read even if the request does not get through.
         let _ = send(&mut self.requests, ramp);
+        let begun = Instant::now();
         loop {
-            match self.replies.recv_timeout(self.limit) {
+            // Of the whole step: a worker that creeps has something to tell now and then.
+            match self.replies.recv_timeout(self.limit.saturating_sub(begun.elapsed())) {
                 Ok(Ok(Some(Reply::Points(values)))) => {
                     for row in values.chunks_exact(1 + self.vectors) {
                         point(row[0], &row[1..]);
