@@ -130,8 +130,9 @@ subprocess.run("videg crosscheck --until 10 --export out/for-ngspice >/dev/null 
 # %% [markdown]
 # ## Which storage voltage gains most
 #
-# A slow cycle gains (C3 U_in - C2 U_out)(U_out - U_in), so there is a best voltage between U_in and the peak that constant charge
-# reaches ([Circuit and energy](../theory/circuit.md)). In ngspice, and beside it in videg with the diodes of the netlist and with ideal ones:
+# A quick release gains (C3 U_in - C2 U_out)(U_out - U_in), with C2 + C2 for C2 and C3 + C2 for C3 on one node, as here. So there is a best
+# voltage between U_in and the peak that constant charge reaches ([Circuit and energy](../theory/circuit.md#which-voltage)). In ngspice, and
+# beside it in videg with the diodes of the netlist and with ideal ones:
 
 # %%
 import json

@@ -183,7 +183,7 @@ subprocess.run("videg simulate --case-file out/membrane/own.toml --output out/me
 
 # %%
 with open("out/membrane/run/timeseries.csv", newline="") as file:
-    deepest = max(float(row["left.deflection"]) for row in csv.DictReader(file))
+    deepest = max(float(row[f"{end}.deflection"]) for row in csv.DictReader(file) for end in ("left", "right"))
 print(f"deepest impact {1e3 * deepest:.1f} mm, measured to {1e3 * deflection.max():.1f} mm")
 
 # %% [markdown]
