@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn times_that_an_fmu_proposes_are_taken_or_blamed_on_it() {
-        let times = |experiment| request(experiment).map(|times| (times.until, times.step));
+        let times = |experiment: &str| request(experiment).map(|times| (times.until, times.step));
         assert_eq!(times("stopTime=\"10\""), Ok((10.0, Some(0.01))));
         assert_eq!(times("stopTime=\"10\" stepSize=\"0.5\""), Ok((10.0, Some(0.5))));
         for step in ["1e-12", "0", "-1", "NaN"] {

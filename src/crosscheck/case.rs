@@ -1,6 +1,6 @@
 //! A run of the mechanics: C(t) for every solver, and the impacts that made it.
 
-use videg_circuit::formulas;
+use videg_circuit::{Settings, formulas};
 
 use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome, Row};
 use crate::fmi::Fmu;
@@ -64,6 +64,18 @@ impl Case {
         let least = |column: &[f64]| column.iter().copied().fold(f64::INFINITY, f64::min);
         let rest = [least(table.left()), least(table.right())];
         Ok(Self { table, mechanics, impacts: log.impacts, rest, bias_voltage, warnings })
+    }
+
+    /// Smallest scale of a deviation of charges, C: about as much as an impact moves, and so much that what diodes leak in a
+    /// run, but ideal ones do not, is within the tolerances.
+    pub fn least_charge(&self, settings: &Settings) -> f64 {
+        /// In units of what the membranes hold at rest.
+        const IMPACT: f64 = 0.1;
+        /// In units of what charging and release diode leak.
+        const LEAKED: f64 = 1e3;
+        let held = settings.circuit.supply_voltage * self.rest.iter().sum::<f64>();
+        let leaked = 2.0 * settings.diode.saturation_current * self.table.until();
+        (IMPACT * held).max(LEAKED * leaked)
     }
 
     /// The one `C_3` / `C_2` to choose a voltage of release by.

@@ -61,8 +61,10 @@ const PAIRS: [(Solver, Solver, f64); 3] = [
     (Solver::Live, Solver::Batch, 1e-3),
 ];
 
-/// Tolerance of the root of the mean square of the difference of voltages, V.
+/// Tolerance of the root of the mean square of the difference of voltages: V, or relative to the highest voltage if that is
+/// more.
 const VOLTAGE: f64 = 0.1;
+const RELATIVE_VOLTAGE: f64 = 1e-5;
 
 impl Agreement {
     /// Compares `values`, relative to `scale`, or to the larger of each two without one.
@@ -76,12 +78,13 @@ impl Agreement {
         Self::worst(compared)
     }
 
-    /// Compares the differences of the voltages from those of ngspice in batch, V.
-    pub fn of_voltages(differences: &Values) -> Option<Self> {
+    /// Compares the differences of the voltages from those of ngspice in batch, the highest of which is `highest`, V.
+    pub fn of_voltages(differences: &Values, highest: f64) -> Option<Self> {
+        let tolerance = VOLTAGE.max(RELATIVE_VOLTAGE * highest);
         let solvers = Solver::ALL.into_iter().filter(|&solver| solver != Solver::Batch);
         let compared = solvers.filter_map(|solver| {
             let between = format!("{} and {}", solver.name(), Solver::Batch.name());
-            Some(Self::new(between, differences.get(solver)?, VOLTAGE))
+            Some(Self::new(between, differences.get(solver)?, tolerance))
         });
         Self::worst(compared)
     }

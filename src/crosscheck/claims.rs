@@ -8,10 +8,8 @@ use crate::ngspice::Waveforms;
 
 /// A claim holds up to this, relative: the paper gives its powers in two or three digits.
 const CLAIM: f64 = 0.02;
-/// What of the supply energy the two ways of booking may disagree on.
+/// What of the energy moved the two ways of booking may disagree on.
 const BOOKS: f64 = 1e-4;
-/// Smallest scale of a deviation, in units of what the membranes hold: about as much as an impact moves.
-const LEAST_SCALE: f64 = 0.1;
 
 /// What was found out about the circuit asked for.
 pub struct Findings<'a> {
@@ -49,14 +47,21 @@ fn hold(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim>
     Some(Claim::new(says, (found - analytic) / scale, CLAIM))
 }
 
-fn scaled(name: &str, unit: &'static str, values: Values, scale: f64, claim: Option<(&str, f64)>) -> Check {
+/// A check of solvers relative to `moved`, and of a claim that comes to nothing relative to `supplied`.
+fn scaled(
+    name: &str,
+    unit: &'static str,
+    values: Values,
+    [moved, supplied]: [f64; 2],
+    claim: Option<(&str, f64)>,
+) -> Check {
     Check {
         name: name.to_owned(),
         unit,
         analytic: claim.map(|(_, analytic)| analytic),
         values,
-        agreement: Agreement::of(&values, Some(scale)),
-        claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, scale)),
+        agreement: Agreement::of(&values, Some(moved)),
+        claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, supplied)),
     }
 }
 
@@ -82,16 +87,20 @@ impl Findings<'_> {
         self.settings.circuit.topology
     }
 
-    /// Energy, J, or charge, C, that the membranes hold at rest, to scale deviations by.
+    /// Smallest scale of deviations of an energy, J, or a charge, C.
     fn least(&self, unit: &str) -> f64 {
-        let charge = LEAST_SCALE * self.supply_voltage() * self.case.rest.iter().sum::<f64>();
+        let charge = self.case.least_charge(self.settings);
         if unit == "C" { charge } else { charge * self.supply_voltage() }
     }
 
-    /// Energy from the supply by ngspice, J: what differences of energies are relative to.
-    fn supply_energy(&self) -> f64 {
-        let supply = self.run(Solver::Batch).map_or(0.0, |waveforms| waveforms.ledger().supply.abs());
-        supply.max(self.least("J"))
+    /// What differences of energies are relative to, J, by ngspice: the larger of what the supply gives and the load gets,
+    /// for solvers; what the supply gives, for claims.
+    fn scales(&self) -> [f64; 2] {
+        let [supply, load] = self.run(Solver::Batch).map_or([0.0; 2], |waveforms| {
+            let ledger = waveforms.ledger();
+            [ledger.supply.abs(), ledger.load.abs()]
+        });
+        [supply.max(load), supply].map(|scale| scale.max(self.least("J")))
     }
 
     /// Sum over the impacts of a closed form of the node's `C_2` and `C_3`.
@@ -179,12 +188,12 @@ impl Findings<'_> {
     fn row(&self, name: &str, unit: &'static str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
         let values = self.ledgers(value);
         let own = values.ngspice_batch.map_or(0.0, f64::abs).max(self.least(unit));
-        scaled(name, unit, values, own, claim)
+        scaled(name, unit, values, [own; 2], claim)
     }
 
-    /// A difference of energies, relative to the energy from the supply.
+    /// A difference of energies, relative to the energy moved.
     fn difference(&self, name: &str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
-        scaled(name, "J", self.ledgers(value), self.supply_energy(), claim)
+        scaled(name, "J", self.ledgers(value), self.scales(), claim)
     }
 
     fn energies(&self) -> Vec<Check> {
@@ -249,7 +258,7 @@ impl Findings<'_> {
             unit: "V",
             analytic: None,
             values,
-            agreement: Agreement::of_voltages(&values),
+            agreement: Agreement::of_voltages(&values, batch.map_or(0.0, Waveforms::highest_voltage)),
             claim: None,
         }
     }
@@ -257,7 +266,7 @@ impl Findings<'_> {
     /// Each solver's own books: the work on the membranes, summed on a path of its own, is what was converted.
     fn books(&self) -> Check {
         let values = self.ledgers(Ledger::residual);
-        let scale = self.supply_energy();
+        let [scale, _] = self.scales();
         let own = |solver: Solver| {
             let residual = values.get(solver)?.abs();
             Some(Agreement::new(format!("two ways to book in {}", solver.name()), residual / scale, BOOKS))

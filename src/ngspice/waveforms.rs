@@ -23,6 +23,11 @@ pub struct Waveforms {
 }
 
 impl Waveforms {
+    /// Highest voltage across a membrane, V.
+    pub fn highest_voltage(&self) -> f64 {
+        self.samples.iter().flat_map(|sample| sample.voltage).fold(0.0, f64::max)
+    }
+
     /// The embedded solver on `table`.
     ///
     /// # Errors

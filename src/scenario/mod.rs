@@ -176,11 +176,12 @@ impl Request {
         let mut changes = file.settings;
         changes.extend(self.settings);
         let mut description = file.description.unwrap_or_else(|| case.description.to_owned());
-        if !changes.is_empty() {
-            let shown: Vec<_> = changes.iter().map(|change| format!("{} = {}", change.name, change.value)).collect();
+        let others = changes.iter().filter(|change| !preset::has(case, change));
+        let shown: Vec<_> = others.map(|change| format!("{} = {}", change.name, change.value)).collect();
+        let as_printed = shown.is_empty();
+        if !as_printed {
             description = format!("{description}; changed: {}", shown.join(", "));
         }
-        let as_printed = changes.is_empty();
         let mut settings = preset::settings(case);
         let of_case = settings.len();
         settings.extend(changes);
@@ -222,6 +223,18 @@ mod tests {
         assert_eq!(scenario.paper, PaperValues::default());
         assert_eq!(scenario.settings.last().unwrap().name, "membrane.restitution");
         assert!(scenario.description.ends_with("periodic; changed: membrane.restitution = 0.7"));
+    }
+
+    #[test]
+    fn a_value_that_the_case_has_anyway_changes_nothing() {
+        let with =
+            |text| Request { settings: vec![Setting::parse(text).unwrap()], ..Request::default() }.resolve().unwrap();
+        for text in ["membrane.restitution=0.60", "excitation.phase=0"] {
+            let scenario = with(text);
+            assert_eq!(scenario.paper.voltage_gain, Some(8079.0), "{text}");
+            assert!(!scenario.description.contains("changed: "), "{text}");
+            assert_eq!(scenario.changes().len(), 1, "it is set all the same");
+        }
     }
 
     #[test]
