@@ -244,7 +244,7 @@ stage_scale() {
 stage_conformance() {
     need_python
     build_fmus
-    run "$VENV/bin/python" -m pytest tests/c
+    run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling
     run "$VENV/bin/python" tests/conformance
     run "$VENV/bin/python" tests/coupling
 }
