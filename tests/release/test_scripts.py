@@ -71,6 +71,7 @@ def test_the_version_is_that_of_the_workspace_and_the_same_everywhere(tree: Path
     [
         ("model/Cargo.toml", "version.workspace = true", f'version = "{BREAKING}"', f"package videg-model has version {BREAKING}"),
         ("Cargo.toml", f'path = "circuit", version = "{VERSION}"', 'path = "circuit", version = "0.0.9"', "asks for videg-circuit ^0.0.9"),
+        ("fuzz/Cargo.lock", f'name = "videg-model"\nversion = "{VERSION}"', 'name = "videg-model"\nversion = "0.0.9"', "fuzz/Cargo.lock has videg-model 0.0.9"),
         ("modelDescription/HarvestingCircuit.xml", f'version="{VERSION}"', 'version="0.0.9"', "not in modelDescription/HarvestingCircuit.xml"),
         ("modelDescription/VibroImpactHarvester.xml", f"videg {VERSION}", "videg 0.0.9", "VibroImpactHarvester.xml names another generationTool"),
         ("CHANGELOG.md", "## [Unreleased]\n", "", f'the first section is "## [{VERSION}] - 2026-01-31"'),
