@@ -90,6 +90,7 @@ has_venv() {
 # The Debian packages of those things that are not there.
 missing_packages() {
     has_command cc || echo gcc libc6-dev
+    has_command git || echo git
     has_command python3 || echo python3
     has_venv || echo python3-venv
     has_command xmllint || echo libxml2-utils
@@ -184,9 +185,17 @@ stage_lint() {
     lint_workflows
 }
 
+# All in git or about to be, or where this is no clone, those in the places where scripts are.
+shell_scripts() {
+    git ls-files --cached --others --exclude-standard -- '*.sh' '*.sbatch' .ci/run 2>/dev/null ||
+        ls -- *.sh {fuzz,release,scale/slurm,tests/*}/*.sh scale/slurm/*.sbatch .ci/run
+}
+
 lint_workflows() {
+    local scripts
     if has_command shellcheck; then
-        run shellcheck release/*.sh tests/release/run.sh tests/coverage/run.sh
+        mapfile -t scripts < <(shell_scripts)
+        run shellcheck "${scripts[@]}"
     else
         skip "shellcheck is not installed"
     fi
@@ -244,7 +253,7 @@ stage_scale() {
 stage_conformance() {
     need_python
     build_fmus
-    run "$VENV/bin/python" -m pytest tests/c
+    run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling
     run "$VENV/bin/python" tests/conformance
     run "$VENV/bin/python" tests/coupling
 }

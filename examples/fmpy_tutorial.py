@@ -137,6 +137,8 @@ except Exception as error:
 # `simulate_fmu` hides the calls. A master of your own makes them one by one; this class keeps names and value references together.
 
 # %%
+import tempfile
+
 from fmpy.fmi2 import FMU2Slave
 
 
@@ -145,9 +147,10 @@ class FMU2Named(FMU2Slave):
 
     def __init__(self, file, start_values):
         description = fmpy.read_model_description(file)
+        self.folder = tempfile.TemporaryDirectory()
         super().__init__(
             guid=description.guid,
-            unzipDirectory=fmpy.extract(file),
+            unzipDirectory=fmpy.extract(file, self.folder.name),
             modelIdentifier=description.coSimulation.modelIdentifier,
             instanceName=description.modelName,
         )

@@ -24,11 +24,28 @@ if [[ ${1:-} =~ ^[0-9]+$ ]]; then
     shift
 fi
 
-# In memory, where there is such a place: some targets write files.
+# Ends what is still running, and removes what is of this run alone.
+finish() {
+    local running
+    mapfile -t running < <(jobs -rp)
+    if [[ ${#running[@]} -gt 0 ]]; then
+        kill "${running[@]}" || true
+        wait
+    fi 2>/dev/null
+    rm -rf "$scratch" "$programs"
+}
+
+# Small files in memory, where there is such a place: some targets write them.
 place=/dev/shm
 [[ -d $place && -w $place ]] || place=${TMPDIR:-/tmp}
 scratch=$(mktemp --directory --tmpdir="$place" videg-fuzz-XXXXXX)
-trap 'rm -rf "$scratch"' EXIT
+# Programs on disk: all of them take some 700 MB, and containers often have 64 MB of memory to write to.
+mkdir -p fuzz/target
+programs=$(mktemp --directory fuzz/target/programs-XXXXXX)
+trap finish EXIT
+trap 'exit 129' HUP
+trap 'exit 130' INT
+trap 'exit 143' TERM
 export TMPDIR=$scratch/files ASAN_OPTIONS=detect_leaks=1:detect_odr_violation=0
 
 # The programs, where no later build changes them.
@@ -37,9 +54,18 @@ build() {
     cargo +nightly fuzz build >"$scratch/build" 2>&1 || { cat "$scratch/build" >&2 && exit 2; }
     mkdir -p "$scratch/files"
     for target in "$@"; do
-        cp "fuzz/target/$(rustc +nightly --print host-tuple)/release/$target" "$scratch/$target"
+        cp "fuzz/target/$(rustc +nightly --print host-tuple)/release/$target" "$programs/$target"
     done
     echo "built in $((SECONDS - started)) s"
+}
+
+# Has a subshell become the program of a target, which ends with the shell that waits for it: a signal would end that one alone.
+become() {
+    exec setpriv --pdeathsig KILL "$programs/$1" "${@:2}"
+}
+
+program() {
+    (become "$@")
 }
 
 # The last number behind a word in what libFuzzer printed, a file.
@@ -54,7 +80,7 @@ last() {
 is_quick() {
     local input
     input=$(sed --quiet 's/.*Test unit written to //p' "$scratch/$1.log" | tail -1)
-    [[ -f $input ]] && (ulimit -t 10 && "$scratch/$1" "$input" >"$scratch/$1.again" 2>&1) && rm "$input"
+    [[ -f $input ]] && (ulimit -t 10 && become "$1" "$input" >"$scratch/$1.again" 2>&1) && rm "$input"
 }
 
 # Fuzzes a target until the time is over or something is found, and sets code, real, processor and executions.
@@ -68,7 +94,8 @@ run() {
     real=0 processor=0 executions=0
     while [[ $SECONDS -lt $ended ]]; do
         code=0
-        { time "$scratch/$target" "${folders[@]}" -max_total_time="$((ended - SECONDS))" -timeout="$((10 * jobs))" \
+        # What interrupts this script ends the program, too, which must not take that for a finding of its own.
+        { time program "$target" "${folders[@]}" -max_total_time="$((ended - SECONDS))" -timeout="$((10 * jobs))" -handle_int=0 \
             -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$artifacts" >"$log" 2>&1 || code=$?; } 2>"$log.time"
         # Behind what the shell says of a program that was killed.
         read -r count user system < <(tail -1 "$log.time")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Packs the archive that users unpack: pack.sh NAME PROGRAM FMUS NOTICES FOLDER writes FOLDER/videg-VERSION-NAME.tar.gz, or .zip
 # for a program of Windows. PROGRAM is videg with the FMUs inside, FMUS the folder of the same FMUs as files, NOTICES the
-# licenses of what the program contains, as notices.sh writes them.
+# licenses of what the program contains, as notices.py writes them.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

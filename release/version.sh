@@ -9,17 +9,22 @@ usage() {
 Usage: version.sh [check [TAG]]
 
 Without an argument prints the version of the workspace. With `check` sees that the packages of the workspace, what they ask
-of each other, the model descriptions and the changelog agree on it. TAG, such as v1.2.3, must be that version, and the
-changelog must have a section for it with a date and nothing under "Unreleased".
+of each other, what fuzz/ locks of them, the model descriptions and the changelog agree on it. TAG, such as v1.2.3, must be
+that version, and the changelog must have a section for it with a date and nothing under "Unreleased".
 EOT
 }
 
-# Every package of the workspace, and every requirement among them.
+# Every package of the workspace, every requirement among them, and those of them that the workspace of fuzz/ locks.
 check_packages() {
     local wanted=$1 found
     found=$(cd "$root" && cargo metadata --format-version 1 --no-deps --locked | python3 -c '
-import json, sys
+import json, sys, tomllib
 wanted, packages = sys.argv[1], json.load(sys.stdin)["packages"]
+names = [package["name"] for package in packages]
+for package in tomllib.load(open("fuzz/Cargo.lock", "rb"))["package"]:
+    if package["name"] in names and package["version"] != wanted:
+        remedy = "cargo update --workspace --manifest-path fuzz/Cargo.toml"
+        print("fuzz/Cargo.lock has {name} {version}; {remedy} mends that".format(remedy=remedy, **package))
 for package in packages:
     if package["version"] != wanted:
         print("package {name} has version {version}".format(**package))

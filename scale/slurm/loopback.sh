@@ -58,11 +58,12 @@ start() {
     configuration "$folder" >"$folder/slurm.conf"
     export SLURM_CONF=$folder/slurm.conf
     # Munge wants to know that nobody else can write its folder; here it is the user's own.
-    munged --force --key-file="$folder/munge.key" --socket="$folder/munge.socket" --pid-file="$folder/munged.pid" \
-        --log-file="$folder/munged.log" --seed-file="$folder/munge.seed" 2>/dev/null
-    { slurmctld && slurmd; } || {
+    {
+        munged --force --key-file="$folder/munge.key" --socket="$folder/munge.socket" --pid-file="$folder/munged.pid" \
+            --log-file="$folder/munged.log" --seed-file="$folder/munge.seed" 2>/dev/null && slurmctld && slurmd
+    } || {
         stop "$folder"
-        fail "slurmctld or slurmd did not start; see $folder/*.log"
+        fail "munged, slurmctld or slurmd did not start; see $folder/*.log"
     }
     for _ in $(seq 150); do
         [[ $(sinfo --noheader --format=%T 2>/dev/null) != idle ]] || return 0

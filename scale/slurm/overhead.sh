@@ -16,12 +16,15 @@ trap 'rm -rf "$folder"' EXIT
 measure() {
     local begun ended job
     begun=$(date +%s%N)
-    job=$(sbatch --parsable --array="1-$tasks" --output=/dev/null --wrap="$1")
+    job=$(sbatch --parsable --array="1-$tasks" --output=/dev/null --wrap="$1") || fail "sbatch refuses the array"
     sbatch --quiet --wait --dependency="afterok:$job" --kill-on-invalid-dep=yes --output=/dev/null \
         --wrap="date +%s%N >$(printf %q "$folder/ended")" || fail "a task of job $job failed"
     ended=$(<"$folder/ended")
     echo "$(((ended - begun) / 1000000 / tasks))"
 }
 
-echo "empty task: $(measure true) ms"
-echo "task that starts videg: $(measure "$(printf %q "$videg") --version") ms"
+# Not within the arguments of a command, whose end would be that of the command.
+empty=$(measure true)
+echo "empty task: $empty ms"
+starting=$(measure "$(printf %q "$videg") --version")
+echo "task that starts videg: $starting ms"

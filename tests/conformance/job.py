@@ -10,6 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
+import differences  # noqa: E402
 import harness  # noqa: E402
 
 HARVESTER, CIRCUIT = "VibroImpactHarvester", "HarvestingCircuit"
@@ -58,7 +59,7 @@ def read_table(path: Path) -> Series:
 
 def worst_difference(found: Series, expected: Series) -> float:
     """Largest difference of any output, relative to the largest value of that output."""
-    return max(difference(found[name], values) for name, values in expected.items())
+    return differences.worst(difference(found[name], values) for name, values in expected.items())
 
 
 def difference(found: np.ndarray, expected: np.ndarray) -> float:

@@ -1,8 +1,9 @@
 """What was found about one FMU with one tool, and the table of all that."""
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import differences
 
 BOUND = 1e-9
 """Largest difference that passes, relative to the largest value of an output."""
@@ -25,10 +26,8 @@ class Record:
         return not self.complaints and (self.worst is None or self.worst <= BOUND)
 
     def difference(self) -> str:
-        """The worst difference, rounded up to a power of ten: its digits may change from machine to machine."""
-        if self.worst is None:
-            return ""
-        return "none" if self.worst == 0.0 else f"at most {10.0 ** math.ceil(math.log10(self.worst)):.0e}"
+        """The worst difference, as the page has it."""
+        return "" if self.worst is None else differences.rounded(self.worst)
 
     def line(self) -> str:
         """A line for the terminal."""

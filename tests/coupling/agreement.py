@@ -1,10 +1,10 @@
 """The circuit as solver, as FMU, in ngspice and in a system package."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
+import differences
 import harness
 import system
 
@@ -37,9 +37,7 @@ class Comparison:
         return f"{result}  {self.what} against {self.reference}: {self.worst:.1e} of {self.bound:.0e}"
 
     def row(self) -> str:
-        """The worst difference is rounded up to a power of ten: its digits may change from machine to machine."""
-        worst = "none" if self.worst == 0.0 else f"at most {10.0 ** math.ceil(math.log10(self.worst)):.0e}"
-        result = "agrees" if self.passed else "DIFFERS"
+        result, worst = "agrees" if self.passed else "DIFFERS", differences.rounded(self.worst)
         return f"| {self.what} | {self.reference} | {result} | {self.bound:.0e} | {worst} | {self.reason} |\n"
 
 
@@ -48,7 +46,7 @@ def worst_difference(found: system.Series, expected: system.Series) -> float:
     largest = {name: float(np.abs(values).max()) for name, values in expected.items()}
     energy = max(value for name, value in largest.items() if name.endswith(".energy"))
     scale = {name: energy if name.endswith(".energy") else value for name, value in largest.items()}
-    return max(float(np.abs(found[name] - values).max()) / scale[name] for name, values in expected.items())
+    return differences.worst(np.abs(found[name] - values).max() / scale[name] for name, values in expected.items())
 
 
 def compare() -> list[Comparison]:

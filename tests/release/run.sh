@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A release made on this machine, as far as that goes: libraries for Linux and Windows, one that stands in for macOS, merged into
-# FMUs, checked, put inside the program, packed, summed up, and run without source tree and Cargo. Then `cargo install`, as
-# README.md has it. Installs what is missing to build for Windows (mingw-w64, the Rust target).
+# FMUs, checked, put inside the program, packed, summed up, and run without source tree and Cargo. Installs what is missing to
+# build for Windows (mingw-w64, the Rust target).
 #
 # Environment: OLD_GLIBC=1 builds for Linux as released, which takes zig and a second build of everything.
 set -euo pipefail

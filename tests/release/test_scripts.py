@@ -71,6 +71,7 @@ def test_the_version_is_that_of_the_workspace_and_the_same_everywhere(tree: Path
     [
         ("model/Cargo.toml", "version.workspace = true", f'version = "{BREAKING}"', f"package videg-model has version {BREAKING}"),
         ("Cargo.toml", f'path = "circuit", version = "{VERSION}"', 'path = "circuit", version = "0.0.9"', "asks for videg-circuit ^0.0.9"),
+        ("fuzz/Cargo.lock", f'name = "videg-model"\nversion = "{VERSION}"', 'name = "videg-model"\nversion = "0.0.9"', "fuzz/Cargo.lock has videg-model 0.0.9"),
         ("modelDescription/HarvestingCircuit.xml", f'version="{VERSION}"', 'version="0.0.9"', "not in modelDescription/HarvestingCircuit.xml"),
         ("modelDescription/VibroImpactHarvester.xml", f"videg {VERSION}", "videg 0.0.9", "VibroImpactHarvester.xml names another generationTool"),
         ("CHANGELOG.md", "## [Unreleased]\n", "", f'the first section is "## [{VERSION}] - 2026-01-31"'),
@@ -115,6 +116,32 @@ def test_checksums_name_every_file_and_hold(tmp_path: Path, tree: Path) -> None:
         lines = (folder / "SHA256SUMS").read_text().splitlines()
         assert lines == [f"{hashlib.sha256(content).hexdigest()} *{name}" for name, content in contents.items()]
     subprocess.run(["sha256sum", "--check", "--strict", "SHA256SUMS"], cwd=folder, check=True, capture_output=True)
+
+
+def test_files_are_those_that_other_jobs_made_and_no_others(tmp_path: Path, tree: Path) -> None:
+    folder, sums = tmp_path / "files", []
+    folder.mkdir()
+    assert "no file in" in run(tree, "sums.sh", folder).stderr
+    for job, name in (("program", "first.tar.gz"), ("libraries", "win64/second.dll")):
+        for file in (tmp_path / job / name, folder / name):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(job)
+        sums.append(run(tree, "sums.sh", tmp_path / job).stdout)
+        assert sums[-1] and "\n" not in sums[-1]
+    found = run(tree, "sums.sh", folder, *sums)
+    assert found.returncode == 0 and found.stdout.count("\n") == 2, found.stderr
+
+    def refusal(*sums: str) -> str:
+        found = run(tree, "sums.sh", folder, *sums)
+        assert found.returncode == 1
+        return found.stderr
+
+    assert "first.tar.gz" in refusal(sums[1]) and "second.dll" in refusal(sums[0])
+    assert "a job has handed on no checksums" in refusal(*sums, "")
+    (folder / "first.tar.gz").write_text("another")
+    assert "first.tar.gz" in refusal(*sums)
+    (folder / "first.tar.gz").unlink()
+    assert "first.tar.gz" in refusal(*sums)
 
 
 def packed(tree: Path, name: str, program: str) -> Path:

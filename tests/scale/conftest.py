@@ -1,8 +1,10 @@
 """The scripts beyond one machine, run as a user runs them."""
 
 import os
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -24,8 +26,9 @@ RESULTS = ["sweep.csv", "sweep.parquet", "sweep.json"]
 
 @pytest.fixture
 def start() -> Callable[..., subprocess.Popen]:
-    """Starts a script of scale/ with arguments; what is left of it ends with the test."""
+    """Starts a script of scale/ with arguments; what is left of it, processes and temporary files, ends with the test."""
     processes = []
+    temporary = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
 
     def begin(script: str, *arguments: object, **environment: str) -> subprocess.Popen:
         path = harness.ROOT / "scale" / script
@@ -36,15 +39,19 @@ def start() -> Callable[..., subprocess.Popen]:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,
-                env=os.environ | {"VIDEG": str(VIDEG)} | environment,
+                env=os.environ | {"VIDEG": str(VIDEG), "TMPDIR": temporary.name} | environment,
+                start_new_session=True,
             )
         )
         return processes[-1]
 
-    yield begin
-    for process in processes:
-        process.kill()
-        process.communicate()
+    with temporary:
+        yield begin
+        for process in processes:
+            # What it started holds its pipes, too. Once it has been waited for, nothing does, and its number may be another's.
+            if process.returncode is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate(timeout=30)
 
 
 @pytest.fixture

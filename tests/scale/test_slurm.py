@@ -15,16 +15,39 @@ PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory) -> str:
-    """The configuration of a cluster."""
+def slurm() -> None:
     if not all(shutil.which(name, path=PATH) for name in ("munged", "slurmctld", "slurmd", "sbatch")):
         assert not os.environ.get("VIDEG_ALL_TOOLS"), "Slurm is not installed"
         pytest.skip("Slurm is not installed")
+
+
+@pytest.fixture(scope="module")
+def cluster(slurm, tmp_path_factory) -> str:
+    """The configuration of a cluster."""
     folder = tmp_path_factory.mktemp("slurm") / "cluster"
     loopback = harness.ROOT / "scale" / "slurm" / "loopback.sh"
     subprocess.run([loopback, "start", folder], check=True)
     yield str(folder / "slurm.conf")
     subprocess.run([loopback, "stop", folder], check=True)
+
+
+def test_a_daemon_that_does_not_start_is_told(run, slurm, tmp_path):
+    """A socket has no more than 107 characters."""
+    folder = tmp_path / ("x" * 100)
+    ended = run("slurm/loopback.sh", "start", folder)
+    assert ended.returncode == 2
+    assert ended.stderr == f"loopback.sh: munged, slurmctld or slurmd did not start; see {folder}/*.log\n"
+
+
+def test_an_overhead_that_cannot_be_measured_is_an_error(run, tmp_path):
+    """Neither where Slurm refuses the tasks, nor where one of them fails."""
+    sbatch = tmp_path / "sbatch"
+    environment = {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    for refused, complaint in (("--array", "sbatch refuses the array"), ("--wait", "a task of job 7 failed")):
+        sbatch.write_text(f'#!/bin/sh\necho 7\ncase "$*" in *{refused}*) exit 1; esac\n')
+        sbatch.chmod(0o755)
+        ended = run("slurm/overhead.sh", 2, **environment)
+        assert (ended.returncode, ended.stdout) == (2, "") and complaint in ended.stderr, ended
 
 
 def finished(cluster: str, folder: Path) -> bool:

@@ -1,7 +1,10 @@
 """The coupled system in several tools: series of harvester and circuit at the end of each step, by name."""
 
 import csv
+import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -49,14 +52,28 @@ def fmpy_ssp(package: str, step: float, steps: int) -> Series:
     return {path: result[path] for path in PATHS}
 
 
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """Libraries put their temporary files into a folder that goes away afterwards."""
+    before = os.environ.get("TMPDIR")
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["TMPDIR"] = folder
+        try:
+            yield
+        finally:
+            del os.environ["TMPDIR"]
+            if before is not None:
+                os.environ["TMPDIR"] = before
+
+
 def ecos_ssp(package: str, step: float, steps: int) -> Series:
-    """Ecos's master. Parameter sets of a package go by the name of the case."""
+    """Ecos's master. Parameter sets of a package go by the name of the case. It never removes what it unpacks."""
     from ecospy import EcosLib, EcosSimulation
 
     EcosLib.set_log_level("warn")
     read = [f"{component}::{name}" for component, names in NAMES.items() for name in names]
     rows = []
-    with EcosSimulation(ssp_path=package, step_size=step) as simulation:
+    with temporary_files(), EcosSimulation(ssp_path=package, step_size=step) as simulation:
         assert simulation.init(parameter_set="fig14"), EcosLib.get_last_error()
         for _ in range(steps):
             simulation.step()

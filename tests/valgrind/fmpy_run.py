@@ -35,7 +35,11 @@ def simulate() -> None:
 
 def overrun() -> None:
     """Reads a thousand values by way of one value reference."""
-    folder = fmpy.extract(str(FMUS / f"{NAMES[0]}.fmu"))
+    with tempfile.TemporaryDirectory() as folder:
+        overrun_in(fmpy.extract(str(FMUS / f"{NAMES[0]}.fmu"), folder))
+
+
+def overrun_in(folder: str) -> None:
     description = fmpy.read_model_description(folder)
     slave = FMU2Slave(guid=description.guid, modelIdentifier=NAMES[0], unzipDirectory=folder, instanceName="overrun")
     slave.instantiate()

@@ -33,7 +33,7 @@ wine=$(find_wine)
 export WINEPREFIX="$work/prefix" WINEDEBUG=-all
 x86_64-w64-mingw32-gcc -shared -O1 -o "$work/bcryptprimitives.dll" tests/windows/bcryptprimitives.c -ladvapi32
 # Windows looks for libraries in the folders of PATH, to which Wine adds these; Z: is the root folder.
-WINEPATH="Z:$(printf %s "$work" | tr / '\\')"
+WINEPATH="Z:$(printf %s "$work" | sed 's,/,\\,g')"
 export WINEPATH
 
 echo "building the FMUs for this machine and for win64, and the client for both"
