@@ -71,7 +71,10 @@ impl Clone {
         command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or(env!("CARGO").into()));
         // What a reader has: a terminal of this width, and no variables of `cargo test`.
         command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg").env("FIGURES", "figures");
-        command.env("MATPLOTLIBRC", self.programs.path()).env("SOURCE_DATE_EPOCH", "0");
+        command
+            .env("TMPDIR", self.programs.path())
+            .env("MATPLOTLIBRC", self.programs.path())
+            .env("SOURCE_DATE_EPOCH", "0");
         command.env_remove("RUSTFLAGS").env_remove("UPDATE_BOOK");
         command
     }
