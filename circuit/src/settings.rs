@@ -63,7 +63,7 @@ impl Settings {
     pub const QUANTITIES: &'static [Quantity] = quantities! {
         names::SUPPLY_VOLTAGE, "V", 2000.0, 1e-3, 1e6, circuit.supply_voltage, "U_in: voltage of the supply, Section 4.1";
         names::ZENER_VOLTAGE, "V", 2000.0, 1e-3, 1e6, circuit.zener_voltage, "U_z: voltage at which charge is released to the load, at least U_in, Section 4.1";
-        names::STORAGE_VOLTAGE, "V", 2450.0, 1e-3, 1e6, circuit.storage_voltage, "U_out: voltage of a storage in place of Zener diode and load, at least U_in; 2450 V is near the best for the harvester's start values on a shared node";
+        names::STORAGE_VOLTAGE, "V", 2450.0, 1e-3, 1e6, circuit.storage_voltage, "U_out: voltage of a storage in place of Zener diode and load, at least U_in; 2450 V is near the best for the default case on a shared node";
         names::LOAD_RESISTANCE, "Ohm", 1e9, 0.0, f64::INFINITY, circuit.load_resistance, "R: load resistance, 0 to infinity; the paper gives none";
         names::SATURATION_CURRENT, "A", 1e-13, 1e-30, 1e3, diode.saturation_current, "IS of exponential diodes";
         names::EMISSION_COEFFICIENT, "1", 0.01, 1e-6, 1e3, diode.emission_coefficient, "N of exponential diodes; 0.01 is near-ideal";
