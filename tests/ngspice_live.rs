@@ -135,6 +135,7 @@ fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
         ("echo oh no >&2; exit 7", "ended between 0 s and 0.001 s (exit status: 7): oh no"),
         ("kill -SEGV $$", "ended between 0 s and 0.001 s (signal: 11 (SIGSEGV)"),
         ("sleep 1000", "did not get from 0 s to 0.001 s within 1 s"),
+        ("while sleep 0.3; do echo '{\"points\":[]}'; done", "did not get from 0 s to 0.001 s within 1 s"),
         ("cat >/dev/null & echo '{\"points\":[1'; wait", "ended between 0 s and 0.001 s"),
         ("read job; echo '{\"failure\":\"no circuit\"}'", "no circuit"),
     ] {

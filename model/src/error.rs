@@ -42,7 +42,7 @@ pub enum ModelError {
     /// A contact under a Maxwell force that goes deeper than any membrane.
     #[error(
         "at t = {time} s the membrane is pressed in by {deflection} m: with contact.electrostaticFeedback, at {voltage} V, \
-         at most {bound} m (100 R_2) are resolved"
+         at most {bound} m are resolved"
     )]
     TooDeep {
         /// Time, s.

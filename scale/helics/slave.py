@@ -111,12 +111,12 @@ class Slave:
 
     def start(self, parameters: dict[str, str], until: float, inputs: dict[str, float] | None = None) -> None:
         """Initialises at 0 s for a run up to `until`, s, with these parameters and inputs; an input may be in either."""
-        is_input = {name: self.variable(name).causality == "input" for name in parameters}
-        for name in (name for name in parameters if not is_input[name]):
+        given = [name for name in parameters if self.variable(name).causality == "input"]
+        for name in [name for name in parameters if name not in given]:
             self.set_text(name, parameters[name])
         self._fmu.setupExperiment(startTime=0.0, stopTime=until)
         self._fmu.enterInitializationMode()
-        for name in (name for name in parameters if is_input[name]):
+        for name in given:
             self.set_text(name, parameters[name])
         if inputs:
             self.set(self.references(list(inputs)), list(inputs.values()))

@@ -165,7 +165,7 @@ pub fn export(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>
     Ok(folder_for_ngspice::write(folder, &title, &items)?)
 }
 
-/// That nothing of somebody else's is in the way of an export: before the solvers run for nothing.
+/// That an export may go to the folder, as far as can be told before the solvers run.
 pub fn check_export(folder: &Path) -> anyhow::Result<()> {
     Ok(folder_for_ngspice::check(folder)?)
 }

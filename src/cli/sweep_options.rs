@@ -125,15 +125,9 @@ impl What {
         let until = self.until.or(proposed);
         let settings = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
         let window = self.window.map(|Window(window)| window);
-        scenario::Request { case: self.case.clone(), file: Some(file), settings, until, step: self.step, window }
-            .resolve()
-            .map_err(|error| match error {
-                ScenarioError::Time { name, value, bound } if proposed.is_some() && name == "--until" => {
-                    let name = format!("DefaultExperiment of {}: stopTime", description.model_name);
-                    ScenarioError::Time { name, value, bound: format!("{bound}, or give --until") }
-                }
-                other => other,
-            })
+        let until_place = proposed.map(|_| format!("DefaultExperiment of {}: stopTime", description.model_name));
+        let case = self.case.clone();
+        scenario::Request { case, file: Some(file), settings, until, step: self.step, window, until_place }.resolve()
     }
 }
 
@@ -183,7 +177,7 @@ mod tests {
         }
         let message = times("stopTime=\"0\"").unwrap_err();
         assert!(
-            message.contains(": stopTime = 0 s: must lie from") && message.ends_with("or give --until"),
+            message.starts_with("DefaultExperiment of ") && message.contains(": stopTime = 0 s: must lie"),
             "{message}"
         );
     }

@@ -32,7 +32,7 @@ impl FmuCircuit {
             0.0,
             Some(until),
             settings,
-            |it| &it.name,
+            |it| fmu.description().is_input(&it.name),
             |instance, setting| instance.set_by_name(&setting.name, &setting.value),
         )?;
         let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);

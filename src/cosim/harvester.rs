@@ -112,7 +112,7 @@ impl HarvesterFmu {
             0.0,
             Some(scenario.until),
             settings,
-            |it| &it.name,
+            |it| fmu.description().is_input(&it.name),
             |instance, setting| {
                 let set = instance.set_by_name(&setting.name, &setting.value);
                 set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })

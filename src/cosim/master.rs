@@ -196,8 +196,7 @@ impl Master {
             // An impact that was not foreseen may hide a whole pulse.
             let surprise = to.impacts > from.impacts && next < knot;
             let error = if surprise { f64::INFINITY } else { self.error(from, &to) };
-            // Rounding must not make a shortest step longer than it is.
-            let shortest = to.step <= 1.5 * self.schedule.closest();
+            let shortest = next <= self.schedule.within(from.time, 0.0, knot);
             if control.accepts(to.step, error) || shortest {
                 self.control = Some(control);
                 self.steps += 1;

@@ -79,10 +79,11 @@ pub struct TracePoint {
 
 /// What a figure shows: the end of the run closely, and the whole of it. Memory does not grow with the number of points.
 pub struct Trace {
+    until: f64,
     /// Distance of the points kept, s, and when the next is due: of the detail and of the overview.
     spacing: [f64; 2],
     due: [f64; 2],
-    /// Communication points near the end of the run: all, unless there are very many.
+    /// Communication points near the end of the run, but those that lie closer to the one before than could be seen.
     pub detail: Vec<TracePoint>,
     /// Points of the whole run, about evenly spaced.
     pub overview: Vec<TracePoint>,
@@ -97,7 +98,7 @@ impl Trace {
     /// A trace of a run up to `until`, s, with its last `detail`, s, closely.
     pub fn new(until: f64, detail: f64) -> Self {
         let spacing = [detail / Self::DETAIL, until / Self::OVERVIEW];
-        Self { spacing, due: [until - detail, 0.0], detail: Vec::new(), overview: Vec::new() }
+        Self { until, spacing, due: [until - detail, 0.0], detail: Vec::new(), overview: Vec::new() }
     }
 }
 
@@ -105,7 +106,7 @@ impl Observer for Trace {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
         let point = || TracePoint { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() };
         let [detail_due, due] = &mut self.due;
-        if row.time >= *detail_due {
+        if row.time >= *detail_due || row.time >= self.until {
             self.detail.push(point());
             *detail_due = row.time + self.spacing[0];
         }

@@ -21,13 +21,31 @@ impl Schedule {
     /// The next communication point after `now`, s, if a capacitance has a kink or an extremum at `knot`, s. Points of
     /// the grid are products, not sums, so that they do not drift.
     pub fn next(&self, now: f64, knot: f64) -> f64 {
-        let index = ((now + self.closest()) / self.step).floor() + 1.0;
-        self.land(now, index * self.step, knot)
+        let target = (((now + self.closest()) / self.step).floor() + 1.0) * self.step;
+        let stop = self.stop(now);
+        // A hair after the point of the grid rather than a hair before the edge or the end.
+        let target = if stop < target + self.closest() { stop } else { target };
+        self.land(now, target, knot)
     }
 
-    /// The next communication point some `step`, s, after `now` or earlier, off the grid; the rest as for [`Schedule::next`].
+    /// The next communication point at most `step`, s, after `now`, or later where that would be too short a step; off the grid,
+    /// the rest as for [`Schedule::next`].
     pub fn within(&self, now: f64, step: f64, knot: f64) -> f64 {
-        self.land(now, now + step.max(self.closest()), knot)
+        let (stop, closest) = (self.stop(now), self.closest());
+        let target = now + step.max(closest);
+        let target = if stop <= target || stop - now < 2.0 * closest {
+            stop
+        } else {
+            // The step after this one is not too short, either.
+            target.min(stop - closest)
+        };
+        self.land(now, target, knot)
+    }
+
+    /// The edge of the window, or the end, that comes next after `now`, s: averages are those of the window only if its
+    /// edges are met.
+    fn stop(&self, now: f64) -> f64 {
+        self.window.into_iter().filter(|&edge| edge > now).fold(self.until, f64::min)
     }
 
     /// Length of a step below which no step is made shorter on purpose, s.
@@ -37,11 +55,6 @@ impl Schedule {
 
     fn land(&self, now: f64, target: f64, knot: f64) -> f64 {
         let closest = self.closest();
-        // Stop a hair after `until` rather than a hair before it.
-        let target = if self.until - target < closest { self.until } else { target };
-        // Averages are those of the window only if its edges are met: one that is just behind takes the place of the point.
-        let edges = self.window.into_iter().filter(|&edge| now < edge && edge < target + closest);
-        let target = edges.reduce(f64::min).unwrap_or(target).min(self.until);
         // A knot that is too close is passed with the shortest step, so that it does not hide the one behind it.
         let landing = knot.max(now + closest);
         if landing < target - closest { landing } else { target }
@@ -95,7 +108,24 @@ mod tests {
         assert_eq!(next(0.2, 0.2, f64::MAX), 0.3);
         assert_eq!(next(0.3, 0.5, 0.4), 0.4);
         assert_eq!(next(0.4, 1e-9, f64::MAX), 0.4 + 0.25e-3);
-        assert_eq!(next(0.95, 0.149_9, f64::MAX), 1.1);
+        assert_eq!(next(0.95, 0.149_9, f64::MAX), 1.1 - 0.25e-3);
+        assert_eq!(next(1.1 - 0.25e-3, 0.1, f64::MAX), 1.1);
+    }
+
+    #[test]
+    fn a_step_off_the_grid_is_no_longer_than_asked_for_unless_it_is_the_shortest() {
+        for edge in (1..120).map(|k| f64::from(k) * 0.1 * 0.25e-3) {
+            for knot in [f64::MAX, 1e-4, 3e-4, 6e-4] {
+                let schedule = Schedule::new(0.25, 0.1, [edge, 0.1]);
+                let shortest = schedule.within(0.0, 0.0, knot);
+                for step in (0..300).map(|k| 1e-5 * f64::from(k)) {
+                    let next = schedule.within(0.0, step, knot);
+                    assert!(next > 0.0 && (next <= step || next <= shortest), "{edge} {knot} {step}: {next} s");
+                    let is_left = edge <= next || edge - next >= 0.999 * schedule.closest();
+                    assert!(is_left || next == knot, "{edge} {knot} {step}: {next} s is a hair before the edge");
+                }
+            }
+        }
     }
 
     #[test]

@@ -66,16 +66,21 @@ impl Case {
         Ok(Self { table, mechanics, impacts: log.impacts, rest, bias_voltage, warnings })
     }
 
-    /// Smallest scale of a deviation of charges, C: about as much as an impact moves, and so much that what diodes leak in a
-    /// run, but ideal ones do not, is within the tolerances.
+    /// Smallest scale of a deviation of charges, C: about as much as an impact moves.
     pub fn least_charge(&self, settings: &Settings) -> f64 {
         /// In units of what the membranes hold at rest.
         const IMPACT: f64 = 0.1;
-        /// In units of what charging and release diode leak.
-        const LEAKED: f64 = 1e3;
-        let held = settings.circuit.supply_voltage * self.rest.iter().sum::<f64>();
-        let leaked = 2.0 * settings.diode.saturation_current * self.table.until();
-        (IMPACT * held).max(LEAKED * leaked)
+        IMPACT * settings.circuit.supply_voltage * self.rest.iter().sum::<f64>()
+    }
+
+    /// Scale of deviations of energies, J: the largest of what the supply gives, what the load gets, and what an impact moves.
+    pub fn energy_scale(&self, settings: &Settings, supply: f64, load: f64) -> f64 {
+        supply.abs().max(load.abs()).max(self.least_charge(settings) * settings.circuit.supply_voltage)
+    }
+
+    /// Charge, C, that charging and release diode leak by the end of the run. Ideal ones do not.
+    pub fn leaked_charge(&self, settings: &Settings) -> f64 {
+        2.0 * settings.diode.saturation_current * self.table.until()
     }
 
     /// The one `C_3` / `C_2` to choose a voltage of release by.

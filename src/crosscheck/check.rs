@@ -67,12 +67,14 @@ const VOLTAGE: f64 = 0.1;
 const RELATIVE_VOLTAGE: f64 = 1e-5;
 
 impl Agreement {
-    /// Compares `values`, relative to `scale`, or to the larger of each two without one.
-    pub fn of(values: &Values, scale: Option<f64>) -> Option<Self> {
+    /// Compares `values`, relative to `scale`, or to the larger of each two without one. By up to `leaked`, in their unit, ideal
+    /// diodes may differ from others.
+    pub fn of(values: &Values, scale: Option<f64>, leaked: f64) -> Option<Self> {
         let compared = PAIRS.iter().filter_map(|&(one, other, tolerance)| {
             let (a, b) = (values.get(one)?, values.get(other)?);
             let scale = scale.map_or(a.abs().max(b.abs()), f64::abs);
             let deviation = if a == b { 0.0 } else { (a - b).abs() / scale };
+            let tolerance = if one == Solver::Ideal && leaked > 0.0 { tolerance + leaked / scale } else { tolerance };
             Some(Self::new(format!("{} and {}", one.name(), other.name()), deviation, tolerance))
         });
         Self::worst(compared)
@@ -161,22 +163,29 @@ mod tests {
     #[test]
     fn the_pair_that_uses_up_most_of_its_tolerance_is_named() {
         // 2.9e-4 of 3e-4 is worse than 9e-4 of 1e-3.
-        let found = Agreement::of(&values(1.0, 1.000_61, 1.000_9, 1.000_9), Some(1.0)).unwrap();
+        let found = Agreement::of(&values(1.0, 1.000_61, 1.000_9, 1.000_9), Some(1.0), 0.0).unwrap();
         assert!(found.agree && found.between.starts_with("embedded, exponential"), "{found:?}");
-        let found = Agreement::of(&values(1.0, 1.0, 1.0, 1.002), None).unwrap();
+        let found = Agreement::of(&values(1.0, 1.0, 1.0, 1.002), None, 0.0).unwrap();
         assert!(!found.agree && found.between.contains("live"), "{found:?}");
     }
 
     #[test]
+    fn what_diodes_leak_is_allowed_to_ideal_ones_alone() {
+        let of =
+            |ideal, exponential| Agreement::of(&values(ideal, exponential, 1.0, 1.0), Some(1.0), 0.01).unwrap().agree;
+        assert!(of(1.01, 1.0) && !of(1.012, 1.0) && !of(1.0, 1.001));
+    }
+
+    #[test]
     fn what_is_not_a_number_agrees_with_nothing() {
-        let found = Agreement::of(&values(1.0, 1.0, f64::NAN, 1.0), Some(1.0)).unwrap();
+        let found = Agreement::of(&values(1.0, 1.0, f64::NAN, 1.0), Some(1.0), 0.0).unwrap();
         assert!(!found.agree, "{found:?}");
         assert!(!Claim::new("", f64::NAN, 1.0).holds);
     }
 
     #[test]
     fn equal_zeros_agree_and_a_single_solver_has_nothing_to_agree_with() {
-        assert!(Agreement::of(&values(0.0, 0.0, 0.0, 0.0), None).unwrap().agree);
-        assert_eq!(Agreement::of(&Values { ngspice_batch: Some(1.0), ..Values::default() }, None), None);
+        assert!(Agreement::of(&values(0.0, 0.0, 0.0, 0.0), None, 0.0).unwrap().agree);
+        assert_eq!(Agreement::of(&Values { ngspice_batch: Some(1.0), ..Values::default() }, None, 0.0), None);
     }
 }

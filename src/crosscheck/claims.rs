@@ -47,24 +47,6 @@ fn hold(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim>
     Some(Claim::new(says, (found - analytic) / scale, CLAIM))
 }
 
-/// A check of solvers relative to `moved`, and of a claim that comes to nothing relative to `supplied`.
-fn scaled(
-    name: &str,
-    unit: &'static str,
-    values: Values,
-    [moved, supplied]: [f64; 2],
-    claim: Option<(&str, f64)>,
-) -> Check {
-    Check {
-        name: name.to_owned(),
-        unit,
-        analytic: claim.map(|(_, analytic)| analytic),
-        values,
-        agreement: Agreement::of(&values, Some(moved)),
-        claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, supplied)),
-    }
-}
-
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -87,10 +69,34 @@ impl Findings<'_> {
         self.settings.circuit.topology
     }
 
+    /// A check of solvers relative to `moved`, and of a claim that comes to nothing relative to `supplied`.
+    fn scaled(
+        &self,
+        name: &str,
+        unit: &'static str,
+        values: Values,
+        [moved, supplied]: [f64; 2],
+        claim: Option<(&str, f64)>,
+    ) -> Check {
+        let leaked = self.in_unit(self.case.leaked_charge(self.settings), unit);
+        Check {
+            name: name.to_owned(),
+            unit,
+            analytic: claim.map(|(_, analytic)| analytic),
+            values,
+            agreement: Agreement::of(&values, Some(moved), leaked),
+            claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, supplied)),
+        }
+    }
+
+    /// A charge, C, as it is or as the energy, J, that the supply gives with it.
+    fn in_unit(&self, charge: f64, unit: &str) -> f64 {
+        if unit == "C" { charge } else { charge * self.supply_voltage() }
+    }
+
     /// Smallest scale of deviations of an energy, J, or a charge, C.
     fn least(&self, unit: &str) -> f64 {
-        let charge = self.case.least_charge(self.settings);
-        if unit == "C" { charge } else { charge * self.supply_voltage() }
+        self.in_unit(self.case.least_charge(self.settings), unit)
     }
 
     /// What differences of energies are relative to, J, by ngspice: the larger of what the supply gives and the load gets,
@@ -98,9 +104,9 @@ impl Findings<'_> {
     fn scales(&self) -> [f64; 2] {
         let [supply, load] = self.run(Solver::Batch).map_or([0.0; 2], |waveforms| {
             let ledger = waveforms.ledger();
-            [ledger.supply.abs(), ledger.load.abs()]
+            [ledger.supply, ledger.load]
         });
-        [supply.max(load), supply].map(|scale| scale.max(self.least("J")))
+        [load, 0.0].map(|load| self.case.energy_scale(self.settings, supply, load))
     }
 
     /// Sum over the impacts of a closed form of the node's `C_2` and `C_3`.
@@ -170,7 +176,7 @@ impl Findings<'_> {
                 unit: "C",
                 analytic: Some(mean(expected)),
                 values,
-                agreement: Agreement::of(&values, None),
+                agreement: Agreement::of(&values, None, 0.0),
                 claim: Some(Claim::new("every single impact moves dQ = U_in dC", deviation, CLAIM)),
             });
         }
@@ -188,12 +194,12 @@ impl Findings<'_> {
     fn row(&self, name: &str, unit: &'static str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
         let values = self.ledgers(value);
         let own = values.ngspice_batch.map_or(0.0, f64::abs).max(self.least(unit));
-        scaled(name, unit, values, [own; 2], claim)
+        self.scaled(name, unit, values, [own; 2], claim)
     }
 
     /// A difference of energies, relative to the energy moved.
     fn difference(&self, name: &str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
-        scaled(name, "J", self.ledgers(value), self.scales(), claim)
+        self.scaled(name, "J", self.ledgers(value), self.scales(), claim)
     }
 
     fn energies(&self) -> Vec<Check> {

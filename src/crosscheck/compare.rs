@@ -21,9 +21,9 @@ pub struct Compared {
     pub ngspice: CircuitSummary,
     /// Sum of `(C_3 U_in - C_2 U_r) (U_r - U_in)`, less what it takes to fill the membranes to `U_r` once, J.
     pub closed_form: f64,
-    /// Smallest scale of deviations of energies, J.
+    /// Scale of deviations of energies, J.
     #[serde(skip)]
-    least: f64,
+    scale: f64,
 }
 
 impl Compared {
@@ -43,8 +43,8 @@ impl Compared {
         let fill = supply * case.rest.iter().sum::<f64>() * (release - supply);
         let gain: f64 = gain.sum();
         let closed_form = if gain > 0.0 { gain - fill } else { 0.0 };
-        let least = case.least_charge(settings) * supply;
-        Self { label, settings: *settings, embedded, ngspice, closed_form, least }
+        let scale = case.energy_scale(settings, ngspice.energy.supply, ngspice.energy.load);
+        Self { label, settings: *settings, embedded, ngspice, closed_form, scale }
     }
 }
 
@@ -59,9 +59,7 @@ pub fn comparison_checks(circuits: &[Compared]) -> Vec<Check> {
 
 fn row(circuit: &Compared, quantity: &str, value: fn(&Energies) -> f64) -> Check {
     let (a, b) = (value(&circuit.embedded.energy), value(&circuit.ngspice.energy));
-    let Energies { supply, load, .. } = circuit.ngspice.energy;
-    let scale = supply.abs().max(load.abs()).max(circuit.least);
-    let deviation = if a == b { 0.0 } else { (a - b).abs() / scale };
+    let deviation = if a == b { 0.0 } else { (a - b).abs() / circuit.scale };
     let between = format!("{} and {}", Solver::Exponential.name(), Solver::Batch.name());
     Check {
         name: format!("{}: {quantity}", circuit.label),

@@ -217,11 +217,14 @@ pub fn write(folder: &Path, title: &str, items: &[Item]) -> Result<Vec<PathBuf>,
     Ok(files)
 }
 
-/// That the folder is empty, not there, or of an earlier export.
+/// That the folder is none yet, or one whose page, if it has one, is of an earlier export.
 ///
 /// # Errors
 /// Something else that is there.
 pub fn check(folder: &Path) -> Result<(), ExportError> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(ExportError::Foreign(folder.to_owned()));
+    }
     refuse_foreign(&folder.join(PAGE), &[folder.join(PAGE)])
 }
 

@@ -5,7 +5,7 @@ use std::ptr;
 
 use fmi2_abi::{fmi2Boolean, fmi2False};
 
-use super::description::{Causality, Kind, Variable};
+use super::description::{Kind, Variable};
 use super::error::{FmiError, Result, ValueError};
 use super::instance::Instance;
 use super::value::Value;
@@ -199,12 +199,10 @@ impl Instance {
         start: f64,
         stop: Option<f64>,
         choices: &[T],
-        name: impl Fn(&T) -> &str,
+        is_input: impl Fn(&T) -> bool,
         mut set: impl FnMut(&mut Self, &T) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
-        let is_input =
-            |choice: &&T| self.description().variable(name(choice)).is_ok_and(|it| it.causality == Causality::Input);
-        let (inputs, others): (Vec<_>, Vec<_>) = choices.iter().partition(is_input);
+        let (inputs, others): (Vec<_>, Vec<_>) = choices.iter().partition(|choice| is_input(choice));
         others.into_iter().try_for_each(|choice| set(self, choice))?;
         self.setup_experiment(start, stop, None)?;
         self.enter_initialization_mode()?;

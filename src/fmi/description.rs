@@ -248,6 +248,11 @@ impl Variable {
                 || matches!(self.initial, Some(Initial::Exact | Initial::Approx)))
     }
 
+    /// Whether it is an input.
+    pub fn is_input(&self) -> bool {
+        self.causality == Causality::Input
+    }
+
     /// The unit of a Real that has one.
     pub fn unit(&self) -> Option<&str> {
         match &self.kind {
@@ -258,6 +263,11 @@ impl Variable {
 }
 
 impl ModelDescription {
+    /// Whether there is an input of this name.
+    pub fn is_input(&self, name: &str) -> bool {
+        self.variable(name).is_ok_and(Variable::is_input)
+    }
+
     /// Largest document that [`ModelDescription::parse`] takes, in bytes.
     pub const MAX_BYTES: u64 = 32 << 20;
 

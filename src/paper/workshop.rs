@@ -87,7 +87,7 @@ impl Workshop<'_> {
             0.0,
             None,
             settings,
-            |it| &it.name,
+            |it| self.fmu.description().is_input(&it.name),
             |instance, setting| instance.set_by_name(&setting.name, &setting.value),
         )?;
         instance.exit_initialization_mode()?;

@@ -128,6 +128,8 @@ pub struct Request {
     pub step: Option<f64>,
     /// Averaging window, s.
     pub window: Option<[f64; 2]>,
+    /// What the end is called in errors, if neither option nor file says it.
+    pub until_place: Option<String>,
 }
 
 /// A complete, checked answer to what is to be run.
@@ -176,7 +178,10 @@ impl Request {
         let mut changes = file.settings;
         changes.extend(self.settings);
         let mut description = file.description.unwrap_or_else(|| case.description.to_owned());
-        let others = changes.iter().filter(|change| !preset::has(case, change));
+        // The last of a name wins.
+        let is_last = |(k, change): &(usize, &Setting)| changes[k + 1..].iter().all(|later| later.name != change.name);
+        let others = changes.iter().enumerate().filter(is_last).map(|(_, change)| change);
+        let others = others.filter(|change| !preset::has(case, change));
         let shown: Vec<_> = others.map(|change| format!("{} = {}", change.name, change.value)).collect();
         let as_printed = shown.is_empty();
         if !as_printed {
@@ -235,6 +240,10 @@ mod tests {
             assert!(!scenario.description.contains("changed: "), "{text}");
             assert_eq!(scenario.changes().len(), 1, "it is set all the same");
         }
+        let settings =
+            ["membrane.restitution=0.7", "membrane.restitution=0.6"].map(|text| Setting::parse(text).unwrap());
+        let scenario = Request { settings: settings.into(), ..Request::default() }.resolve().unwrap();
+        assert!(!scenario.description.contains("changed: "), "the last of a name wins: {}", scenario.description);
     }
 
     #[test]

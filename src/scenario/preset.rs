@@ -12,7 +12,7 @@ pub(super) fn find(name: &str) -> Result<&'static Case, String> {
     Case::find(name).ok_or_else(|| Case::ALL.iter().map(|case| case.name).collect::<Vec<_>>().join(", "))
 }
 
-/// Whether the case has the value of `setting` anyway.
+/// Whether `setting` is a number that the case has anyway.
 pub(super) fn has(case: &Case, setting: &Setting) -> bool {
     let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == setting.name);
     let value = setting.value.trim().parse::<f64>().ok();

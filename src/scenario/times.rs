@@ -33,7 +33,8 @@ pub(super) fn resolve(request: &Request, file: &CaseFile) -> Result<Times, Scena
     let step = request.step.or(file.step).unwrap_or_else(|| DEFAULT_STEP.min(until));
     let window = request.window.or(file.window).unwrap_or_else(|| default_window(until));
     let is_in_file = |option: bool, key: bool| file.origin(option || !key);
-    let until_place = is_in_file(request.until.is_some(), file.until.is_some()).key("until");
+    let said = || is_in_file(request.until.is_some(), file.until.is_some()).key("until");
+    let until_place = request.until_place.clone().unwrap_or_else(said);
     check_end(until, &until_place)?;
     let place = is_in_file(request.step.is_some(), file.step.is_some()).key("step");
     check_step(step, &place, until, &until_place)?;
@@ -58,8 +59,7 @@ fn check_end(until: f64, place: &str) -> Result<(), ScenarioError> {
     fail(place, until, format!("must lie from {SHORTEST} to {LONGEST:e} s"))
 }
 
-/// That a `step`, s, which nobody asked for divides a run up to `until`, s, into no more parts than it may have; else
-/// what is allowed.
+/// That a `step`, s, which nobody asked for divides a run up to `until`, s, into no more parts than it may have.
 ///
 /// # Errors
 /// What is allowed.

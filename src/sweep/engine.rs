@@ -178,7 +178,7 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
         0.0,
         None,
         &choices,
-        |(variable, _)| &variable.name,
+        |(variable, _)| variable.is_input(),
         |instance, (variable, value)| instance.set_value(variable.value_reference, value),
     )?;
     instance.exit_initialization_mode()?;

@@ -47,11 +47,12 @@ def start() -> Callable[..., subprocess.Popen]:
 
     with temporary:
         yield begin
-        for process in processes:
-            # What it started holds its pipes, too. Once it has been waited for, nothing does, and its number may be another's.
-            if process.returncode is None:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.communicate(timeout=30)
+        # What it started holds its pipes, too. Once it has been waited for, nothing does, and its number may be another's.
+        left = [process for process in processes if process.returncode is None]
+        for process in left:
+            os.killpg(process.pid, signal.SIGKILL)
+        for process in left:
+            process.communicate(timeout=30)
 
 
 @pytest.fixture

@@ -18,6 +18,9 @@ const MAX_PERIODS: f64 = if cfg!(fuzzing) { 1e4 } else { 1e7 };
 /// The same, in hold intervals of the phase noise.
 const MAX_HOLDS: f64 = if cfg!(fuzzing) { 1e5 } else { 1e8 };
 
+/// The same under the compliant law, where a hold interval within a contact takes some 10 us.
+const MAX_COMPLIANT_HOLDS: f64 = if cfg!(fuzzing) { 1e3 } else { 1e7 };
+
 /// The harvester as a slave.
 pub struct Harvester {
     pub(crate) parameters: Parameters,
@@ -83,7 +86,8 @@ impl Harvester {
         let (longest, bound) = if h * frequency > MAX_PERIODS {
             (MAX_PERIODS / frequency, format!("{MAX_PERIODS} periods"))
         } else {
-            (MAX_HOLDS * noise_hold, format!("{MAX_HOLDS} times excitation.noiseHold"))
+            let holds = most_holds(&self.parameters);
+            (holds * noise_hold, format!("{holds} times excitation.noiseHold"))
         };
         let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {bound}");
         SlaveError::discard(t, message)
@@ -263,7 +267,12 @@ fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveErr
 /// Whether a step of `h`, s, is more work than anybody waits for.
 fn is_too_long(parameters: &Parameters, h: f64) -> bool {
     let Parameters { frequency, phase_noise, noise_hold, .. } = *parameters;
-    h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > MAX_HOLDS * noise_hold
+    h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > most_holds(parameters) * noise_hold
+}
+
+/// Hold intervals that a step may have.
+fn most_holds(parameters: &Parameters) -> f64 {
+    if parameters.contact_law == ContactLaw::Compliant { MAX_COMPLIANT_HOLDS } else { MAX_HOLDS }
 }
 
 /// Why no step begins at `t`, s: the model is far behind, as only a forged state has it, and could take for ever to get there.

@@ -4,14 +4,13 @@
 mod common;
 
 use VibroImpactHarvester::Harvester;
-use common::{fresh, get, outputs, row, set, step};
+use common::{choose, fresh, get, outputs, row, set, step};
 use fmi2_export::{Kind, Logger, Slave, StateReader, StateWriter};
 
 /// fig14's masses and membranes from the zero start, with the options of the compliant law that are named.
 fn compliant(options: &[&str]) -> Harvester {
     let mut slave = fresh(&[("initial.ballVelocity", 0.3)]);
-    let Kind::Enumeration(law) = row("contact.law").kind() else { panic!("contact.law is no enumeration") };
-    law.set.expect("a setter")(&mut slave, 2);
+    choose(&mut slave, "contact.law", 2);
     for name in options {
         let Kind::Boolean(option) = row(name).kind() else { panic!("{name} is no Boolean") };
         option.set.expect("a setter")(&mut slave, true);

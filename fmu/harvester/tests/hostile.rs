@@ -50,4 +50,9 @@ fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {
         assert_eq!((error.severity(), error.to_string().as_str()), (Severity::Discard, bound));
         common::step(&mut slave, 0.0, 1e-3);
     }
+    let mut compliant = common::fresh(noisy);
+    common::choose(&mut compliant, "contact.law", 2);
+    compliant.initialize(&Logger::silent()).unwrap();
+    let error = compliant.do_step(0.0, 1e4, &Logger::silent()).unwrap_err().to_string();
+    assert!(error.ends_with("at most 9765.625 s, 10000000 times excitation.noiseHold"), "{error}");
 }

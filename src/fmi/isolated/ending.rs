@@ -52,8 +52,7 @@ impl Ending {
 
     /// The bound on memory, a usual reason to crash.
     fn memory(&self) -> String {
-        let bound = self.bounds.memory.filter(|_| cfg!(unix));
-        bound.map_or_else(String::new, |bytes| format!("; memory limit {} MiB", bytes >> 20))
+        self.bounds.memory.map_or_else(String::new, |bytes| format!("; memory limit {} MiB", bytes >> 20))
     }
 }
 

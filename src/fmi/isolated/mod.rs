@@ -49,13 +49,17 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// These, or lower ones where the user of this process may not have so much.
+    /// What the worker comes to when it sets these (`worker`): lower ones where the user may not have so much, and none of
+    /// memory where the system has no such bound.
     fn in_force(self) -> Self {
-        #[cfg(unix)]
-        let most = rustix::process::getrlimit(rustix::process::Resource::As).maximum;
-        #[cfg(not(unix))]
-        let most: Option<u64> = None;
-        Self { memory: self.memory.map(|bytes| most.map_or(bytes, |most| bytes.min(most))), ..self }
+        #[cfg(all(unix, not(target_vendor = "apple")))]
+        let memory = {
+            let most = rustix::process::getrlimit(rustix::process::Resource::As).maximum;
+            self.memory.map(|bytes| most.map_or(bytes, |most| bytes.min(most)))
+        };
+        #[cfg(not(all(unix, not(target_vendor = "apple"))))]
+        let memory = None;
+        Self { memory, ..self }
     }
 }
 

@@ -71,8 +71,7 @@ mod confine {
     /// Bounds what this process may take, and ends it when the host is gone.
     pub fn begin(opening: &Opening) -> io::Result<()> {
         bound(Resource::Core, 0).map_err(|cause| refused("core dumps", cause))?;
-        // macOS refuses any bound on the address space.
-        if let Some(bytes) = opening.memory.filter(|_| cfg!(not(target_vendor = "apple"))) {
+        if let Some(bytes) = opening.memory {
             bound(Resource::As, bytes).map_err(|cause| refused("address space", cause))?;
         }
         let host = i32::try_from(opening.host).ok();

@@ -109,8 +109,8 @@ impl<S: Slave> Core<S> {
     /// What no call can lead to is refused: a time that is no number compares with none, and so would switch checks of later
     /// calls off.
     fn check(&self) -> Result<(), StateError> {
-        let invalid = |text: String| Err(StateError::Invalid(text));
         use CallState::{ContinuousTimeMode, EventMode, Fatal, StepCanceled, StepComplete, StepFailed, StepInProgress};
+        let invalid = |text: String| Err(StateError::Invalid(text));
         let is_possible = match self.state {
             StepInProgress | StepCanceled | Fatal => false,
             StepComplete | StepFailed => !self.exchange,

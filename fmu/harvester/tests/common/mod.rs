@@ -44,6 +44,14 @@ pub fn set(slave: &mut Harvester, name: &str, value: f64) {
     }
 }
 
+/// Sets an item of an enumeration.
+pub fn choose(slave: &mut Harvester, name: &str, item: i32) {
+    match row(name).kind() {
+        Kind::Enumeration(spec) => spec.set.expect("a setter")(slave, item),
+        _ => unreachable!("{name} is no enumeration"),
+    }
+}
+
 pub fn get(slave: &Harvester, name: &str) -> f64 {
     match row(name).kind() {
         Kind::Real(spec) => (spec.get)(slave),
