@@ -130,7 +130,7 @@ fn falls_while_it_is_instantiated_freed_and_unloaded_are_told() {
     drop(initialised(&fmu)); // tells nobody, and harms nobody
     let (_folder, fmu) = toy(&["UNLOADING=abort();"]);
     let error = initialised(&fmu).free().unwrap_err().to_string();
-    assert!(error.contains("unloading the library of 'toy' ended its process (signal: 6"), "{error}");
+    assert!(error.contains("unloading the library of 'toy' at t = 0 s ended its process (signal: 6"), "{error}");
 }
 
 #[test]
