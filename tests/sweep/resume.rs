@@ -18,6 +18,9 @@ fn endless(folder: &Path) -> Command {
 const LONG: [&str; 8] =
     ["--design", "lhs", "--points", "400", "--samples", "3", "--vary", "membrane.restitution=0.2:0.9"];
 
+/// A sweep of four runs.
+const FOUR: [&str; 2] = ["--vary", "membrane.restitution=0.2:0.9:4"];
+
 fn long(folder: &Path) -> Command {
     sweep(folder, &[&LONG[..], &NOISY].concat())
 }
@@ -114,11 +117,10 @@ fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
 #[test]
 fn the_same_command_again_does_nothing_and_another_one_is_refused_with_what_differs() {
     let (_guard, folder) = folder();
-    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
-    done(&mut sweep(&folder, &what));
+    done(&mut sweep(&folder, &FOUR));
     let before = fs::read(folder.join("sweep.csv")).unwrap();
     fs::remove_file(folder.join("sweep.parquet")).unwrap();
-    let said = json(&mut sweep(&folder, &what));
+    let said = json(&mut sweep(&folder, &FOUR));
     assert_eq!((&said["resumed_from"], &said["runs"]), (&4.into(), &4.into()));
     assert_eq!(names(&folder), ["sweep.csv", "sweep.json", "sweep.parquet"]);
     for (more, named) in [
@@ -127,27 +129,31 @@ fn the_same_command_again_does_nothing_and_another_one_is_refused_with_what_diff
         (&["--window", "0.5,2"], "window is [1.0], not [0.5]"),
         (&["--samples", "2"], "samples is 1, not 2"),
     ] {
-        let (code, message) = refused(&mut sweep(&folder, &[&what[..], more].concat()));
+        let (code, message) = refused(&mut sweep(&folder, &[&FOUR[..], more].concat()));
         assert_eq!(code, Some(2));
         assert!(message.contains("it belongs to another sweep") && message.contains(named), "{message}");
     }
     assert_eq!(fs::read(folder.join("sweep.csv")).unwrap(), before);
-    done(sweep(&folder, &what).args(["--seed", "2", "--fresh"]));
-    done(&mut sweep(&folder, &[&what[..], &["--seed", "2"]].concat()));
+    done(sweep(&folder, &FOUR).args(["--seed", "2", "--fresh"]));
+    done(&mut sweep(&folder, &[&FOUR[..], &["--seed", "2"]].concat()));
+}
+
+/// That sweep, to go on behind `lines` of its results, as if it had been interrupted there.
+fn interrupted_after(folder: &Path, lines: &[String]) -> Command {
+    fs::remove_file(folder.join("sweep.csv")).unwrap();
+    fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
+    sweep(folder, &FOUR)
 }
 
 #[test]
 fn results_of_another_build_are_not_gone_on_with() {
     let (_guard, folder) = folder();
-    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
-    done(&mut sweep(&folder, &what));
+    done(&mut sweep(&folder, &FOUR));
     let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let mut lines: Vec<_> = text.lines().take(3).map(str::to_owned).collect();
     lines[2] = lines[2].replace(",0.000", ",0.001");
     assert_ne!(lines[2], text.lines().nth(2).unwrap());
-    fs::remove_file(folder.join("sweep.csv")).unwrap();
-    fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
-    let (code, message) = refused(&mut sweep(&folder, &what));
+    let (code, message) = refused(&mut interrupted_after(&folder, &lines));
     assert_eq!(code, Some(2));
     assert!(message.contains("run 1 comes out otherwise here"), "{message}");
 }
@@ -155,33 +161,26 @@ fn results_of_another_build_are_not_gone_on_with() {
 #[test]
 fn a_row_that_failed_stays_and_the_one_before_it_is_compared() {
     let (_guard, folder) = folder();
-    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
-    done(&mut sweep(&folder, &what));
+    done(&mut sweep(&folder, &FOUR));
     let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let mut lines: Vec<_> = text.lines().take(4).map(str::to_owned).collect();
     let cells: Vec<_> = lines[3].split(',').collect();
     lines[3] = format!("{},,,,took too long", cells[..4].join(","));
-    let go_on_with = |lines: &[String]| {
-        let _ = fs::remove_file(folder.join("sweep.csv"));
-        fs::write(folder.join("sweep.csv.part"), lines.join("\n") + "\n").unwrap();
-        sweep(&folder, &what)
-    };
-    done(&mut go_on_with(&lines));
+    done(&mut interrupted_after(&folder, &lines));
     let results = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     assert!(results.starts_with(&lines.join("\n")) && results.lines().last() == text.lines().last(), "{results}");
     lines[2] = lines[2].replace(",0.000", ",0.001");
-    let (_, message) = refused(&mut go_on_with(&lines));
+    let (_, message) = refused(&mut interrupted_after(&folder, &lines));
     assert!(message.contains("run 1 comes out otherwise here"), "{message}");
 }
 
 #[test]
 fn a_complete_file_that_was_changed_is_not_taken_for_complete() {
     let (_guard, folder) = folder();
-    let what = ["--vary", "membrane.restitution=0.2:0.9:4"];
-    done(&mut sweep(&folder, &what));
+    done(&mut sweep(&folder, &FOUR));
     let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     fs::write(folder.join("sweep.csv"), text.replace("\n2,2,", "\n9,2,")).unwrap();
-    let (code, message) = refused(&mut sweep(&folder, &what));
+    let (code, message) = refused(&mut sweep(&folder, &FOUR));
     assert_eq!(code, Some(2));
     assert!(message.contains("line 4 is not run 2 of runs 0 to 3; --fresh begins anew"), "{message}");
 }
