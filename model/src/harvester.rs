@@ -105,14 +105,20 @@ impl Harvester {
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
+        self.go_to(time, &mut show)?;
+        self.look_ahead();
+        Ok(())
+    }
+
+    /// Moves on to `time`, s; what comes after it is not known yet.
+    fn go_to(&mut self, time: f64, show: &mut impl FnMut(&Occurrence)) -> Result<(), ModelError> {
         self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing foreseen
         let mut dues = Dues::NONE;
-        let passed = self.pass_events(time, &mut dues, &mut show);
+        let passed = self.pass_events(time, &mut dues, show);
         self.settle_dues(&mut dues);
         passed?;
         self.follow_noise(time);
         self.time = time;
-        self.look_ahead();
         Ok(())
     }
 
@@ -132,9 +138,10 @@ impl Harvester {
         Ok(())
     }
 
-    /// Makes the next impact known; what is found does not depend on the steps.
+    /// Makes the next impact known, beyond a release, too; what is found does not depend on the steps.
     fn look_ahead(&mut self) {
         self.next_event(self.time + self.horizon(), false);
+        self.look_beyond_release();
         self.calm_until = self.calm();
     }
 }

@@ -34,7 +34,11 @@ impl Harvester {
             return self.partial_at_point(unknown, known);
         }
         if is_force {
-            return self.read(|model| self.of_output(&model.sensitivities(), unknown));
+            let is_foreseen = ["impact.nextTime", "pulse.nextKnot"].contains(&unknown);
+            return self.read(|model| {
+                let pending = if is_foreseen { self.pending(model) } else { None };
+                self.of_output(&pending.as_ref().unwrap_or(model).sensitivities(), unknown)
+            });
         }
         Direction::of_parameter(known).map_or(0.0, |direction| self.initial_partial(unknown, &direction))
     }

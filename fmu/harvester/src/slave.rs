@@ -68,6 +68,21 @@ impl Harvester {
         self.model.as_ref().map_or(f64::NAN, value)
     }
 
+    /// A time, s, that the model foresees under the inputs as they are set, the largest double if there is none.
+    pub(crate) fn foresee(&self, time: impl FnOnce(&Model) -> Option<f64>) -> f64 {
+        self.read(|model| time(self.pending(model).as_ref().unwrap_or(model)).unwrap_or(f64::MAX))
+    }
+
+    /// The model under the inputs as they are set, if it does not run under these: it takes them over with the next step.
+    /// None, too, if it refuses them, which that step says.
+    pub(crate) fn pending(&self, model: &Model) -> Option<Model> {
+        let force = [self.external_force, self.external_force_rate];
+        if self.placed || model.has_inputs(force, self.voltages, self.voltage_rates) {
+            return None;
+        }
+        model.under_inputs(force, self.voltages, self.voltage_rates).ok()
+    }
+
     /// The model, once initialised.
     pub(crate) fn model(&self) -> Option<&Model> {
         self.model.as_ref().ok()

@@ -131,7 +131,7 @@ static INPUTS: [V; 3] = [
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
 // Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
-// connections algebraic, but for the electric fields, which follow the voltages and drive nothing; how the force of a
+// connections algebraic, but for the electric fields and the times foreseen, which drive nothing; how the force of a
 // step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
 // it all the same.
 
@@ -175,6 +175,17 @@ static RIGHT: [V; 3] =
 /// The continuous states.
 pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
 
+/// What the times foreseen depend on.
+const FORESEEN_FROM: [&str; 7] = [
+    "cylinder.position",
+    "cylinder.velocity",
+    "ball.position",
+    "ball.velocity",
+    "externalForce",
+    "left.voltage",
+    "right.voltage",
+];
+
 /// The continuous states, and what depends on them.
 static MOTION: [V; 5] = [
     V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
@@ -214,19 +225,19 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while the external force stays as it is; the largest double if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; if it is a Wiener process or contacts last, within the present one)",
+        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; if it is a Wiener process or contacts last, within the present one)",
     )
     .discrete()
-    .depends_on(&STATES)
-    .get(|slave| slave.read(|model| model.next_impact().unwrap_or(f64::MAX))),
+    .depends_on(&FORESEEN_FROM)
+    .get(|slave| slave.foresee(videg_model::Harvester::next_impact)),
     V::output(
         "pulse.nextKnot",
         "s",
-        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse); the largest double if none",
+        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is foreseen",
     )
     .discrete()
-    .depends_on(&STATES)
-    .get(|slave| slave.read(|model| model.next_knot().unwrap_or(f64::MAX))),
+    .depends_on(&FORESEEN_FROM)
+    .get(|slave| slave.foresee(videg_model::Harvester::next_knot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])

@@ -161,8 +161,8 @@ impl Law<'_> {
             return Recoil::default();
         }
         let (sign, elapsed) = (self.side.sign(), time - self.flight.start);
-        let position = sign * (self.flight.half_travel() + x) - self.flight.derivative(0, elapsed);
-        let velocity = sign * v - self.flight.derivative(1, elapsed);
+        let [dz, rate] = self.flight.at(elapsed);
+        let (position, velocity) = (sign * (self.flight.half_travel() + x) - dz, sign * v - rate);
         Recoil { position: share * position, velocity: share * velocity }
     }
 }

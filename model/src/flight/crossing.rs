@@ -5,7 +5,7 @@
 //! is the last. The first place is one where sine and cosine are known beforehand.
 
 use super::zeros::Knot;
-use super::{Flight, Side};
+use super::{Angle, Contact, Flight, Side};
 use crate::elementary::fraction;
 
 /// Bisection alone needs at most some 110 to exhaust the digits of a double.
@@ -80,47 +80,58 @@ impl Series {
 }
 
 impl Flight {
-    /// When dz is `beyond`, m, outside of the membrane at `side`, s since the start, on a piece on which it rises or falls
-    /// all the way to there.
-    pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> f64 {
-        let (sign, level) = (side.sign(), self.half_travel + beyond);
+    /// When, and how fast, dz comes to be `beyond`, m, outside of the membrane at `side`, on a piece on which it rises or
+    /// falls all the way to there.
+    pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> Contact {
+        let (sign, level) = (side.sign(), self.room(side) + beyond);
         let (mut low, mut high) = (from.tau, to.tau);
-        let (begin, sine) = self.steepest(side, from, to).unwrap_or((from.tau, from.sine));
-        let first = self.series(begin, sine, level, sign);
+        let (begin, angle) = self.steepest(side, from, to).unwrap_or((from.tau, from.angle));
+        let first = self.series(begin, &angle, level, sign);
         let start = if begin == from.tau { first.root_of_parabola() } else { first.first_step() };
         let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
         let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
         for _ in 0..MAX_SERIES {
-            let sine = self.sine_at(tau);
-            let series = self.series(tau, sine, level, sign);
+            let angle = self.angle(tau);
+            let series = self.series(tau, &angle, level, sign);
             if series.0[0] > 0.0 {
                 low = tau;
             } else {
                 high = tau;
             }
             if high - low <= f64::EPSILON * high {
-                return high;
+                return self.contact(side, high);
             }
             let Some(step) = series.first_step().filter(|step| (low..=high).contains(&(tau + step))) else {
                 tau = 0.5 * (low + high);
                 continue;
             };
             let [_, slope, half_curvature] = series.at(step);
-            let gap = level - sign * self.beside(tau, sine, step);
+            // With all digits: in the series, the straight part of the flight would carry the rounding of `tau` along.
+            let there = angle.swept.further(self.omega() * step);
+            let gap = level - sign * self.change(tau + step, &there);
             let change = Series::halley([gap, slope, half_curvature]);
             if let Some(change) = change.filter(|_| self.is_found(tau, step, gap / slope, slope)) {
-                return (tau + (step + change)).clamp(low, high);
+                let elapsed = (tau + (step + change)).clamp(low, high);
+                let there = angle.swept.further(self.omega() * (step + change));
+                let speed = sign * self.slope(elapsed, &there);
+                return Contact { elapsed, side, speed: speed.max(0.0) };
             }
             let next = tau + step;
             tau = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
-        tau
+        self.contact(side, tau)
     }
 
-    /// The gap about `tau`, s, where the angle has this sine and cosine.
+    /// A contact `elapsed`, s, after the start.
+    fn contact(&self, side: Side, elapsed: f64) -> Contact {
+        let [_, rate] = self.at(elapsed);
+        Contact { elapsed, side, speed: (side.sign() * rate).max(0.0) }
+    }
+
+    /// The gap about `tau`, s, where the angle is this one.
     #[inline]
-    fn series(&self, tau: f64, sine: [f64; 2], level: f64, sign: f64) -> Series {
-        let derivatives = self.derivatives(tau, sine);
+    fn series(&self, tau: f64, angle: &Angle, level: f64, sign: f64) -> Series {
+        let derivatives = self.derivatives(tau, angle);
         Series::new(level - sign * derivatives[0], sign, derivatives)
     }
 
@@ -142,25 +153,13 @@ impl Flight {
     /// Where on the way from one extremum to the next the harmonic part is steepest: sine and cosine are known there. It
     /// is counted from the begin of the flight, so that nobody waits for the extrema.
     #[inline]
-    fn steepest(&self, side: Side, from: &Knot, to: &Knot) -> Option<(f64, [f64; 2])> {
+    fn steepest(&self, side: Side, from: &Knot, to: &Knot) -> Option<(f64, Angle)> {
         let first = fraction(0.25 * side.sign() - self.turns) * self.period;
-        if first >= from.tau && first < to.tau {
-            return Some((first, [side.sign(), 0.0]));
-        }
-        let tau = from.tau + fraction(0.25 * side.sign() - self.turns_at(from.tau)) * self.period;
-        (tau < to.tau).then_some((tau, [side.sign(), 0.0]))
-    }
-
-    /// dz, m, a short `step`, s, beside `tau`, with all digits: in a series about `tau`, the straight part of the flight would
-    /// carry the rounding of `tau` along.
-    #[inline]
-    fn beside(&self, tau: f64, [sin, cos]: [f64; 2], step: f64) -> f64 {
-        let [c0, c1, c2, c3] = self.coefficients;
-        let (there, angle) = (tau + step, self.omega() * step);
-        let square = angle * angle;
-        let sine = 1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0)));
-        let versine = 0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0));
-        let cosine = cos - (sin * (angle * sine) + cos * (square * versine));
-        c0 + there * (c1 + there * (c2 + there * c3)) - self.swing * cosine
+        let tau = if first >= from.tau {
+            first
+        } else {
+            from.tau + fraction(0.25 * side.sign() - self.turns_at(from.tau)) * self.period
+        };
+        (tau < to.tau).then(|| (tau, Angle::known(self.sine, [side.sign(), 0.0], self.omega() * tau)))
     }
 }

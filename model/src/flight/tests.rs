@@ -24,7 +24,20 @@ prop_compose! {
         let amplitude = swing * (TAU * frequency).powi(2);
         let drive = Drive { amplitude, frequency, phase, external, external_rate };
         let cylinder = CylinderMotion::new(start, 0.0, 0.0, drive);
-        Flight::new(&cylinder, &cylinder.at(start), place * HALF_TRAVEL, velocity, HALF_TRAVEL)
+        Flight::new(&cylinder, &cylinder.at(start), [place * HALF_TRAVEL, -velocity], HALF_TRAVEL)
+    }
+}
+
+impl Flight {
+    /// Derivative number `order` (0 to 7) of dz at `tau`, s.
+    fn derivative(&self, order: usize, tau: f64) -> f64 {
+        let of_start = if order == 0 { self.dz } else { 0.0 };
+        of_start + self.derivatives(tau, &self.angle(tau))[order]
+    }
+
+    /// How large that may be.
+    fn size(&self, order: i32) -> f64 {
+        (self.swing + self.rate.abs() / self.omega() + 1.0) * self.omega().powi(order)
     }
 }
 
@@ -45,8 +58,9 @@ proptest! {
             let tau = begin + (first - begin) * f64::from(k) / f64::from(PLACES);
             prop_assert!(beyond(tau) <= rounding, "{:e} m beyond at {tau} s", beyond(tau));
         }
-        if let Some(Contact { elapsed, side }) = contact {
+        if let Some(Contact { elapsed, side, speed }) = contact {
             prop_assert!(begin < elapsed && elapsed <= end);
+            prop_assert!((speed - side.sign() * flight.derivative(1, elapsed)).abs() <= 1e-13 * flight.size(1));
             prop_assert!(beyond(elapsed).abs() <= rounding, "{:e} m off", beyond(elapsed));
             prop_assert_eq!(side, if flight.derivative(0, elapsed) > 0.0 { Side::Left } else { Side::Right });
         }
@@ -59,7 +73,7 @@ proptest! {
         let end = flight.window_length();
         let Some(turn) = flight.zeros(1, 0.0, end).iter().next() else { return Ok(()) };
         let depth = 10.0_f64.powi(depth);
-        let flight = Flight { half_travel: turn.value.abs() - depth, ..flight };
+        let flight = Flight { half_travel: (flight.dz + turn.value).abs() - depth, ..flight };
         if flight.dz.abs() >= flight.half_travel {
             return Ok(()); // what begins on a membrane or beyond
         }
@@ -79,9 +93,10 @@ proptest! {
         let omega = flight.omega();
         for knot in flight.zeros(order, begin, end).iter() {
             let [lower, value, curvature] = [order - 1, order, order + 1].map(|order| flight.derivative(order, knot.tau));
-            let size = |order: i32| (flight.swing + flight.coefficients[1].abs() / omega + 1.0) * omega.powi(order);
+            let size = |order: i32| flight.size(order);
             let here = i32::try_from(order).unwrap();
             prop_assert!(value.abs() <= 1e-12 * size(here) + 1e-7 * curvature.abs() / omega, "{value:e}");
+            let lower = if order == 1 { lower - flight.dz } else { lower };
             prop_assert!((lower - knot.value).abs() <= 1e-12 * size(here - 1), "{lower:e} {:e}", knot.value);
         }
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::Flight;
+use super::{Angle, Flight};
 use crate::elementary::fraction;
 
 /// A place of a flight: an end of a window or a zero of a derivative, and what the next lower derivative is there.
@@ -10,10 +10,9 @@ use crate::elementary::fraction;
 pub(super) struct Knot {
     /// Time since the start of the flight, s.
     pub(super) tau: f64,
-    /// The lower derivative: dz, m, where the slope is zero.
+    /// The lower derivative: the change of dz since the start, m, where the slope is zero.
     pub(super) value: f64,
-    /// Sine and cosine of the angle.
-    pub(super) sine: [f64; 2],
+    pub(super) angle: Angle,
 }
 
 /// Places in increasing order. A constant plus a harmonic function has two zeros in a period; by Rolle's theorem each lower
@@ -38,17 +37,21 @@ impl Knots {
 }
 
 impl Flight {
-    /// The place at `tau`, s, where the angle has this sine and cosine, with derivative number `order`.
+    /// The place at `tau`, s, where the angle is this one, with derivative number `order`.
     #[inline]
-    pub(super) fn knot(&self, order: usize, tau: f64, sine: [f64; 2]) -> Knot {
-        let value = if order == 0 { self.value(tau, sine) } else { self.derivatives(tau, sine)[order] };
-        Knot { tau, value, sine }
+    pub(super) fn knot(&self, order: usize, tau: f64, angle: Angle) -> Knot {
+        let value = match order {
+            0 => self.change(tau, &angle.swept),
+            1 => self.slope(tau, &angle.swept),
+            _ => self.derivatives(tau, &angle)[order],
+        };
+        Knot { tau, value, angle }
     }
 
     /// Zeros of derivative number `order` strictly between `begin` and `end`.
     #[inline] // the order is known where it is called: half of what follows falls away
     pub(super) fn zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
-        let [.., c2, c3] = self.coefficients;
+        let [c2, c3] = self.external;
         let constant = match order {
             1 => c2 == 0.0 && c3 == 0.0,
             2 => c3 == 0.0,
@@ -60,16 +63,16 @@ impl Flight {
     /// The zeros lie between those of the next higher derivative, where this one changes its sign.
     fn zeros_between(&self, order: usize, begin: f64, end: f64) -> Knots {
         let mut zeros = Knots::default();
-        let mut from = self.knot(order, begin, self.sine_at(begin));
-        let last = self.knot(order, end, self.sine_at(end));
+        let mut from = self.knot(order, begin, self.angle(begin));
+        let last = self.knot(order, end, self.angle(end));
         for to in self.zeros(order + 1, begin, end).iter().chain(core::iter::once(last)) {
             let sign = from.value.signum();
             if sign != to.value.signum() {
                 let tau = bracketed_root(from.tau, to.tau, |tau| {
-                    let derivatives = self.derivatives(tau, self.sine_at(tau));
+                    let derivatives = self.derivatives(tau, &self.angle(tau));
                     (sign * derivatives[order], sign * derivatives[order + 1])
                 });
-                zeros.push(self.knot(order - 1, tau, self.sine_at(tau)));
+                zeros.push(self.knot(order - 1, tau, self.angle(tau)));
             }
             from = to;
         }
@@ -79,10 +82,9 @@ impl Flight {
     /// Zeros of a derivative whose polynomial part is constant: sine or cosine have a given value twice in a period.
     #[inline]
     fn harmonic_zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
-        let [_, c1, c2, c3] = self.coefficients;
-        let omega = self.omega();
+        let ([c2, c3], omega) = (self.external, self.omega());
         let (level, is_cosine) = match order {
-            1 => (-c1 / (self.swing * omega), false),
+            1 => (self.sine[0] - self.rate / (self.swing * omega), false),
             2 => (-2.0 * c2 / (self.swing * omega * omega), true),
             _ => (6.0 * c3 / (self.swing * omega * omega * omega), false),
         };
@@ -91,12 +93,19 @@ impl Flight {
             return zeros; // the constant outweighs the harmonic part, or both are zero
         }
         let first = level.asin() * (1.0 / TAU);
-        let other = ((1.0 - level) * (1.0 + level)).sqrt();
         // cos x is the sine of an angle that is ahead by a quarter of a turn.
         let at_begin = self.turns_at(begin) + if is_cosine { 0.25 } else { 0.0 };
+        let other = ((1.0 - level) * (1.0 + level)).sqrt();
         let mut knots = [(first, other), (0.5 - first, -other)].map(|(turns, other)| {
             let tau = begin + fraction(turns - at_begin) * self.window_length();
-            self.knot(order - 1, tau, if is_cosine { [-other, level] } else { [level, other] })
+            let phi = omega * tau;
+            // Of a small angle, what has been passed through would have lost its digits.
+            let angle = if phi < Angle::SMALL {
+                self.angle(tau)
+            } else {
+                Angle::known(self.sine, if is_cosine { [-other, level] } else { [level, other] }, phi)
+            };
+            self.knot(order - 1, tau, angle)
         });
         if knots[1].tau < knots[0].tau {
             knots.swap(0, 1);

@@ -115,17 +115,18 @@ impl Harvester {
         (touch.phase == Phase::Held).then_some(touch.side)
     }
 
-    /// The next turning point or end of the contact, s, if it is what comes next.
+    /// Up to where the contact is foreseen, s: to where the membrane's force changes its branch, if that is within a period.
+    /// With phase noise a contact is followed hold interval by hold interval, whose ends are no knots.
     pub(super) fn touch_knot(&self) -> Option<f64> {
-        self.touch.as_ref().filter(|touch| matches!(touch.ending(), Ending::Turn | Ending::Separation)).map(Touch::end)
+        let is_hold = |touch: &&Touch| touch.ending() == Ending::Cut && self.noise_limit().is_some();
+        self.touch.as_ref().filter(|touch| !is_hold(touch)).map(Touch::end)
     }
 
-    /// A contact begins at `time`, s.
-    pub(super) fn touch(&mut self, time: f64, side: Side) {
-        let speed = (side.sign() * (self.cylinder.velocity(time) - self.ball.velocity)).max(0.0);
+    /// A contact begins at `time`, s, at relative `speed`, m/s.
+    pub(super) fn touch(&mut self, time: f64, side: Side, speed: f64) {
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
-        self.new_search(time, side.sign() * self.half_travel());
+        self.new_flight(&self.cylinder.at(time), [self.half_travel(), speed].map(|value| side.sign() * value));
         let period = 1.0 / self.parameters.frequency;
         let loading = if speed > 0.0 { self.membrane.deflection(speed) / speed } else { period };
         self.touch = Some(Touch::new(side, time, speed, FIRST_STEP * loading.min(period)));
@@ -190,14 +191,14 @@ impl Harvester {
         let (position, velocity) = (self.cylinder_position_at(time), self.ball_velocity_at(time));
         let cylinder = self.cylinder_from(time, self.present_drive(time));
         let Some(touch) = self.touch.take() else { return };
-        let sign = touch.side.sign();
+        let (sign, rate) = (touch.side.sign(), touch.at(time).v);
         self.ledger.loss += self.law(touch.side).loss(touch.largest_at(time));
         self.ledger.contact_time += time - touch.since;
         if self.parameters.reaction {
             self.cylinder = cylinder;
         }
         self.ball = Ball { since: time, position: position - sign * self.half_travel(), velocity, resting: None };
-        self.new_search(time, sign * self.half_travel());
+        self.new_flight(&self.cylinder.at(time), [sign * self.half_travel(), sign * rate]);
     }
 
     /// The cylinder's motion from `time`, s, on, the recoil of the contact included.
@@ -222,8 +223,8 @@ impl Harvester {
         let cylinder = self.cylinder_from(time, drive);
         self.book_pass(time);
         self.cylinder = cylinder;
-        let dz = sign * (self.half_travel() + next.start.x);
-        self.search.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), dz, velocity, self.half_travel());
+        let [dz, rate] = [self.half_travel() + next.start.x, next.start.v].map(|value| sign * value);
+        self.search.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), [dz, rate], self.half_travel());
         self.ball = Ball { since: time, position: self.cylinder.position - dz, velocity, resting: None };
         self.touch = Some(next);
         self.plan_touch();

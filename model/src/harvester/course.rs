@@ -68,7 +68,6 @@ impl Harvester {
         let drive = &self.cylinder.drive;
         Pace {
             hold: self.parameters.noise_hold,
-            ball: self.ball.velocity,
             resting: self.ball.resting,
             rate: drive.external_rate,
             amplitude: drive.amplitude,
@@ -92,18 +91,18 @@ impl Harvester {
     /// The state at the begin of the present motion, as if it were the begin of the present hold interval.
     pub(super) fn present_boundary(&self) -> Boundary {
         let CylinderMotion { position, velocity, drive, .. } = self.cylinder;
-        let (sample, dz, external) = (self.noise.sample, self.search.flight.dz, drive.external);
-        Boundary { sample, position, dz, velocity, external }
+        let Flight { dz, rate, .. } = self.search.flight;
+        Boundary { sample: self.noise.sample, position, velocity, dz, rate, external: drive.external }
     }
 
     fn boundary_after_event(&self) -> Boundary {
         let (cylinder, flight, sample) = (&self.cylinder, &self.search.flight, self.noise.sample + 1);
         let end = self.hold_start(sample);
-        let dz =
-            if self.ball.resting.is_some() { flight.dz } else { flight.derivative(0, self.rest_of_hold(flight.start)) };
+        let is_resting = self.ball.resting.is_some();
+        let [dz, rate] = if is_resting { [flight.dz, 0.0] } else { flight.at(self.rest_of_hold(flight.start)) };
         let Drive { external, external_rate, .. } = cylinder.drive;
         let external = external + external_rate * (end - cylinder.start);
-        Boundary { sample, position: cylinder.position(end), dz, velocity: cylinder.velocity(end), external }
+        Boundary { sample, position: cylinder.position(end), velocity: cylinder.velocity(end), dz, rate, external }
     }
 
     /// The begin of hold interval `sample` on the way that leads from `anchor`, which does not lie behind it.
@@ -128,8 +127,7 @@ impl Harvester {
     }
 
     fn flight_from(&self, boundary: &Boundary, cylinder: &CylinderMotion) -> Flight {
-        let velocity = if self.ball.resting.is_some() { boundary.velocity } else { self.ball.velocity };
-        Flight::new(cylinder, &cylinder.at(cylinder.start), boundary.dz, velocity, self.half_travel())
+        Flight::new(cylinder, &cylinder.at(cylinder.start), [boundary.dz, boundary.rate], self.half_travel())
     }
 
     /// The cylinder's motion when the event comes that is foreseen.
@@ -193,7 +191,7 @@ impl Harvester {
     }
 
     /// The event in the hold interval with this begin, in closed form.
-    fn look_closely(&self, boundary: &Boundary) -> Option<Event> {
+    fn look_closely(&mut self, boundary: &Boundary) -> Option<Event> {
         let (hold, end) = (self.parameters.noise_hold, self.hold_start(boundary.sample + 1));
         let cylinder = self.motion_from(boundary);
         let flight = self.flight_from(boundary, &cylinder);
@@ -203,6 +201,7 @@ impl Harvester {
             return release.map(|elapsed| Event::Release { time: time(elapsed) });
         }
         let contact = flight.contact_in_window(0, hold);
+        self.search.speed = contact.map_or(0.0, |contact| contact.speed);
         contact.map(|contact| Event::Impact { time: time(contact.elapsed), side: contact.side })
     }
 }

@@ -88,12 +88,13 @@ impl Harvester {
         self.ledger.loss += (1.0 - r * r) * self.kinetic(speed);
     }
 
-    /// The ball takes on the velocity of the `wall`, m/s, which changes by `wall_change`, m/s.
-    pub(super) fn book_settling(&mut self, wall: f64, wall_change: f64) {
-        let slip = self.ball.velocity - wall;
+    /// The ball takes on the velocity of the `wall`, m/s. This, and how much faster the ball is, change by `changes`, m/s.
+    pub(super) fn book_settling(&mut self, wall: f64, changes: [f64; 2]) {
+        let slip = -self.search.flight.rate;
         self.ledger.wall -= self.parameters.ball_mass * slip * wall;
         self.ledger.loss += self.kinetic(slip);
-        self.change_by_settling([slip, self.tangent.ball[1] - wall_change], [wall, wall_change]);
+        let [wall_change, slip_change] = changes;
+        self.change_by_settling([slip, slip_change], [wall, wall_change]);
     }
 
     /// The wall begins to carry the ball: its work is the gain of kinetic energy. Its velocity `wall`, m/s, changes by
@@ -103,9 +104,9 @@ impl Harvester {
         self.tangent.ledger.wall -= self.kinetic_change([wall, wall_change]);
     }
 
-    /// The wall lets the ball go.
-    pub(super) fn book_release(&mut self) {
+    /// The wall, whose velocity changes by `wall_change`, m/s, lets the ball go.
+    pub(super) fn book_release(&mut self, wall_change: f64) {
         self.ledger.wall += self.kinetic(self.ball.velocity);
-        self.tangent.ledger.wall += self.kinetic_change([self.ball.velocity, self.tangent.ball[1]]);
+        self.tangent.ledger.wall += self.kinetic_change([self.ball.velocity, wall_change]);
     }
 }

@@ -72,6 +72,11 @@ pub(super) struct Search {
     /// Windows before this one hold no event.
     window: u64,
     pub(super) found: Option<Event>,
+    /// Relative speed, m/s, of the impact that has been found.
+    pub(super) speed: f64,
+    /// Time of the first impact after the release that has been found, s, infinity if none is foreseen; none before it
+    /// has been looked for.
+    pub(super) after_release: Option<f64>,
     /// With phase noise: the begin of the first hold interval that has not been searched, or of that in which the event is
     /// that has been found, unless it is the present one.
     pub(super) ahead: Option<Place>,
@@ -83,7 +88,16 @@ pub(super) struct Search {
 
 impl Search {
     pub(super) fn new(flight: Flight) -> Self {
-        Self { flight, window: 0, found: None, ahead: None, anchor: None, exhausted: false }
+        Self {
+            flight,
+            window: 0,
+            found: None,
+            speed: 0.0,
+            after_release: None,
+            ahead: None,
+            anchor: None,
+            exhausted: false,
+        }
     }
 
     /// No search at all: no event is foreseen.
@@ -101,20 +115,34 @@ impl Search {
 }
 
 impl Harvester {
-    /// A ball that starts on a membrane, at rest relative to it and pushed against it, rests without an impact.
-    pub(super) fn rest_if_started_at_rest(&mut self) {
-        if self.parameters.contact_law == ContactLaw::Compliant {
-            return; // the search finds the instant from which on it is pressed in
-        }
-        let dz = self.relative_displacement();
+    /// The membrane that a ball touches where its present flight begins, and the speed at which it approaches that, m/s.
+    fn touched(&self) -> Option<(Side, f64)> {
+        let Flight { dz, rate, .. } = self.search.flight;
         let side = if dz > 0.0 { Side::Left } else { Side::Right };
-        let touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
-        let at_rest = self.cylinder.velocity == self.ball.velocity;
+        let is_touching = (dz.abs() - self.half_travel()).abs() <= 4.0 * f64::EPSILON * self.half_travel();
+        is_touching.then_some((side, side.sign() * rate))
+    }
+
+    /// A ball whose flight begins on a membrane that it approaches meets it at once.
+    pub(super) fn meet_touched_membrane(&mut self) {
+        let time = self.search.flight.start;
+        if let Some((side, speed)) = self.touched().filter(|(_, speed)| *speed > 0.0) {
+            (self.search.found, self.search.speed) = (Some(Event::Impact { time, side }), speed);
+        }
+    }
+
+    /// A ball that starts on a membrane meets it if it approaches, and if it is pushed against it, without a speed, it rests.
+    pub(super) fn begin_on_membrane(&mut self) {
+        self.meet_touched_membrane();
+        let resting = self.touched().filter(|(_, speed)| *speed == 0.0);
+        // Under the compliant law the search finds the instant from which on it is pressed in.
+        let resting = resting.filter(|_| self.parameters.contact_law == ContactLaw::Impulsive);
         let wall = self.cylinder.at(self.time);
-        if touching && at_rest && self.end_of_bounces(side, 0.0, &wall).is_some() {
+        if let Some((side, _)) = resting.filter(|(side, _)| self.end_of_bounces(*side, 0.0, &wall).is_some()) {
             let [_, wall_change] = self.cylinder_change(self.time);
             self.rest(side, &wall, wall_change);
         }
+        self.look_ahead();
     }
 
     /// Takes cylinder and ball at `time` as the start of a new motion under `drive`.
@@ -122,21 +150,17 @@ impl Harvester {
         if self.touch.is_some() {
             return self.restart_touch(time, drive);
         }
-        let dz = self.relative_displacement_at(time);
+        let motion = self.relative_motion_at(time);
         self.cylinder = self.cylinder.continued(time, drive);
-        self.new_search(time, dz);
+        self.new_flight(&self.cylinder.at(time), motion);
+        self.meet_touched_membrane();
     }
 
-    /// Searches from `time` on, at which `z_M` - `z_m` is `dz`. That is handed on rather than computed from positions,
-    /// so that a ball on a membrane is there to the last bit however far the cylinder has drifted.
-    pub(super) fn new_search(&mut self, time: f64, dz: f64) {
-        let velocity = self.ball_velocity_at(time);
-        self.new_flight(&self.cylinder.at(time), dz, velocity);
-    }
-
-    /// The same of a ball with this `velocity`, m/s, when the cylinder is `here`.
-    fn new_flight(&mut self, here: &CylinderState, dz: f64, velocity: f64) {
-        self.search = Search::new(Flight::new(&self.cylinder, here, dz, velocity, self.half_travel()));
+    /// Searches from where the cylinder is `here` and `z_M` - `z_m` and its rate are `motion`, m and m/s. These are handed on
+    /// rather than computed from positions and velocities, so that a ball on a membrane is there to the last bit, and
+    /// leaves it as fast as it should, however far the cylinder has drifted and however fast it is.
+    pub(super) fn new_flight(&mut self, here: &CylinderState, motion: [f64; 2]) {
+        self.search = Search::new(Flight::new(&self.cylinder, here, motion, self.half_travel()));
     }
 
     /// The next event, if there is one before the search windows have passed `until`, s. If the caller is to get there,
@@ -224,8 +248,9 @@ impl Harvester {
             return;
         };
         let contact = flight.contact_in_window(window, limit);
-        self.search.found = contact.map(|contact| Event::Impact { time: time(contact.elapsed), side: contact.side });
         self.search.window = window + 1;
+        self.search.found = contact.map(|contact| Event::Impact { time: time(contact.elapsed), side: contact.side });
+        self.search.speed = contact.map_or(0.0, |contact| contact.speed);
     }
 
     pub(super) fn process(&mut self, event: Event, dues: &mut Dues) -> Result<(), ModelError> {
@@ -235,21 +260,23 @@ impl Harvester {
         }
         match event {
             Event::Impact { time, side } => {
+                let speed = self.search.speed;
                 self.spend(time)?;
                 match self.parameters.contact_law {
-                    ContactLaw::Impulsive => self.impact(time, side, dues),
-                    ContactLaw::Compliant => self.touch(time, side),
+                    ContactLaw::Impulsive => self.impact(time, side, speed, dues),
+                    ContactLaw::Compliant => self.touch(time, side, speed),
                 }
             }
             Event::Touch { .. } => self.follow_touch()?,
             Event::Release { time } => {
                 self.spend(time)?;
-                let dz = self.relative_displacement_at(time);
-                self.tangent.ball = self.ball_change(time);
+                let motion = self.relative_motion_at(time);
+                let [_, wall_change] = self.cylinder_change(time);
+                self.tangent.motion = self.motion_change(time);
                 self.ball = self.ball_at(time);
-                self.book_release();
+                self.book_release(wall_change);
                 self.totals.releases += 1;
-                self.new_search(time, dz);
+                self.new_flight(&self.cylinder.at(time), motion);
             }
             Event::NoiseSample { time } => self.next_noise_sample(time),
         }
@@ -273,15 +300,14 @@ impl Harvester {
         ModelError::TooManyEvents { time, limit: EVENT_BUDGET, travel, restitution }
     }
 
-    /// Eqs. (10) to (13): the membrane is pressed in, the ball rebounds, or comes to rest.
-    pub(super) fn impact(&mut self, time: f64, side: Side, dues: &mut Dues) {
+    /// Eqs. (10) to (13): the membrane is pressed in at relative `speed`, m/s, the ball rebounds, or comes to rest.
+    pub(super) fn impact(&mut self, time: f64, side: Side, speed: f64, dues: &mut Dues) {
         let wall = self.cylinder.at(time);
-        let speed = (side.sign() * (wall.velocity - self.ball.velocity)).max(0.0);
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
-        let wall_change = if self.tangent.idle {
+        let changes = if self.tangent.idle {
             self.owe(dues, time, side, speed);
-            0.0
+            [0.0; 2]
         } else {
             self.credit_with_changes(speed, side, &wall)
         };
@@ -290,7 +316,7 @@ impl Harvester {
         let dz = side.sign() * self.half_travel();
         let velocity = wall.velocity + side.sign() * rebound; // Eq. (11), with v_M subtracted from both sides
         self.ball = Ball { since: time, position: wall.position - dz, velocity, resting: None };
-        self.new_flight(&wall, dz, velocity);
+        self.new_flight(&wall, [dz, -side.sign() * rebound]);
         match self.end_of_bounces(side, rebound, &wall) {
             Some(Tail::Summed) => {
                 self.settle_dues(dues);
@@ -299,16 +325,16 @@ impl Harvester {
                 if !self.tangent.idle {
                     self.take_over_tail(speed, excess);
                 }
-                self.settle(side, &wall, wall_change);
+                self.settle(side, &wall, changes);
             }
-            Some(Tail::Unresolved) => self.settle(side, &wall, wall_change),
+            Some(Tail::Unresolved) => self.settle(side, &wall, changes),
             None => {}
         }
     }
 
-    /// Credits an impact on this `wall`, and carries the changes that somebody asks for over it. Returns the change of
-    /// the wall's velocity, m/s.
-    fn credit_with_changes(&mut self, speed: f64, side: Side, wall: &CylinderState) -> f64 {
+    /// Credits an impact on this `wall`, and carries the changes that somebody asks for over it. Returns the
+    /// changes of the wall's velocity and of how much faster the ball is, m/s.
+    fn credit_with_changes(&mut self, speed: f64, side: Side, wall: &CylinderState) -> [f64; 2] {
         let peak = self.membrane.deflection(speed);
         let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
         let change = self.change_of(&Hit { side, speed, peak, excess_slope, wall: *wall });
@@ -318,18 +344,18 @@ impl Harvester {
         change.wall
     }
 
-    /// Ends a chattering sequence on this `wall`, whose velocity changes by `wall_change`, m/s.
-    fn settle(&mut self, side: Side, wall: &CylinderState, wall_change: f64) {
+    /// Ends a chattering sequence on this `wall`. Its velocity, and how much faster the ball is, change by `changes`, m/s.
+    fn settle(&mut self, side: Side, wall: &CylinderState, changes: [f64; 2]) {
         self.totals.chatters += 1;
-        self.book_settling(wall.velocity, wall_change);
-        self.rest(side, wall, wall_change);
+        self.book_settling(wall.velocity, changes);
+        self.rest(side, wall, changes[0]);
     }
 
     /// From now on the ball rests on the membrane at `side`, on this `wall`, whose velocity changes by `wall_change`, m/s.
     fn rest(&mut self, side: Side, wall: &CylinderState, wall_change: f64) {
         self.book_rest(wall.velocity, wall_change);
         self.ball.resting = Some(side);
-        self.new_flight(wall, side.sign() * self.half_travel(), wall.velocity);
+        self.new_flight(wall, [side.sign() * self.half_travel(), 0.0]);
     }
 
     /// Adds impacts whose `C_3` / `C_2` - 1 sum to `excess`: Eqs. (12) and (13).

@@ -112,7 +112,7 @@ impl Harvester {
         }
         self.spend(self.time)?;
         self.ball = self.ball_at(self.time);
-        self.book_release();
+        self.book_release(0.0);
         self.totals.releases += 1;
         self.clear(side);
         Ok(true)
@@ -136,7 +136,7 @@ impl Harvester {
         }
         self.spend(self.time)?;
         let mut dues = Dues::NONE;
-        self.impact(self.time, side, &mut dues);
+        self.impact(self.time, side, side.sign() * (wall - ball), &mut dues);
         self.settle_dues(&mut dues);
         if self.ball.resting.is_none() {
             self.clear(side);
@@ -156,7 +156,8 @@ impl Harvester {
         let (position, velocity) = (self.ball_position(), self.ball_velocity());
         let here = self.cylinder.at(self.time);
         self.calm_until = f64::NEG_INFINITY;
-        let flight = Flight::new(&self.cylinder, &here, here.position - position, velocity, self.half_travel());
+        let motion = [here.position - position, here.velocity - velocity];
+        let flight = Flight::new(&self.cylinder, &here, motion, self.half_travel());
         self.search = Search::none(flight);
     }
 }

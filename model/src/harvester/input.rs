@@ -17,11 +17,37 @@ impl Harvester {
     /// A force or rate that is not finite, or beyond 1e18 N or N/s.
     #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
-        within("externalForce", force, "N")?;
-        within("derivative of externalForce", rate, "N/s")?;
+        check_force([force, rate])?;
         self.forget_changes();
         self.push(force, rate);
         Ok(())
+    }
+
+    /// A copy under this force, N, these voltages, V, and their rates from now on, with the changes that this one has.
+    ///
+    /// # Errors
+    /// As [`Harvester::set_external_force`] and [`Harvester::set_voltages`].
+    pub fn under_inputs(&self, force: [f64; 2], voltages: [f64; 2], rates: [f64; 2]) -> Result<Self, ModelError> {
+        check_force(force)?;
+        let mut copy = self.clone();
+        copy.push(force[0], force[1]);
+        copy.set_voltages(voltages, rates)?;
+        Ok(copy)
+    }
+
+    /// Whether force, N, and voltages, V, and their rates, are those that act at present: setting them would change
+    /// nothing.
+    pub fn has_inputs(&self, [force, rate]: [f64; 2], voltages: [f64; 2], rates: [f64; 2]) -> bool {
+        let ramps = self.voltages.iter().zip(voltages.iter().zip(rates));
+        self.is_pushed_by([force, rate].map(|value| value / self.parameters.cylinder_mass))
+            && ramps.into_iter().all(|(ramp, (value, rate))| ramp.at(self.time) == *value && ramp.rate == rate)
+    }
+
+    /// Whether this external force over M, m/s^2, and its rate, m/s^3, act at present.
+    #[inline]
+    fn is_pushed_by(&self, external: [f64; 2]) -> bool {
+        let drive = &self.cylinder.drive;
+        external == [drive.external + drive.external_rate * (self.time - self.cylinder.start), drive.external_rate]
     }
 
     #[inline]
@@ -30,14 +56,17 @@ impl Harvester {
         if [force, rate, self.cylinder.drive.external, self.cylinder.drive.external_rate] == [0.0; 4] {
             return;
         }
-        let (mass, drive) = (self.parameters.cylinder_mass, &self.cylinder.drive);
-        let (external, external_rate) = (force / mass, rate / mass);
-        let present = drive.external + drive.external_rate * (self.time - self.cylinder.start);
-        if external != present || external_rate != drive.external_rate {
-            self.restart(self.time, Drive { external, external_rate, ..*drive });
+        let [external, external_rate] = [force, rate].map(|value| value / self.parameters.cylinder_mass);
+        if !self.is_pushed_by([external, external_rate]) {
+            self.restart(self.time, Drive { external, external_rate, ..self.cylinder.drive });
             self.look_ahead();
         }
     }
+}
+
+fn check_force([force, rate]: [f64; 2]) -> Result<(), ModelError> {
+    within("externalForce", force, "N")?;
+    within("derivative of externalForce", rate, "N/s")
 }
 
 /// An input, or its rate, within its bounds.

@@ -1,6 +1,5 @@
 //! What a harvester shows at its present time.
 
-use super::events::Event;
 use super::{Harvester, Totals};
 use crate::flight::Side;
 use crate::membrane::Membrane;
@@ -81,24 +80,6 @@ impl Harvester {
     /// Sums over all impacts so far.
     pub fn totals(&self) -> &Totals {
         &self.totals
-    }
-
-    /// Time of the next impact, s, if the external force goes on as it is; none while the ball rests or if no
-    /// impact is foreseen within at least one excitation period, or, with phase noise, within at least 256 hold intervals if
-    /// those are shorter; under the compliant law and with a Wiener process, within the present hold interval.
-    pub fn next_impact(&self) -> Option<f64> {
-        match self.search.found {
-            Some(Event::Impact { time, .. }) => Some(time),
-            _ => None,
-        }
-    }
-
-    /// The next time, s, at which a capacitance has a kink or an extremum: the peak or the end of a pulse, or an impact; under
-    /// the compliant law the next turning point or end of the contact, foreseen under the present force and voltages for
-    /// at most one excitation period; none while the ball rests or comes back to the largest deflection first.
-    pub fn next_knot(&self) -> Option<f64> {
-        let knots = self.pulse_knots().map(|knot| knot.time);
-        knots.chain(self.next_impact()).chain(self.touch_knot()).min_by(f64::total_cmp)
     }
 
     /// The next peak or end of a pulse on each membrane.

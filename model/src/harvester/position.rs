@@ -13,12 +13,19 @@ impl Harvester {
     }
 
     pub(super) fn relative_displacement_at(&self, time: f64) -> f64 {
+        let [dz, _] = self.relative_motion_at(time);
+        dz
+    }
+
+    /// `z_M` - `z_m`, m, and its rate, m/s.
+    pub(super) fn relative_motion_at(&self, time: f64) -> [f64; 2] {
         if let Some(touch) = &self.touch {
-            return touch.side.sign() * (self.half_travel() + touch.at(time).x);
+            let (sign, point) = (touch.side.sign(), touch.at(time));
+            return [sign * (self.half_travel() + point.x), sign * point.v];
         }
         match self.ball.resting {
-            Some(side) => side.sign() * self.half_travel(),
-            None => self.search.flight.derivative(0, time - self.search.flight.start),
+            Some(side) => [side.sign() * self.half_travel(), 0.0],
+            None => self.search.flight.at(time - self.search.flight.start),
         }
     }
 

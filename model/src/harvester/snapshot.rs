@@ -33,8 +33,8 @@ pub struct Snapshot {
     pub ball: [f64; 3],
     /// The membrane on which the ball rests.
     pub resting: Option<Side>,
-    /// Start of the present search for events, s, and `z_M` - `z_m`, m, there.
-    pub flight: [f64; 2],
+    /// Start of the present search for events, s; `z_M` - `z_m`, m, and its rate, m/s, there.
+    pub flight: [f64; 3],
     /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
     /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
     pub noise_sample: u64,
@@ -52,7 +52,7 @@ pub struct Snapshot {
     /// contact, s, up to the last event.
     pub ledger: [f64; 4],
     /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
-    /// of `z_m`, m, and `z_m'`, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
+    /// of `z_M` - `z_m`, m, and its rate, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
     /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them. None before anybody asked.
     pub changes: Option<[f64; 8]>,
     /// Number of the second in which events are being counted.
@@ -65,7 +65,7 @@ impl Harvester {
     /// The dynamic state.
     pub fn snapshot(&self) -> Snapshot {
         let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
-        let ([position, velocity], [last_speed, voltage_gain, energy]) = (tangent.ball, tangent.totals);
+        let ([displacement, rate], [last_speed, voltage_gain, energy]) = (tangent.motion, tangent.totals);
         let LedgerChange { wall, loss } = tangent.ledger;
         // What follows from an anchor does so again, to the last bit, from nothing else.
         let anchor = self.search.anchor.unwrap_or_else(|| self.present_boundary());
@@ -78,7 +78,7 @@ impl Harvester {
             external: [anchor.external, cylinder.drive.external_rate],
             ball: [ball.since, ball.position, ball.velocity],
             resting: ball.resting,
-            flight: [flight_start, anchor.dz],
+            flight: [flight_start, anchor.dz, anchor.rate],
             noise_sample: anchor.sample,
             noise_walk: noise.walk,
             pulses: self.pulses.clone().map(Pulses::into_inner),
@@ -88,8 +88,8 @@ impl Harvester {
             ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
             changes: (!tangent.idle).then_some([
                 tangent.since,
-                position,
-                velocity,
+                displacement,
+                rate,
                 last_speed,
                 voltage_gain,
                 energy,
@@ -121,6 +121,11 @@ impl Harvester {
             check("event before the present time", time, false)?;
         }
         harvester.advance(snapshot.time)?;
+        let is_at_start = harvester.search.flight.start == snapshot.time && harvester.touch.is_none();
+        if is_at_start && harvester.ball.resting.is_none() {
+            harvester.meet_touched_membrane();
+            harvester.look_ahead();
+        }
         Ok(harvester)
     }
 
@@ -151,18 +156,17 @@ impl Harvester {
         let [since, position, velocity] = snapshot.ball;
         let ball = Ball { since, position, velocity, resting: snapshot.resting };
         let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| {
-            let [since, position, velocity, last_speed, voltage_gain, energy, wall, loss] = changes;
+            let [since, displacement, rate, last_speed, voltage_gain, energy, wall, loss] = changes;
             let mut tangent = Tangent::of_force(since, p.cylinder_mass);
-            tangent.ball = [position, velocity];
+            tangent.motion = [displacement, rate];
             tangent.totals = [last_speed, voltage_gain, energy];
             tangent.ledger = LedgerChange { wall, loss };
             tangent
         });
         let [wall, electrical, loss, contact_time] = snapshot.ledger;
-        let [start, dz] = snapshot.flight;
-        let here = cylinder.at(start);
-        let ball_velocity = if ball.resting.is_some() { here.velocity } else { velocity };
-        let flight = Flight::new(&cylinder, &here, dz, ball_velocity, p.travel() / 2.0);
+        let [start, dz, rate] = snapshot.flight;
+        let rate = if ball.resting.is_some() { 0.0 } else { rate };
+        let flight = Flight::new(&cylinder, &cylinder.at(start), [dz, rate], p.travel() / 2.0);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),

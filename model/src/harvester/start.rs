@@ -16,15 +16,15 @@ use crate::parameters::{OutsideGap, Parameters};
 use crate::pulse::{PulseShape, Pulses};
 
 impl Harvester {
-    /// The harvester at `start`, s, in its initial state.
+    /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it meets it when
+    /// the harvester is first moved on.
     ///
     /// # Errors
     /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
     /// phase noise, beyond 2^52 hold intervals.
     pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
         let mut harvester = Self::before_events(parameters, start)?;
-        harvester.rest_if_started_at_rest();
-        harvester.advance(start)?;
+        harvester.begin_on_membrane();
         Ok(harvester)
     }
 
@@ -38,8 +38,7 @@ impl Harvester {
         let mut harvester = Self::before_events(parameters, start)?;
         let xi = xi(parameters, &harvester.noise);
         harvester.tangent = Tangent::along(&harvester, force, direction, xi);
-        harvester.rest_if_started_at_rest();
-        harvester.advance(start)?;
+        harvester.begin_on_membrane();
         harvester.push(force, 0.0);
         Ok(harvester)
     }
@@ -63,8 +62,8 @@ impl Harvester {
             OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
         };
         let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
-        let dz = p.cylinder_position - position;
-        let flight = Flight::new(&cylinder, &cylinder.at(start), dz, p.ball_velocity, half);
+        let motion = [p.cylinder_position - position, p.cylinder_velocity - p.ball_velocity];
+        let flight = Flight::new(&cylinder, &cylinder.at(start), motion, half);
         Ok(Self {
             parameters: p,
             membrane: Membrane::new(&p),

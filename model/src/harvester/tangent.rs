@@ -76,9 +76,9 @@ pub(super) struct Tangent {
     /// Nothing but the time has come into them since they were forgotten.
     pub(super) fresh: bool,
     /// Change of the external force over M, m/s^2.
-    push: f64,
-    /// Of `z_m`, m, and `z_m'`, m/s, at the last event of a free ball.
-    pub(super) ball: [f64; 2],
+    pub(super) push: f64,
+    /// Of `z_M` - `z_m`, m, and its rate, m/s, at the last event of a free ball.
+    pub(super) motion: [f64; 2],
     /// Of the sums in [`Totals`](super::Totals): relative speed of the last impact, m/s; voltage gain, V; energy, J.
     pub(super) totals: [f64; 3],
     /// Of the books of the energy.
@@ -100,14 +100,14 @@ pub(super) struct Hit {
 #[derive(Default)]
 pub(super) struct HitChange {
     pub(super) pulse: PulseChange,
-    /// Of `z_M'` at the time of the impact.
-    pub(super) wall: f64,
+    /// Of `z_M'`, and of how much faster than that the ball rebounds, at the time of the impact.
+    pub(super) wall: [f64; 2],
     /// Of what the impact adds to the books.
     ledger: LedgerChange,
     /// Of `C_3` / `C_2` - 1.
     excess: f64,
-    /// Of `z_m` and `z_m'` at the time of the impact, after it.
-    ball: [f64; 2],
+    /// Of `z_M` - `z_m` and its rate at the time of the impact, after it.
+    motion: [f64; 2],
 }
 
 /// How everything that a harvester shows changes, per unit of a [`Direction`]. Lists have the values left and right.
@@ -160,8 +160,8 @@ impl Tangent {
 
     /// One more newton from `since`, s, on.
     pub(super) fn of_force(since: f64, cylinder_mass: f64) -> Self {
-        let (ball, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
-        Self { since, idle: false, fresh: false, push: 1.0 / cylinder_mass, ball, totals, ledger, parameters: None }
+        let (motion, totals, ledger) = ([0.0; 2], [0.0; 3], LedgerChange::default());
+        Self { since, idle: false, fresh: false, push: 1.0 / cylinder_mass, motion, totals, ledger, parameters: None }
     }
 
     /// The start of `harvester` under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of
@@ -175,9 +175,9 @@ impl Tangent {
             phase: d.phase + xi * d.phase_noise,
         };
         let half_travel = d.travel() / 2.0;
-        let ball_position = match harvester.projected_side() {
-            Some(side) => d.cylinder_position - side.sign() * half_travel,
-            None => d.ball_position,
+        let displacement = match harvester.projected_side() {
+            Some(side) => side.sign() * half_travel,
+            None => d.cylinder_position - d.ball_position,
         };
         let change = ParameterChange {
             cylinder: [d.cylinder_position, d.cylinder_velocity],
@@ -197,14 +197,14 @@ impl Tangent {
             fresh: false,
             since: harvester.time,
             push: (direction.force - force * heavier) / p.cylinder_mass,
-            ball: [ball_position, d.ball_velocity],
+            motion: [displacement, d.cylinder_velocity - d.ball_velocity],
             totals: [0.0; 3],
             ledger: LedgerChange::default(),
             parameters: Some(change),
         }
     }
 
-    fn half_travel(&self) -> f64 {
+    pub(super) fn half_travel(&self) -> f64 {
         self.parameters.map_or(0.0, |change| change.half_travel)
     }
 
@@ -252,52 +252,57 @@ impl Harvester {
         [by_force[0] + position + velocity * elapsed + by_drive[0], by_force[1] + velocity + by_drive[1]]
     }
 
+    /// Of `z_M` - `z_m` and its rate at `time`, s: to its own digits, however large the changes of both bodies are.
+    pub(super) fn motion_change(&self, time: f64) -> [f64; 2] {
+        if let Some(side) = self.ball.resting {
+            return [side.sign() * self.tangent.half_travel(), 0.0];
+        }
+        let Tangent { since, push, motion: [displacement, rate], .. } = self.tangent;
+        let (elapsed, pushed) = (time - self.ball.since, time - since.max(self.ball.since));
+        let by_drive = self.tangent.parameters.map_or([0.0; 2], |change| self.change_by_force(time, &change));
+        [displacement + rate * elapsed + 0.5 * push * pushed * pushed + by_drive[0], rate + push * pushed + by_drive[1]]
+    }
+
     /// Of `z_m` and `z_m'` at `time`, s.
     pub(super) fn ball_change(&self, time: f64) -> [f64; 2] {
-        if let Some(side) = self.ball.resting {
-            let [position, velocity] = self.cylinder_change(time);
-            return [position - side.sign() * self.tangent.half_travel(), velocity];
-        }
-        let [position, velocity] = self.tangent.ball;
-        [position + velocity * (time - self.ball.since), velocity]
+        let ([position, velocity], [displacement, rate]) = (self.cylinder_change(time), self.motion_change(time));
+        [position - displacement, velocity - rate]
     }
 
     /// Time by which an impact at `time` on `side` at relative `speed` comes later.
     pub(super) fn delay(&self, time: f64, side: Side, speed: f64) -> f64 {
-        let approach = self.cylinder_change(time)[0] - self.ball_change(time)[0];
-        self.delay_by(approach, side, speed)
+        self.delay_by(self.motion_change(time)[0], side, speed)
     }
 
     /// The same when `z_M` - `z_m` at the time of the impact changes by `approach`, m.
-    fn delay_by(&self, approach: f64, side: Side, speed: f64) -> f64 {
+    pub(super) fn delay_by(&self, approach: f64, side: Side, speed: f64) -> f64 {
         bounded((self.tangent.half_travel() - side.sign() * approach) / speed)
     }
 
     /// How an impact changes; the ball has not rebounded yet.
     pub(super) fn change_of(&self, hit: &Hit) -> HitChange {
         let Hit { side, speed, peak, excess_slope, .. } = *hit;
-        let CylinderState { time, velocity: wall, acceleration, .. } = hit.wall;
-        let ball = self.ball_change(time);
-        let [position, velocity] = self.cylinder_change(time);
+        let CylinderState { time, acceleration, .. } = hit.wall;
+        let [_, velocity] = self.cylinder_change(time);
+        let motion = self.motion_change(time);
         if grazes(side, speed, acceleration) {
-            return HitChange { ball, wall: velocity, ..HitChange::default() };
+            return HitChange { motion, wall: [velocity, -motion[1]], ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
-        let delay = self.delay_by(position - ball[0], side, speed);
+        let delay = self.delay_by(motion[0], side, speed);
         let wall_change = velocity + acceleration * delay;
-        let speed_change = sign * (wall_change - ball[1]);
+        let speed_change = sign * (motion[1] + acceleration * delay);
         let rebound_change = self.rebound_change(speed, speed_change);
         let membrane = self.tangent.membrane();
         let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
-        let rebounded = wall + sign * restitution * speed;
         HitChange {
             pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
-            wall: bounded(wall_change),
+            wall: [wall_change, sign * rebound_change].map(bounded),
             ledger: self.ledger_change(hit, bounded(speed_change), bounded(wall_change)),
             excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
-            ball: [
-                position + (wall - rebounded) * delay - sign * self.tangent.half_travel(),
-                wall_change + sign * rebound_change,
+            motion: [
+                sign * (self.tangent.half_travel() + restitution * speed * delay),
+                -sign * rebound_change - acceleration * delay,
             ]
             .map(bounded),
         }
@@ -309,7 +314,7 @@ impl Harvester {
 
     /// Carries the changes over an impact with this `excess`.
     pub(super) fn take_over(&mut self, change: &HitChange, excess: f64) {
-        self.tangent.ball = change.ball;
+        self.tangent.motion = change.motion;
         self.tangent.totals[0] = change.pulse.speed;
         self.tangent.ledger.wall += change.ledger.wall;
         self.tangent.ledger.loss += change.ledger.loss;
@@ -357,12 +362,14 @@ impl Harvester {
         let membrane = self.tangent.membrane();
         let by_drive = self.tangent.parameters.map_or(0.0, |c| self.cylinder.acceleration_change(self.time, &c.drive));
         let acceleration = self.tangent.push + by_drive;
-        let next_impact = self.next_impact_change();
+        let after_due = self.is_due().then(|| self.after_due()).flatten();
+        let foreseeing = after_due.as_ref().unwrap_or(self);
+        let next_impact = foreseeing.next_impact_change();
         let [last_speed, voltage_gain, energy] = self.tangent.totals;
         Sensitivities {
             cylinder: [cylinder[0], cylinder[1], acceleration],
             ball: [ball[0], ball[1], if self.ball.resting.is_some() { acceleration } else { 0.0 }],
-            relative_displacement: cylinder[0] - ball[0],
+            relative_displacement: self.motion_change(self.time)[0],
             deflection,
             area_ratio: [0, 1].map(|k| self.membrane.area_change(values[k], deflection[k], membrane)),
             stretch: [0, 1].map(|k| self.membrane.stretch_change(values[k], deflection[k], membrane)),
@@ -373,7 +380,7 @@ impl Harvester {
             energy,
             energies: self.energies_change(),
             next_impact,
-            next_knot: self.next_knot_change(next_impact),
+            next_knot: foreseeing.next_knot_change(next_impact),
         }
     }
 }

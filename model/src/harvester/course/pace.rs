@@ -10,10 +10,12 @@ pub(in crate::harvester) struct Boundary {
     pub(in crate::harvester) sample: u64,
     /// `z_M`, m.
     pub(in crate::harvester) position: f64,
-    /// `z_M` - `z_m`, m.
-    pub(in crate::harvester) dz: f64,
     /// `z_M'`, m/s.
     pub(in crate::harvester) velocity: f64,
+    /// `z_M` - `z_m`, m.
+    pub(in crate::harvester) dz: f64,
+    /// `z_M'` - `z_m'`, m/s.
+    pub(in crate::harvester) rate: f64,
     /// External force over M, m/s^2.
     pub(in crate::harvester) external: f64,
 }
@@ -35,6 +37,11 @@ pub(in crate::harvester) struct Place {
 }
 
 impl Place {
+    /// Number of the interval.
+    pub(in crate::harvester) fn sample(&self) -> u64 {
+        self.here.sample
+    }
+
     pub(super) fn of_anchor(anchor: Boundary) -> Self {
         Self { anchor, here: anchor }
     }
@@ -44,8 +51,6 @@ impl Place {
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
     pub(super) hold: f64,
-    /// `z_m'` of a free ball, m/s.
-    pub(super) ball: f64,
     pub(super) resting: Option<Side>,
     /// Rate of the external force over M, m/s^3.
     pub(super) rate: f64,
@@ -74,11 +79,19 @@ impl Pace {
         let time = self.hold * (place as f64 - from as f64);
         let external = self.by(anchor.external, time);
         let (velocity, position) = (anchor.velocity - v0, (z - z0) + external[1]);
+        let gained = v + external[0];
+        let [dz, rate] = if self.resting.is_some() {
+            [anchor.dz, 0.0]
+        } else {
+            let rate = anchor.rate - v0;
+            [anchor.dz + (time * rate + position), rate + gained]
+        };
         Boundary {
             sample: anchor.sample + (place - from) as u64,
             position: anchor.position + (time * velocity + position),
-            velocity: velocity + (v + external[0]),
-            dz: if self.resting.is_some() { anchor.dz } else { anchor.dz + (time * (velocity - self.ball) + position) },
+            velocity: velocity + gained,
+            dz,
+            rate,
             external: anchor.external + self.rate * time,
         }
     }
@@ -114,7 +127,7 @@ impl Pace {
         let from = anchor.place();
         let [velocity, position] = block.at(from, self.hold);
         let time = self.hold * (BLOCK - from) as f64;
-        let straight = anchor.dz + time * (anchor.velocity - velocity - self.ball);
+        let straight = anchor.dz + time * (anchor.rate - velocity);
         let external = time * time * (anchor.external.abs() / 2.0 + self.rate.abs() * time / 6.0);
         1.000_001 * (anchor.dz.abs().max(straight.abs()) + block.reach + position.abs() + external)
     }
