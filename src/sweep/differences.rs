@@ -2,18 +2,19 @@
 
 use serde_json::{Map, Value};
 
-/// Longest value that is shown, characters.
-const LONGEST: usize = 200;
+/// Longest value that is shown, characters, and most settings: what to do stands behind them, and no message is longer than
+/// some 2000 characters.
+const LONGEST: usize = 80;
+const MOST: usize = 8;
 
 /// A setting that differs.
-#[derive(Debug, PartialEq, Eq)]
 pub(super) struct Difference {
     /// The setting, as a user types it.
-    pub what: String,
+    what: String,
     /// Its value in the one document.
-    pub there: String,
+    there: String,
     /// Its value in the other.
-    pub here: String,
+    here: String,
 }
 
 impl Difference {
@@ -28,8 +29,16 @@ impl Difference {
     }
 }
 
+/// In what two documents of sweeps differ, each setting in the words of `said`.
+pub(super) fn told(there: &str, here: &str, said: fn(&Difference) -> String) -> String {
+    let found = differences(there, here);
+    let shown = found.iter().take(MOST).map(said);
+    let more = found.len().checked_sub(MOST).filter(|more| *more > 0).map(|more| format!("and {more} more"));
+    shown.chain(more).collect::<Vec<_>>().join("; ")
+}
+
 /// In what two documents of sweeps differ.
-pub(super) fn differences(there: &str, here: &str) -> Vec<Difference> {
+fn differences(there: &str, here: &str) -> Vec<Difference> {
     /// They follow from the rest, but for the number of points where it is asked for, and what is recorded.
     const DERIVED: [&str; 4] = ["columns", "points", "runs", "sha256"];
     let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
@@ -173,8 +182,17 @@ mod tests {
             ),
             ("{", "{}", "sweep.json was no document of a sweep, is one"),
         ] {
-            let said: Vec<_> = differences(there, here).iter().map(Difference::was_is).collect();
-            assert_eq!(said.join("; "), expected);
+            assert_eq!(told(there, here, Difference::was_is), expected);
         }
+    }
+
+    #[test]
+    fn however_much_differs_there_is_room_for_what_to_do() {
+        let settings = |value: &str| {
+            let one = |k: usize| format!("{{\"name\": \"p{k}\", \"value\": \"{}\"}}", value.repeat(1000));
+            format!("{{\"settings\": [{}]}}", (0..100).map(one).collect::<Vec<_>>().join(","))
+        };
+        let said = told(&settings("1"), &settings("2"), Difference::is_not);
+        assert!(said.starts_with("--set p0 is 2222") && said.ends_with("; and 92 more") && said.len() < 1700, "{said}");
     }
 }

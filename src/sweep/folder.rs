@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::differences::{Difference, differences};
+use super::differences::{Difference, told};
 use super::unfinished::{Unfinished, complete_name, unfinished};
 use super::{Shard, SweepError, sums, table};
 use crate::input;
@@ -73,8 +73,8 @@ pub(super) fn check_document(folder: &Path, document: &str) -> Result<(), SweepE
 }
 
 fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError {
-    let differences: Vec<_> = differences(there, here).iter().map(Difference::was_is).collect();
-    let reason = format!("it belongs to another sweep: {}; {way_out}", differences.join("; "));
+    let differences = told(there, here, Difference::was_is);
+    let reason = format!("it belongs to another sweep: {differences}; {way_out}");
     SweepError::content(&folder.join(DOCUMENT), reason)
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::differences::{Difference, differences};
+use super::differences::{Difference, told};
 use super::document::Kept;
 use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
@@ -71,8 +71,7 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
             None => first = Some(text),
             Some(first) if *first == text => {}
             Some(first) => {
-                let differences: Vec<_> = differences(first, &text).iter().map(Difference::is_not).collect();
-                let (other, differences) = (folders[0].display(), differences.join("; "));
+                let (other, differences) = (folders[0].display(), told(first, &text, Difference::is_not));
                 let reason = format!("it belongs to another sweep than {other}: {differences}");
                 return Err(SweepError::content(&path, reason));
             }
