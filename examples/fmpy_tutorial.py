@@ -1,30 +1,35 @@
 # Made from docs/tutorial/fmpy.md by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.
 
+# %%
+import sys
+
+sys.path.append("examples")
+
 # %% [markdown]
 # # C(t) in FMPy
 #
 # You load the harvester into [FMPy](https://fmpy.readthedocs.io), get its capacitances C(t), change parameters, go back in time,
-# ask for derivatives, and couple it with the circuit. It takes a quarter of an hour, a Rust toolchain, a C linker, and Python 3.11 or
-# later with FMPy and matplotlib, in the versions that this page was made with:
+# ask for derivatives, and couple it with the circuit. It takes a quarter of an hour, the FMUs, and Python 3.11 or later with FMPy and
+# matplotlib, in the versions that this page was made with:
 
 # %% [markdown]
 # `./test.sh setup` makes the same `.venv`, but installs all that the tests need into it, and Debian packages besides.
 #
-# The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree,
-# where `videg` stands for `cargo run --release --` unless it is on the PATH (`export PATH=$PWD/target/release:$PATH`).
+# The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree.
 #
-# ## Build the FMUs
-
-# %%
-import subprocess
-
-subprocess.run("cargo run --release -- fmu build", shell=True, check=True)
+# ## Get the FMUs
+#
+# A release has them. `videg`, of a release or built from the sources (`cargo run --release --` stands for it), writes them into `target/fmu`:
 
 # %% [markdown]
+# `examples/find_videg.py` takes them from there, or from the folder `VIDEG_FMUS`. If they are not there, it asks the `videg` on the PATH or in
+# `target/release`, and says what to run if there is none.
+#
 # ## Look into one
 
 # %%
 import os
+import sys
 from pathlib import Path
 
 import fmpy
@@ -34,7 +39,10 @@ import numpy as np
 figures = Path(os.environ.get("FIGURES", "out/fmpy"))
 figures.mkdir(parents=True, exist_ok=True)
 
-HARVESTER = "target/fmu/VibroImpactHarvester.fmu"
+sys.path.append("examples")
+from find_videg import find, fmu
+
+HARVESTER = fmu("VibroImpactHarvester")
 description = fmpy.read_model_description(HARVESTER)
 print(f"{description.modelName}, FMI {description.fmiVersion}: {description.description}")
 for variable in description.modelVariables:
@@ -239,7 +247,7 @@ CAPACITANCES = ["left.capacitance", "right.capacitance"]
 BOOKS = ["supply.energy", "load.energy", "zener.energy", "converted.energy"]
 
 harvester = FMU2Named(HARVESTER, fig14)
-circuit = FMU2Named("target/fmu/HarvestingCircuit.fmu", dict(zip(CAPACITANCES, harvester.get(*CAPACITANCES))))
+circuit = FMU2Named(fmu("HarvestingCircuit"), dict(zip(CAPACITANCES, harvester.get(*CAPACITANCES))))
 rates = [circuit.references[name] for name in CAPACITANCES]
 
 time, end, grid = 0.0, 20.0, 1e-3
@@ -263,12 +271,16 @@ for name, values in zip(BOOKS, books):
     print(f"{name:17} {1e3 * values[-1]:7.4f} mJ after {end:.0f} s")
 
 # %% [markdown]
-# The tool itself does the same in one line, and says the same:
+# The tool itself does the same in one call, and says the same:
 
 # %%
+import json
 import subprocess
 
-subprocess.run("videg cosim --until 20 --json | python -c \"import json, sys; energy = json.load(sys.stdin)['energy']; print({key: round(1e3 * energy[key], 4) for key in ('supply', 'load', 'zener', 'converted')})\"", shell=True, check=True)
+if videg := find():
+    run = subprocess.run([videg, "cosim", "--until", "20", "--json"], stdout=subprocess.PIPE, check=True)
+    energy = json.loads(run.stdout)["energy"]
+    print({name: round(1e3 * energy[name], 4) for name in ("supply", "load", "zener", "converted")})
 
 # %% [markdown]
 # The load gets less than the supply gives: the Zener diode burns what the paper's Eq. (13) counts as gain.

@@ -1,12 +1,17 @@
 # Made from docs/tutorial/ngspice.md by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.
 
+# %%
+import sys
+
+sys.path.append("examples")
+
 # %% [markdown]
 # # C(t) in ngspice
 #
 # You take the capacitances of the harvester into a circuit of your own in ngspice, see what it gains, and hold it against the
 # embedded solver. It takes ngspice (Debian: `apt install ngspice libngspice0`) and, for the sweep at the end, Python with
-# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree, where
-# `videg` stands for `cargo run --release --` unless it is on the PATH (`export PATH=$PWD/target/release:$PATH`).
+# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree, with `videg` on
+# the PATH (`export PATH=$PWD/target/release:$PATH`).
 #
 # The mechanics do not feel the circuit under the paper's contact law, so C(t) can be computed first and the circuit later, as often
 # as you like.
@@ -14,9 +19,9 @@
 # ## Get C(t)
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("cargo run --release -- simulate --case fig14 --until 10 --output out/ngspice", shell=True, check=True)
+run("videg simulate --case fig14 --until 10 --output out/ngspice")
 
 # %% [markdown]
 # The time series has the columns `left.capacitance` and `right.capacitance` in F, a row each millisecond and at each kink and peak.
@@ -94,9 +99,9 @@ quit
 # `ngspice_netlists/README.md` in the source tree says what videg's own netlists do about it.
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("cd out/ngspice && ngspice -b own.cir 2>/dev/null | grep \"^from\\|^to\"", shell=True, check=True)
+run("cd out/ngspice && ngspice -b own.cir 2>/dev/null | grep \"^from\\|^to\"")
 
 # %% [markdown]
 # The storage gets more than the supply gives: the mechanics paid for the rest.
@@ -104,9 +109,9 @@ subprocess.run("cd out/ngspice && ngspice -b own.cir 2>/dev/null | grep \"^from\
 # ## The same from videg
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("videg cosim --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'", shell=True, check=True)
+run("videg cosim --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'")
 
 # %% [markdown]
 # `supply` and `load` (the storage) are the two numbers of ngspice, in J, to 0.1 %. What counts is their difference, the gain, which is
@@ -114,18 +119,18 @@ subprocess.run("videg cosim --until 10 --set release=storage --set storage.volta
 # runs ngspice itself, as a shared library that steps along with the harvester, which is what a circuit that acts back on the ball needs:
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("videg cosim --circuit ngspice --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'", shell=True, check=True)
+run("videg cosim --circuit ngspice --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'")
 
 # %% [markdown]
 # And `videg crosscheck` holds closed forms, embedded solver, ngspice as a program and ngspice as a library against each other, claim
 # by claim. With `--export` it leaves a folder for somebody who has ngspice alone: netlists, C(t), and the values to expect.
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("videg crosscheck --until 10 --export out/for-ngspice >/dev/null && ls out/for-ngspice", shell=True, check=True)
+run("videg crosscheck --until 10 --export out/for-ngspice >/dev/null && ls out/for-ngspice")
 
 # %% [markdown]
 # ## Which storage voltage gains most

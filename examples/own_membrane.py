@@ -1,12 +1,16 @@
 # Made from docs/howto/membrane.md by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.
 
+# %%
+import sys
+
+sys.path.append("examples")
+
 # %% [markdown]
 # # Use your own membrane
 #
 # You have measured a membrane, and want C(t) of a harvester with it. This page fits what videg needs - $K$, $n$, $r$, $\varepsilon_r$ - and
 # writes a case file. It takes the [Python of the FMPy tutorial](../tutorial/fmpy.md); the same as a script with cells is
-# `examples/own_membrane.py`, to be run in the root of the source tree, where `videg` stands for `cargo run --release --` unless it is on
-# the PATH.
+# `examples/own_membrane.py`. Run either in the root of the source tree, with `videg` on the PATH.
 #
 # The measurements below are **made up**: a membrane of $K = 1.9\times 10^5$ N/m$^n$, $n = 2.4$, $r = 0.67$, $\varepsilon_r = 4.2$, with noise and
 # 3 pF of stray capacitance, so that you see what the fits find of it. Put yours in their place.
@@ -169,9 +173,9 @@ ball.mass = {ball_mass}
 """)
 
 # %%
-import subprocess
+from find_videg import run
 
-subprocess.run("videg simulate --case-file out/membrane/own.toml --output out/membrane/run", shell=True, check=True)
+run("videg simulate --case-file out/membrane/own.toml --output out/membrane/run")
 
 # %% [markdown]
 # Mass and length of the cylinder, force and frequency are still those of Fig. 14: [Variables](../reference/variables.md) has their names. The

@@ -1,11 +1,21 @@
 //! Files that appear whole or not at all: written under another name, forced to the disk, then given their own. Whatever
-//! ends a program in between, and whenever, under its own name is what was there before, or all of what is there now.
+//! ends a program in between, and whenever, under its own name is what was there before, or all of what is there now. A signal
+//! that ends the command-line tool removes what it has under other names (`remove_all`).
 
+use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
+
+/// Files that this process is writing, by their other names.
+static PARTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn parts() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    PARTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Name under which a file is written before it is complete.
 pub fn partial(path: &Path) -> PathBuf {
@@ -37,11 +47,47 @@ pub fn fill<E: From<io::Error>>(path: &Path, content: impl FnOnce(&mut WholeFile
     }
 }
 
+/// The name of a file that this process is writing. A signal that ends the process removes the file while this value lives.
+#[derive(Debug)]
+pub(crate) struct Part {
+    path: PathBuf,
+}
+
+impl Part {
+    /// Has `make` make the file, and say where it is.
+    ///
+    /// # Errors
+    /// What `make` says.
+    pub fn begin<T, E>(make: impl FnOnce() -> Result<(T, PathBuf), E>) -> Result<(T, Self), E> {
+        // Whoever removes all comes before or after.
+        let mut parts = parts();
+        let (made, path) = make()?;
+        parts.insert(path.clone());
+        Ok((made, Self { path }))
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        parts().remove(&self.path);
+    }
+}
+
+/// Removes the files that this process, which is about to end, has not finished; their names. As long as what is returned
+/// lives, it can begin no others.
+#[cfg(feature = "tool")]
+pub(crate) fn remove_all() -> (Vec<PathBuf>, impl Sized) {
+    let mut parts = parts();
+    // One that has its own name by now is not there any more under the other.
+    let removed = std::mem::take(&mut *parts).into_iter().filter(|part| std::fs::remove_file(part).is_ok()).collect();
+    (removed, parts)
+}
+
 /// A file that is being written. Dropped before it is finished, what is in it stays under its other name.
 #[derive(Debug)]
 pub struct WholeFile {
     file: File,
-    part: PathBuf,
+    part: Part,
     path: PathBuf,
 }
 
@@ -51,15 +97,10 @@ impl WholeFile {
     /// # Errors
     /// Another process that writes the same file; a refusal of the file system.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let part = partial(path);
-        let file = lock(&part)?;
+        let locked = || Ok::<_, io::Error>((lock(&partial(path))?, partial(path)));
+        let (file, part) = Part::begin(locked)?;
         file.set_len(0)?;
         Ok(Self { file, part, path: path.to_owned() })
-    }
-
-    /// Name of the file until it is finished.
-    pub fn part(&self) -> &Path {
-        &self.part
     }
 
     /// Forces the file to the disk and gives it its name.
@@ -67,7 +108,7 @@ impl WholeFile {
     /// # Errors
     /// A refusal of the file system; nothing is left then but what was there before.
     pub fn finish(self) -> io::Result<()> {
-        let finished = self.file.sync_all().and_then(|()| std::fs::rename(&self.part, &self.path));
+        let finished = self.file.sync_all().and_then(|()| std::fs::rename(&self.part.path, &self.path));
         if finished.is_err() {
             self.discard();
         }
@@ -77,7 +118,7 @@ impl WholeFile {
     /// Leaves what was there before.
     fn discard(self) {
         // That it could not be written is what the user is told.
-        let _ = std::fs::remove_file(&self.part);
+        let _ = std::fs::remove_file(&self.part.path);
     }
 }
 
@@ -262,6 +303,20 @@ mod tests {
             (fs::read_to_string(&path).unwrap().as_str(), entries(folder.path())),
             ("old", vec!["result.json".into()])
         );
+    }
+
+    #[test]
+    fn a_file_is_known_as_one_to_remove_until_it_is_finished_left_or_discarded() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.json");
+        let is_known = || parts().contains(&partial(&path));
+        let begun = || WholeFile::create(&path).unwrap();
+        for end in [|file: WholeFile| file.finish().unwrap(), WholeFile::discard, drop] {
+            let file = begun();
+            assert!(is_known());
+            end(file);
+            assert!(!is_known());
+        }
     }
 
     #[test]

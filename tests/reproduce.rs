@@ -2,10 +2,16 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use serde_json::Value;
+
+#[path = "support/signals.rs"]
+mod signals;
+#[path = "support/waiting.rs"]
+mod waiting;
 
 fn reproduce(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
@@ -183,4 +189,67 @@ fn a_folder_that_cannot_be_made_is_an_error() {
     let output = reproduce(&file.join("below"), &["table1"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("cannot make the output folder"));
+}
+
+/// What stands in a folder and the folders in it.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
+
+fn assert_nothing_is_half_written(folder: &Path) {
+    let there = files(folder);
+    assert!(!there.iter().any(|path| path.extension().is_some_and(|extension| extension == "part")), "{there:?}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_signal_leaves_nothing_half_written_and_the_last_line_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = fastrand::Rng::with_seed(1);
+    for round in 0..8 {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+        command.args(["reproduce", "table1", "fig7", "audit", "--quick", "--output"]).arg(folder.path());
+        let mut command = signals::with_default_signals(&command);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let part = folder.path().join("audit/timeseries.csv.part");
+        if round == 0 {
+            waiting::wait_for(|| part.exists().then_some(()));
+        } else {
+            std::thread::sleep(Duration::from_millis(random.u64(100..3000)));
+        }
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
+        let code = child.wait().unwrap().code();
+        let said = std::io::read_to_string(child.stderr.take().unwrap()).unwrap();
+        assert_nothing_is_half_written(folder.path());
+        let last = said.lines().last().unwrap_or_default();
+        let (is_told, is_removed) = (last.contains("is complete"), last.contains(&*part.to_string_lossy()));
+        match code {
+            Some(130) => assert!(said.is_empty() || last.starts_with("videg: interrupted; "), "{said}"),
+            code => assert!(round > 0 && matches!(code, None | Some(0)), "{code:?}: {said}"),
+        }
+        assert!(round > 0 || (is_told && is_removed), "{said}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_failure_leaves_nothing_half_written_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("fig7.csv")).unwrap();
+    let output = reproduce(folder.path(), &["table1", "fig7"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let complete = format!("; what is in {} is complete, of this run or an earlier one", folder.path().display());
+    assert!(said.contains("cannot write") && said.contains("fig7.csv") && said.contains(&complete), "{said}");
+    assert!(folder.path().join("table1.csv").is_file());
+    assert_nothing_is_half_written(folder.path());
+    // A limit on the length of files stands for a full disk: the time series of 100 s gets longer than 4 or 8 MB.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 8192; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_videg")]);
+    let output = limited.args(["reproduce", "audit", "--output"]).arg(folder.path()).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && said.contains("timeseries.csv: File too large"), "{said}");
+    assert!(said.contains(&complete) && !said.contains(".part"), "{said}");
+    assert_nothing_is_half_written(folder.path());
 }

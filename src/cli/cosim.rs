@@ -131,7 +131,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let finished = couple((arguments.circuit, &arguments.isolation), coupling, &fmu, scenario, &csv)?;
+    let finished = couple((arguments.circuit, &arguments.isolation), coupling, &fmu, scenario, (&csv, Rest::Kept))?;
     let files = write_files(&folder, &csv, &finished)?;
     let json = serde_json::to_string_pretty(&json(&finished, &files)?)?;
     output::write(&folder.join("result.json"), &json)?;
@@ -144,13 +144,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
     Ok(Verdict::Passed)
 }
 
+/// What becomes of the time series of a run that fails.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Rest {
+    /// It stays under its other name, and the error says so.
+    Kept,
+    /// It goes.
+    Removed,
+}
+
 /// Runs the co-simulation with a circuit, which as an FMU may be isolated, and writes the time series to `csv`.
 pub fn couple(
     backend: (Backend, &IsolationOptions),
     coupling: Coupling,
     fmu: &Fmu,
     scenario: Scenario,
-    csv: &Path,
+    (csv, rest): (&Path, Rest),
 ) -> anyhow::Result<Finished> {
     let (mechanical, of_circuit) = settings::split(fmu.description(), &scenario)?;
     let harvester = HarvesterFmu::new(fmu, &scenario, &mechanical)?;
@@ -172,6 +181,10 @@ pub fn couple(
     bar.finish();
     let outcome = match outcome {
         Ok(outcome) => outcome,
+        Err(error) if rest == Rest::Removed => {
+            recorder.discard();
+            return Err(error.into());
+        }
         Err(error) => {
             recorder.leave()?;
             return Err(anyhow!("{error}; the time series up to there is in {}", whole::partial(csv).display()));

@@ -1,15 +1,16 @@
-//! Signals that end the program: it ends its children and removes its temporary folders before. `videg sweep` ends the runs
-//! that it has begun instead.
+//! Signals that end the program: it ends its children, and removes its temporary folders and the files that it has not
+//! finished, before. `videg sweep` ends the runs that it has begun instead.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use anyhow::Context as _;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag::{register, register_conditional_shutdown, register_usize};
 
-use crate::{children, temporary};
+use super::message::say;
+use crate::{children, temporary, whole};
 
 /// Signals that end the program, but for those that it was started to ignore, as `nohup` and a shell's `&` do.
 #[cfg(unix)]
@@ -39,23 +40,25 @@ fn is_ignored(signal: i32) -> bool {
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The signal that has come, once signals are waited for.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub struct Interruption {
     /// Its number; before one has come, 0.
     signal: Arc<AtomicUsize>,
     has_come: Arc<AtomicBool>,
     /// Whether somebody else sees to it.
     is_deferred: Arc<AtomicBool>,
+    /// What is then to be said of what stays.
+    notice: Arc<OnceLock<String>>,
 }
 
 impl Interruption {
     /// Waits for signals from here on. A second one ends the process at once, whatever that leaves; so does the first where
     /// the system gives no thread to wait.
     pub fn watch(&self) -> anyhow::Result<()> {
-        let (signal, is_deferred) = (Arc::clone(&self.signal), Arc::clone(&self.is_deferred));
+        let watched = self.clone();
         let look = move || {
             loop {
-                end_if_interrupted(&signal, &is_deferred);
+                watched.settle();
                 std::thread::sleep(LOOK);
             }
         };
@@ -90,18 +93,25 @@ impl Interruption {
         self.signal.load(Ordering::Relaxed)
     }
 
+    /// What the user is told of the files that stay, if a signal ends the process. The first one counts.
+    pub fn tell(&self, notice: String) {
+        let _ = self.notice.set(notice);
+    }
+
     /// Ends the process if a signal has come and nobody else sees to it: what failed for that reason is nothing to tell.
     pub fn settle(&self) {
-        end_if_interrupted(&self.signal, &self.is_deferred);
+        let Ok(signal @ 1..) = i32::try_from(self.signal()) else { return };
+        if self.is_deferred.load(Ordering::Relaxed) {
+            return;
+        }
+        let _closed = (children::end_all(), temporary::remove_all());
+        let (removed, _closed_too) = whole::remove_all();
+        let removed: Vec<_> = removed.iter().map(|part| format!("removed {}", part.display())).collect();
+        let told: Vec<_> = removed.into_iter().chain(self.notice.get().cloned()).collect();
+        if !told.is_empty() {
+            say(&format!("interrupted; {}", told.join("; ")));
+        }
+        // As shells say it; without the destructors of libraries whose code may be running.
+        signal_hook::low_level::exit(128 + signal)
     }
-}
-
-fn end_if_interrupted(signal: &AtomicUsize, is_deferred: &AtomicBool) {
-    let Ok(signal @ 1..) = i32::try_from(signal.load(Ordering::Relaxed)) else { return };
-    if is_deferred.load(Ordering::Relaxed) {
-        return;
-    }
-    let _closed = (children::end_all(), temporary::remove_all());
-    // As shells say it; without the destructors of libraries whose code may be running.
-    signal_hook::low_level::exit(128 + signal)
 }

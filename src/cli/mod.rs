@@ -103,7 +103,7 @@ impl Verb {
             Self::Crosscheck(arguments) => crosscheck::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Sweep(arguments) => sweep::run(arguments, &interruption),
-            Self::Reproduce(arguments) => reproduce::run(arguments),
+            Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),
             Self::Completions(arguments) => completions::run(arguments),

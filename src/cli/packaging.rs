@@ -2,13 +2,14 @@
 
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
+use std::sync::Once;
 
 use anyhow::Context as _;
 
-use super::message::show;
+use super::message::{say, show};
 use super::progress::spinner;
 use crate::fmi::Fmu;
-use crate::package::{self, FMUS, Options};
+use crate::package::{self, FMUS, Options, Placed};
 
 /// Shows what Cargo is at, where somebody may be looking.
 pub fn follow(line: &str) {
@@ -22,9 +23,14 @@ pub fn build() -> anyhow::Result<Vec<PathBuf>> {
     let waiting = spinner("packaging the FMUs");
     // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
     let as_is = std::env::var_os("CARGO").is_none();
-    let paths = package::build_all(&Options { as_is, progress: follow, ..Options::default() });
+    let placed = package::build_for_use(&Options { as_is, progress: follow, ..Options::default() });
     waiting.finish_and_clear();
-    paths.context("cannot package the FMUs")
+    let Placed { archives, refused } = placed.context("cannot package the FMUs")?;
+    if let (Some(refused), Some(folder)) = (refused, archives.first().and_then(|archive| archive.parent())) {
+        static SAID: Once = Once::new();
+        SAID.call_once(|| say(&format!("{refused}; the FMUs are in {}", folder.display())));
+    }
+    Ok(archives)
 }
 
 /// Packages the FMUs, with progress; returns the archive of the one with this identifier.

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use clap::Args;
 use serde::Serialize;
 
+use super::cosim::Rest;
+use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
@@ -76,10 +78,20 @@ struct Book<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
     let wanted = Wanted::new(&arguments.names)?;
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
+    let folder = folder.display();
+    let kept =
+        format!("what is in {folder} is complete, of this run or an earlier one; the same command makes all anew");
+    interruption.tell(kept.clone());
+    make(arguments, &wanted).map_err(|error| anyhow!("{error:#}; {kept}"))
+}
+
+/// Makes what is wanted.
+fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
+    let folder = &arguments.output;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let mut book = Book { folder, chapters: Vec::new(), warnings: Vec::new(), solvers_disagree: false };
@@ -157,7 +169,7 @@ impl Book<'_> {
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let circuit = (cosim::Backend::Embedded, &IsolationOptions::default());
-        let finished = cosim::couple(circuit, Coupling::default(), fmu, scenario, &csv)?;
+        let finished = cosim::couple(circuit, Coupling::default(), fmu, scenario, (&csv, Rest::Removed))?;
         output::write(&svg, &finished.drawing.svg)?;
         self.warnings.extend(finished.warnings.iter().cloned());
         self.chapters.push(Chapter::audit(AUDIT, &finished, vec![csv, svg]));

@@ -160,8 +160,9 @@ fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     if report.is_complete() {
         return show(arguments, &sweep, design, &report, started.elapsed().as_secs_f64());
     }
-    let (done, runs) = (report.done, report.runs);
-    say(&format!("interrupted after {done} of {runs} runs; the same command without --fresh goes on from there"));
+    let Report { done, runs, files, .. } = &report;
+    let kept = files.first().map(|file| format!(", which are in {}", file.display())).unwrap_or_default();
+    say(&format!("interrupted after {done} of {runs} runs{kept}; the same command without --fresh goes on from there"));
     Ok(Verdict::Stopped(u8::try_from(interruption.signal())?))
 }
 

@@ -4,7 +4,7 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
-use crate::whole::WholeFile;
+use crate::whole::{WholeFile, partial};
 
 /// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
 /// are called as the FMU variables are, units are SI. The file gets its name when it is finished; of a run that ends early,
@@ -39,7 +39,9 @@ impl CsvRecorder {
         let Self { path, writer, .. } = self;
         let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
         let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
-        file.and_then(WholeFile::finish).map_err(|cause| CosimError::Write { path, cause })
+        // Of what could not be written nothing stays.
+        let finished = file.and_then(WholeFile::finish).inspect_err(|_| drop(std::fs::remove_file(partial(&path))));
+        finished.map_err(|cause| CosimError::Write { path, cause })
     }
 
     /// Writes what is left of a run that ended early, under the other name.
@@ -48,6 +50,12 @@ impl CsvRecorder {
     /// If the file cannot be written.
     pub fn leave(mut self) -> Result<(), CosimError> {
         self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
+    }
+
+    /// Removes what there is of a run that ended early.
+    pub fn discard(self) {
+        // Why it ended is what the user is told.
+        let _ = std::fs::remove_file(partial(&self.path));
     }
 }
 

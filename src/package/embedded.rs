@@ -3,12 +3,11 @@
 //! They are packaged before the program is compiled, for as many platforms as it will be handed over with. So one file
 //! does all that the program does in its source tree but building for other targets.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::entries::Entries;
 use super::error::{PackageError, Result};
-use super::put::put;
-use super::{AddedBinary, FMUS, FmuPackage, Options, locate};
+use super::{AddedBinary, FMUS, FmuPackage, Options, file_name, locate};
 
 /// Bytes of an archive in the folder that `VIDEG_FMUS` named when the program was compiled.
 #[cfg(feature = "embedded-fmus")]
@@ -60,23 +59,17 @@ fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
     around_program.is_none() && options.workspace.is_none() && options.targets.is_empty()
 }
 
-/// Writes the archives into `output`, with the added libraries, which take the place of those inside.
+/// The archives with the added libraries, which take the place of those inside.
 ///
 /// # Errors
-/// When an archive is broken or belongs to another version of the program, or a file cannot be read or written.
-pub(super) fn write(archives: [&[u8]; FMUS.len()], added: &[AddedBinary], output: &Path) -> Result<Vec<PathBuf>> {
+/// When an archive is broken or belongs to another version of the program, or a file cannot be read.
+pub(super) fn with_added(archives: [&[u8]; FMUS.len()], added: &[AddedBinary]) -> Result<Vec<Vec<u8>>> {
     let parts = FMUS.iter().zip(archives).zip(DESCRIPTIONS);
     parts
         .map(|((fmu, archive), description)| {
-            let path = output.join(format!("{}.fmu", fmu.identifier));
             let entries = entries(fmu, archive, description, added)?;
-            if added.is_empty() {
-                // Packed again, the same entries may get other bytes.
-                put(&path, archive)?;
-            } else {
-                entries.write(&path)?;
-            }
-            Ok(path)
+            // Packed again, the same entries may get other bytes.
+            if added.is_empty() { Ok(archive.to_vec()) } else { entries.packed(&file_name(fmu)) }
         })
         .collect()
 }
@@ -122,14 +115,8 @@ mod tests {
 
     #[test]
     fn archives_come_out_with_the_bytes_that_went_in() {
-        let folder = tempfile::tempdir().unwrap();
         let archives = DESCRIPTIONS.map(packaged);
-        let written = write(archives.each_ref().map(Vec::as_slice), &[], folder.path()).unwrap();
-        let names = FMUS.map(|fmu| folder.path().join(format!("{}.fmu", fmu.identifier)));
-        assert_eq!(written, names);
-        for (path, archive) in written.iter().zip(&archives) {
-            assert!(&std::fs::read(path).unwrap() == archive, "{} differs", path.display());
-        }
+        assert!(with_added(archives.each_ref().map(Vec::as_slice), &[]).unwrap() == archives, "other bytes");
     }
 
     #[test]

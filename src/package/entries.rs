@@ -93,9 +93,17 @@ impl Entries {
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
+        put(archive, &self.packed(archive)?)
+    }
+
+    /// The bytes of the archive; errors name it.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub(super) fn packed(&self, archive: &Path) -> Result<Vec<u8>> {
         let mut bytes = Cursor::new(Vec::new());
         self.write_to(&mut bytes, archive)?;
-        put(archive, bytes.get_ref())
+        Ok(bytes.into_inner())
     }
 
     fn write_to(&self, file: &mut Cursor<Vec<u8>>, archive: &Path) -> Result<()> {

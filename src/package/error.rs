@@ -77,6 +77,17 @@ pub enum PackageError {
         /// Files looked for.
         looked: Vec<PathBuf>,
     },
+    /// Archives can be written neither where users know them nor into a cache.
+    #[error(
+        "{refused}, and {}; set XDG_CACHE_HOME to a folder that can be written",
+        cached.as_ref().map_or_else(|| "there is no folder of caches".to_owned(), ToString::to_string)
+    )]
+    NoPlace {
+        /// Why not the one.
+        refused: Box<PackageError>,
+        /// Why not the other, if there is one.
+        cached: Option<Box<PackageError>>,
+    },
     /// An archive inside the program cannot be used.
     #[error("the {identifier}.fmu inside videg {why}")]
     Embedded {

@@ -73,6 +73,10 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
         Some(workspace) => match cargo::build(workspace, target, options.progress) {
             // A program that was handed over without a toolchain.
             Err(error @ PackageError::Cargo { .. }) if is_not_found(&error) => error.to_string(),
+            // Cargo cannot work in a source tree that nobody may write; nor can its libraries be out of date there.
+            Err(PackageError::Build { .. }) if !can_write(&build_folder(workspace)) => {
+                format!("nothing can be built into {}, which cannot be written", build_folder(workspace).display())
+            }
             other => return other,
         },
     };
@@ -106,10 +110,19 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
         }
     }
     if let Some(workspace) = workspace {
-        let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
+        let base = build_folder(workspace);
         folders.push(target.map_or_else(|| base.clone(), |target| base.join(&target.triple)).join("release"));
     }
     folders
+}
+
+/// Where Cargo puts what it builds.
+fn build_folder(workspace: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
+}
+
+fn can_write(folder: &Path) -> bool {
+    std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder)).is_ok()
 }
 
 fn find(fmu: &FmuPackage, platform: Platform, folders: &[PathBuf], why: &str) -> Result<PathBuf> {

@@ -18,6 +18,7 @@
 //! ```
 
 mod binary;
+mod cache;
 mod cargo;
 mod contents;
 mod documentation;
@@ -36,6 +37,7 @@ mod tools;
 use std::path::{Path, PathBuf};
 
 pub use binary::AddedBinary;
+pub use cache::Placed;
 pub use contents::Contents;
 pub use entries::Entries;
 pub use error::{PackageError, Result};
@@ -121,13 +123,27 @@ fn default_output(workspace: Option<&Path>) -> PathBuf {
 /// When a library cannot be built or found, a model description is missing or belongs to another model, or a file
 /// cannot be read or written.
 pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
+    let (archives, output) = pack(options)?;
+    write(&archives, &output)
+}
+
+/// As [`build_all`], for FMUs that are to be run: where their folder cannot be written, they go to a cache folder.
+///
+/// # Errors
+/// As [`build_all`], if that cannot be written, either.
+pub fn build_for_use(options: &Options) -> Result<Placed> {
+    let (archives, output) = pack(options)?;
+    cache::place(&archives, &output, cache::folder())
+}
+
+/// The archives, in the order of [`FMUS`], and the folder for them.
+fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
+    let output = |workspace| options.output.clone().unwrap_or_else(|| default_output(workspace));
     if let Some(archives) = embedded::archives(options) {
-        let output = options.output.clone().unwrap_or_else(|| default_output(None));
-        return embedded::write(archives, &options.added, &output);
+        return Ok((embedded::with_added(archives, &options.added)?, output(None)));
     }
     let workspace = options.workspace.clone().or_else(locate::workspace);
     let workspace = workspace.as_deref();
-    let output = options.output.clone().unwrap_or_else(|| default_output(workspace));
     let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();
     for (index, fmu) in FMUS.iter().enumerate() {
@@ -141,11 +157,19 @@ pub fn build_all(options: &Options) -> Result<Vec<PathBuf>> {
             contents.add_library(binary.platform, &binary.path);
         }
         documentation::add(&mut contents)?;
-        let archive = output.join(format!("{}.fmu", fmu.identifier));
-        contents.entries.write(&archive)?;
-        archives.push(archive);
+        archives.push(contents.entries.packed(&file_name(fmu))?);
     }
-    Ok(archives)
+    Ok((archives, output(workspace)))
+}
+
+fn file_name(fmu: &FmuPackage) -> PathBuf {
+    PathBuf::from(format!("{}.fmu", fmu.identifier))
+}
+
+/// Writes archives, in the order of [`FMUS`], into `folder`.
+fn write(archives: &[Vec<u8>], folder: &Path) -> Result<Vec<PathBuf>> {
+    let paths = FMUS.iter().map(|fmu| folder.join(file_name(fmu)));
+    paths.zip(archives).map(|(path, archive)| put::put(&path, archive).map(|()| path)).collect()
 }
 
 /// The libraries of each platform, in the order of [`FMUS`].

@@ -8,7 +8,7 @@ use std::path::Path;
 use tempfile::NamedTempFile;
 
 use super::error::{PackageError, Result};
-use crate::whole::{self, LockError};
+use crate::whole::{self, LockError, Part};
 
 /// How an archive that is not complete is called: these, its name, and letters that no other process has.
 const PREFIX: &str = ".videg-";
@@ -24,7 +24,13 @@ pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
     let prefix = format!("{PREFIX}{}-", path.file_name().unwrap_or_default().to_string_lossy());
     // Before there is anything new: on a full disk they take the room.
     remove_rests(folder, &prefix);
-    let mut temporary = new_file(folder, &prefix).map_err(PackageError::io("write into", folder))?;
+    let begun = Part::begin(|| {
+        new_file(folder, &prefix).map(|file| {
+            let name = file.path().to_owned();
+            (file, name)
+        })
+    });
+    let (mut temporary, _part) = begun.map_err(PackageError::io("write into", folder))?;
     let written = temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all());
     written.map_err(PackageError::io("write", path))?;
     temporary.persist(path).map_err(|error| PackageError::io("write", path)(error.error))?;

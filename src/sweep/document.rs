@@ -2,7 +2,6 @@
 //! complete (`sums.rs`).
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 use sha2::{Digest as _, Sha256};
 
 use super::column::Column;
@@ -87,61 +86,4 @@ pub(super) fn hexadecimal(bytes: &[u8]) -> String {
         digits.extend([digit(byte >> 4), digit(byte & 15)]);
         digits
     })
-}
-
-/// In what two documents differ, for an error message.
-pub(super) fn differences(there: &str, here: &str) -> String {
-    /// They follow from the rest.
-    const DERIVED: [&str; 4] = ["columns", "points", "runs", "sha256"];
-    let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
-    let (Some(there), Some(here)) = (read(there), read(here)) else {
-        return "what is there is no document of a sweep".to_owned();
-    };
-    let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
-    let (derived, differ): (Vec<&String>, Vec<_>) =
-        keys.filter(|key| there.get(*key) != here.get(*key)).partition(|key| DERIVED.contains(&key.as_str()));
-    let shown = if differ.is_empty() { derived } else { differ };
-    let all: Vec<_> = shown
-        .iter()
-        .map(|key| {
-            let (there, here) = (there.get(*key), here.get(*key));
-            format!("{key} is {}, not {}", without(there, here), without(here, there))
-        })
-        .collect();
-    all.join("; ")
-}
-
-/// A value in few words; of a list, what the other has not, if that is all in which they differ.
-fn without(value: Option<&Value>, other: Option<&Value>) -> String {
-    const LONGEST: usize = 200;
-    let text = match (value, other) {
-        (None, _) => "nothing".to_owned(),
-        (Some(Value::Array(items)), Some(Value::Array(others))) => {
-            // Lists that differ in order or repetition alone are shown whole.
-            let missing = |from: &[Value], item: &Value| !from.contains(item);
-            let alike =
-                !items.iter().any(|item| missing(others, item)) && !others.iter().any(|item| missing(items, item));
-            let own = items.iter().filter(|item| alike || missing(others, item)).map(Value::to_string);
-            format!("[{}]", own.collect::<Vec<_>>().join(", "))
-        }
-        (Some(value), _) => value.to_string(),
-    };
-    if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST).chain("...".chars()).collect() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn differences_name_what_only_one_has_and_lists_in_another_order_as_a_whole() {
-        for (there, here, expected) in [
-            (r#"{"window": [1, 2]}"#, r#"{"window": [1, 3]}"#, "window is [2], not [3]"),
-            (r#"{"vary": ["a", "b"]}"#, r#"{"vary": ["b", "a"]}"#, r#"vary is ["a", "b"], not ["b", "a"]"#),
-            (r#"{"seed": 1, "runs": 2}"#, r#"{"seed": 1, "runs": 3}"#, "runs is 2, not 3"),
-            ("{", "{}", "what is there is no document of a sweep"),
-        ] {
-            assert_eq!(differences(there, here), expected);
-        }
-    }
 }

@@ -51,19 +51,18 @@ pub enum SweepError {
         /// What the system said.
         cause: io::Error,
     },
-    /// Results could not be written; those before are kept.
+    /// The sweep ended before it was complete.
     #[error(
-        "cannot write {}: {cause}; the runs before number {next} are kept, and the same command without --fresh goes \
-         on from there",
+        "{cause}; the runs before number {next} are kept in {}, and the same command without --fresh goes on from there",
         path.display()
     )]
-    Full {
-        /// The file.
+    Ended {
+        /// Where the results are.
         path: PathBuf,
-        /// The first run that is not in it.
+        /// The first run that is not among them.
         next: u64,
-        /// What the system said.
-        cause: io::Error,
+        /// Why it ended.
+        cause: Box<SweepError>,
     },
     /// A file does not hold what it should.
     #[error("{}: {reason}", path.display())]

@@ -4,40 +4,40 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::document::differences;
+use super::differences::{Difference, told};
+use super::unfinished::{Unfinished, complete_name, unfinished};
 use super::{Shard, SweepError, sums, table};
 use crate::input;
-use crate::whole::{self, LockError, partial};
+use crate::whole::{self, LockError, Part, partial};
 
 /// Name of the document in a folder of results.
 pub(super) const DOCUMENT: &str = "sweep.json";
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
 /// What to do about a folder of another sweep.
-const WAY_OUT: &str = "choose another --output, or --fresh to begin anew";
+const WAY_OUT: &str = "type the command with another --output to keep both, or with --fresh to replace what is there";
 
 /// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With
-/// `fresh` whatever was there goes. The file of the results while they are being written.
+/// `fresh` whatever was there goes.
 ///
 /// # Errors
 /// Results of another sweep; results that another process is writing; a refusal of the file system.
-pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<File, SweepError> {
+pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<Unfinished, SweepError> {
     check(folder, document, path, fresh)?;
-    let part = partial(path);
-    let file = lock(&part)?;
+    let results = Unfinished::take(path)?;
     // Before the lock, another process may have been at it.
     check(folder, document, path, fresh)?;
     if fresh {
         // Results go before the document that says whose they are: killed in between, none are taken for another's.
         remove(path)?;
         remove(&table::path(path))?;
-        file.set_len(0).map_err(SweepError::file("empty", &part))?;
+        results.file.set_len(0).map_err(SweepError::file("empty", &results.part()))?;
         if read_document(folder)?.is_some_and(|there| there != document) {
             remove(&folder.join(DOCUMENT))?;
         }
     }
     write_document(folder, document, path)?;
-    Ok(file)
+    Ok(results)
 }
 
 /// That the folder holds this sweep or none; with `fresh`, that no other shard of another sweep would be orphaned.
@@ -46,7 +46,7 @@ fn check(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<(), 
     if there.as_deref() == Some(document) {
         return Ok(());
     }
-    let own = [path.to_owned(), partial(path)];
+    let own = [path.to_owned(), partial(path), unfinished(path)];
     let obstacle = match there {
         _ if fresh => results(folder)?.into_iter().find(|other| !own.contains(other)).map(|other| {
             SweepError::content(&other, "results of another sweep; remove them, or choose another --output")
@@ -73,7 +73,8 @@ pub(super) fn check_document(folder: &Path, document: &str) -> Result<(), SweepE
 }
 
 fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError {
-    let reason = format!("it belongs to another sweep ({}); {way_out}", differences(there, here));
+    let differences = told(there, here, Difference::was_is);
+    let reason = format!("it belongs to another sweep: {differences}; {way_out}");
     SweepError::content(&folder.join(DOCUMENT), reason)
 }
 
@@ -87,12 +88,12 @@ fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     }
 }
 
-/// Files of results in the folder. An empty one that is being written holds none: its document comes first.
+/// Files of results in the folder. An empty one that is not complete holds none: its document comes first.
 fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
     let entries = std::fs::read_dir(folder).map_err(SweepError::file("read", folder))?;
     let is_result = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let whole = name.strip_suffix(".part");
+        let whole = complete_name(&name);
         let is_named = |name: &str| name == RESULTS || Shard::of_file_name(name).is_some();
         is_named(whole.unwrap_or(&name)) && (whole.is_none() || path.metadata().is_ok_and(|file| file.len() > 0))
     };
@@ -110,12 +111,12 @@ pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> R
     if read_document(folder)?.is_some() {
         remove(&part)?; // of an attempt that was killed
     } else {
-        write_synced(&part, document.as_bytes()).map_err(SweepError::file("write", &part))?;
+        let _begun = write_synced(&part, document.as_bytes()).map_err(SweepError::file("write", &part))?;
         match std::fs::hard_link(&part, &path) {
             // Some file systems have no hard links, and a rename replaces what another process wrote just now: it is
             // compared again once the results are complete.
             Err(error) if error.kind() != io::ErrorKind::AlreadyExists && !path.exists() => {
-                std::fs::rename(&part, &path).map_err(SweepError::file("write", &path))?;
+                rename(&part, &path)?;
             }
             _ => remove(&part)?,
         }
@@ -124,15 +125,21 @@ pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> R
 }
 
 /// Writes a new file at `path`, forced to the disk. What stands there goes: it is of an attempt that was killed, or a link
-/// through which another file would be written.
-pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
+/// through which another file would be written. Of what could not be written nothing stays.
+pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<Part> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    let mut file = File::create_new(path)?;
-    file.write_all(content)?;
-    file.sync_all()
+    let (mut file, part) = Part::begin(|| File::create_new(path).map(|file| (file, path.to_owned())))?;
+    let written = file.write_all(content).and_then(|()| file.sync_all());
+    written.map(|()| part).inspect_err(|_| drop(std::fs::remove_file(path)))
+}
+
+/// Gives what was written at `part` its name, or removes it.
+pub(super) fn rename(part: &Path, path: &Path) -> Result<(), SweepError> {
+    let renamed = std::fs::rename(part, path).inspect_err(|_| drop(std::fs::remove_file(part)));
+    renamed.map_err(SweepError::file("write", path))
 }
 
 /// Opens `part`, which no other process has open to write.
@@ -161,7 +168,7 @@ mod tests {
     const ONE: &str = "{\"seed\": 1}\n";
     const OTHER: &str = "{\"seed\": 2}\n";
 
-    fn claimed(folder: &Path, document: &str, fresh: bool) -> Result<File, String> {
+    fn claimed(folder: &Path, document: &str, fresh: bool) -> Result<Unfinished, String> {
         claim(folder, document, &folder.join(RESULTS), fresh).map_err(|error| error.to_string())
     }
 
@@ -201,7 +208,6 @@ mod tests {
         drop(claimed(folder.path(), ONE, false).unwrap());
         assert_eq!(document(folder.path()), ONE);
         assert!(!at(DOCUMENT).is_symlink());
-        fs::remove_file(at("sweep.csv.part")).unwrap();
         symlink(at("other"), at("sweep.csv.part")).unwrap();
         let message = claimed(folder.path(), ONE, true).unwrap_err();
         assert!(message.contains("sweep.csv.part: it is a symbolic link"), "{message}");
@@ -232,8 +238,8 @@ mod tests {
                     let folder = folder.path();
                     scope.spawn(move || {
                         let results = folder.join(format!("sweep.{number}-of-8.csv"));
-                        let mut file = claim(folder, ONE, &results, number % 2 == 0).unwrap();
-                        file.write_all(b"run,").unwrap();
+                        let mut results = claim(folder, ONE, &results, number % 2 == 0).unwrap();
+                        results.file.write_all(b"run,").unwrap();
                     });
                 }
             });
@@ -246,7 +252,7 @@ mod tests {
         let [one, other] = ["sweep.1-of-2.csv", "sweep.2-of-2.csv"].map(|name| folder.path().join(name));
         write_document(folder.path(), ONE, &one).unwrap();
         let message = write_document(folder.path(), OTHER, &other).unwrap_err().to_string();
-        assert!(message.contains("it belongs to another sweep (seed is 1, not 2)"), "{message}");
+        assert!(message.contains("it belongs to another sweep: --seed was 1, is 2;"), "{message}");
         write_document(folder.path(), ONE, &other).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -123,7 +123,7 @@ fn line_ends_in_names_of_columns_and_items_leave_a_line_a_row() {
 fn whole_lines_that_are_not_those_due_are_kept_and_named_and_torn_ones_are_made_again() {
     let sweep = sweep(&description(0, 1), &["a", "b", "c"]).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("sweep.csv.part");
+    let kept = folder.path().join("sweep.csv.unfinished");
     let heading = "run,point,sample,label,two lines,error\n";
     for (rest, next) in [("", 1), ("1,1,0,b", 1), ("1,1,0\0\0\0\0\n2,2,0,c,,\n", 1), ("1,1,0,b,,\n\0\0\0", 2)] {
         let bytes = format!("{heading}0,0,0,a,,\n{rest}");
@@ -135,9 +135,9 @@ fn whole_lines_that_are_not_those_due_are_kept_and_named_and_torn_ones_are_made_
         ("run,point\n0,0,0,a,,\n".to_owned(), "its first line is not the heading of this sweep"),
     ] {
         let message = resumed(&sweep, folder.path(), bytes.as_bytes()).unwrap_err();
-        let expected = format!("sweep.csv.part: {said}; no interruption leaves a whole line like that");
+        let expected = format!("sweep.csv.unfinished: {said}; no interruption leaves a whole line like that");
         assert!(message.contains(&expected), "{message}");
-        assert_eq!(fs::read(&part).unwrap(), bytes.as_bytes(), "something was thrown away");
+        assert_eq!(fs::read(&kept).unwrap(), bytes.as_bytes(), "something was thrown away");
     }
 }
 

@@ -1,15 +1,17 @@
 //! Putting shards together: the same bytes as those of a sweep that was never divided.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::document::{Kept, differences};
+use super::differences::{Difference, told};
+use super::document::Kept;
 use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
+use super::unfinished::Unfinished;
 use super::{Shard, SweepError, column, lines, sums, table};
-use crate::{input, whole};
+use crate::input;
+use crate::whole::{self, Part};
 
 /// Version of this program: tables that another one writes may have other bytes.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -29,17 +31,22 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     std::fs::create_dir_all(output).map_err(SweepError::file("make the folder", output))?;
     folder::check_document(output, &document)?;
     let path = output.join(RESULTS);
-    let part = whole::partial(&path);
-    let file = folder::lock(&part)?;
+    let (mut results, _begun) =
+        Part::begin(|| Unfinished::take(&path).map(|results| (results, whole::partial(&path))))?;
     let is_new = !output.join(DOCUMENT).exists();
     folder::write_document(output, &document, &path)?;
-    let joined = join(&shards, &kept, &file, &part).and_then(|failed| {
-        file.sync_all().map_err(SweepError::file("write", &part))?;
+    let joined = join(&shards, &kept, &results).and_then(|failed| {
         sums::forget(output, &document, &[&path, &table::path(&path)])?;
-        std::fs::rename(&part, &path).map_err(SweepError::file("rename", &part))?;
+        results.finish()?;
         Ok(failed)
     });
-    let failed = joined.inspect_err(|_| leave(output, &part, is_new))?;
+    let failed = match joined {
+        Ok(failed) => failed,
+        Err(error) => {
+            leave(output, results, is_new);
+            return Err(error);
+        }
+    };
     let parquet = table::write(&path, &kept.columns, &document, true)?;
     sums::record(output, &document, &[&path, &parquet])?;
     let files = vec![path, output.join(DOCUMENT), parquet];
@@ -47,10 +54,9 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
 }
 
 /// Removes what a merge that failed has written: the document only if it `is_new`.
-fn leave(output: &Path, part: &Path, is_new: bool) {
+fn leave(output: &Path, results: Unfinished, is_new: bool) {
     // Why it failed is what the user is told; a document without results is in nobody's way but that of another sweep.
-    let removed = folder::remove(part);
-    if is_new && removed.is_ok() {
+    if results.discard().is_ok() && is_new {
         let _ = folder::remove(&output.join(DOCUMENT));
     }
 }
@@ -65,11 +71,8 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
             None => first = Some(text),
             Some(first) if *first == text => {}
             Some(first) => {
-                let reason = format!(
-                    "it belongs to another sweep than {} ({})",
-                    folders[0].display(),
-                    differences(first, &text)
-                );
+                let (other, differences) = (folders[0].display(), told(first, &text, Difference::is_not));
+                let reason = format!("it belongs to another sweep than {other}: {differences}");
                 return Err(SweepError::content(&path, reason));
             }
         }
@@ -126,10 +129,10 @@ impl From<io::Error> for Broken {
 }
 
 /// Writes the lines of all shards one after the other; how many runs failed.
-fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> Result<u64, SweepError> {
+fn join(shards: &[(Shard, PathBuf)], kept: &Kept, results: &Unfinished) -> Result<u64, SweepError> {
     let heading = column::heading(&kept.columns);
-    let mut failed = 0;
-    let written = |cause| SweepError::file("write", part)(cause);
+    let (mut failed, file) = (0, &results.file);
+    let written = |cause| SweepError::file("write", &results.part())(cause);
     let mut out = BufWriter::new(file);
     out.rewind().and_then(|()| file.set_len(0)).and_then(|()| out.write_all(&heading)).map_err(written)?;
     for (shard, path) in shards {
@@ -145,6 +148,6 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, file: &File, part: &Path) -> R
         sums::check(path)?;
         failed += extent.failed;
     }
-    out.flush().map_err(written)?;
+    out.flush().and_then(|()| file.sync_all()).map_err(written)?;
     Ok(failed)
 }

@@ -9,6 +9,7 @@
 mod axis;
 mod column;
 mod design;
+mod differences;
 mod document;
 mod engine;
 mod error;
@@ -27,6 +28,7 @@ mod shard;
 mod sums;
 mod table;
 mod times;
+mod unfinished;
 mod vary;
 
 pub use column::{Column, Type};

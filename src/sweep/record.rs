@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 
 use super::folder::{self, RESULTS};
 use super::lines::{self, Extent, Rest};
+use super::unfinished::Unfinished;
 use super::{Column, Shard, Sweep, SweepError, column, sums, table};
-use crate::{input, whole};
+use crate::input;
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
@@ -31,8 +32,7 @@ pub(super) enum Found {
 
 /// Results that are being written.
 pub(super) struct Record {
-    file: File,
-    part: PathBuf,
+    results: Unfinished,
     path: PathBuf,
     /// First run that is not in it.
     pub next: u64,
@@ -62,20 +62,18 @@ impl Record {
     pub fn open(folder: &Path, sweep: &Sweep, shard: Option<Shard>, fresh: bool) -> Result<Found, SweepError> {
         std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
         let path = results_path(folder, shard);
-        let file = folder::claim(folder, sweep.document(), &path, fresh)?;
-        let part = whole::partial(&path);
+        let results = folder::claim(folder, sweep.document(), &path, fresh)?;
         let range = range(sweep, shard);
         if let Some(extent) = complete(&path, sweep.columns(), &range)? {
-            folder::remove(&part)?;
+            results.discard()?;
             return Ok(Found::Complete { failed: extent.failed });
         }
-        let extent = extent(&file, &part, sweep.columns(), &range)?;
+        let extent = extent(&results.file, &results.kept(), sweep.columns(), &range)?;
         if let Rest::Wrong(reason) = extent.rest {
-            return Err(SweepError::content(&part, format!("{reason}; {NOT_TORN}")));
+            return Err(SweepError::content(&results.kept(), format!("{reason}; {NOT_TORN}")));
         }
         let mut record = Self {
-            file,
-            part,
+            results,
             path,
             next: range.start + extent.lines,
             failed: extent.failed,
@@ -90,13 +88,13 @@ impl Record {
     }
 
     fn go_on_after(&mut self, bytes: u64) -> Result<(), SweepError> {
-        let cut = self.file.set_len(bytes).and_then(|()| self.file.seek(SeekFrom::Start(bytes)));
-        cut.map(|_| ()).map_err(SweepError::file("cut", &self.part))
+        let cut = self.results.file.set_len(bytes).and_then(|()| self.results.file.seek(SeekFrom::Start(bytes)));
+        cut.map(|_| ()).map_err(SweepError::file("cut", &self.kept()))
     }
 
-    /// The file while it is being written.
-    pub fn part(&self) -> &Path {
-        &self.part
+    /// Where the results are if they do not become complete.
+    pub fn kept(&self) -> PathBuf {
+        self.results.kept()
     }
 
     /// Adds the lines of the runs that are due.
@@ -111,18 +109,18 @@ impl Record {
         self.next += lines.len() as u64;
         self.failed += lines.iter().filter(|line| lines::has_failed(line)).count() as u64;
         if self.synced.elapsed() >= SYNC_EVERY {
-            self.file.sync_data().map_err(|cause| self.full(cause))?;
+            self.results.file.sync_data().map_err(|cause| self.full(cause))?;
             self.synced = Instant::now();
         }
         Ok(())
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), SweepError> {
-        self.file.write_all(bytes).map_err(|cause| self.full(cause))
+        self.results.file.write_all(bytes).map_err(|cause| self.full(cause))
     }
 
     fn full(&self, cause: io::Error) -> SweepError {
-        SweepError::Full { path: self.part.clone(), next: self.next, cause }
+        SweepError::file("write", &self.kept())(cause)
     }
 
     /// Forces what is there to the disk.
@@ -130,20 +128,20 @@ impl Record {
     /// # Errors
     /// If the disk refuses.
     pub fn sync(&self) -> Result<(), SweepError> {
-        self.file.sync_all().map_err(|cause| self.full(cause))
+        self.results.file.sync_all().map_err(|cause| self.full(cause))
     }
 
     /// Gives the complete results of the sweep of `document` their name.
     ///
     /// # Errors
     /// If by now the folder is that of another sweep, or the file system refuses.
-    pub fn finish(self, document: &str) -> Result<(), SweepError> {
+    pub fn finish(mut self, document: &str) -> Result<(), SweepError> {
         self.sync()?;
         let folder = self.path.parent().unwrap_or(Path::new(""));
         folder::write_document(folder, document, &self.path)?;
         // Of those that were there before `fresh`; killed from here on, none are compared with others' checksums.
         sums::forget(folder, document, &[&self.path, &table::path(&self.path)])?;
-        std::fs::rename(&self.part, &self.path).map_err(SweepError::file("rename", &self.part))
+        self.results.finish()
     }
 }
 

@@ -77,10 +77,12 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, watch: &mut dyn Watch)
         Found::Unfinished(mut record) => {
             let resumed_from = record.next - range.start;
             check_last(sweep, engine, &record)?;
-            compute(sweep, engine, job, &range, &mut record, watch)?;
-            let (done, failed) = (record.next - range.start, record.failed);
+            let computed = compute(sweep, engine, job, &range, &mut record, watch).and_then(|()| record.sync());
+            let (next, kept) = (record.next, record.kept());
+            computed.map_err(|cause| SweepError::Ended { path: kept.clone(), next, cause: cause.into() })?;
+            let (done, failed) = (next - range.start, record.failed);
             if done < runs {
-                record.sync()?;
+                files[0] = kept;
             } else {
                 record.finish(sweep.document())?;
             }
@@ -121,7 +123,7 @@ fn check_last(sweep: &Sweep, engine: &Engine, record: &Record) -> Result<(), Swe
          that, or begin anew with --fresh",
         run.number
     );
-    Err(SweepError::content(record.part(), reason))
+    Err(SweepError::content(&record.kept(), reason))
 }
 
 /// What the threads share.

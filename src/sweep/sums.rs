@@ -13,7 +13,7 @@ use sha2::{Digest as _, Sha256};
 use super::SweepError;
 use super::document::hexadecimal;
 use super::folder::{self, DOCUMENT};
-use crate::whole;
+use crate::whole::{self, Part};
 
 /// What stands before the checksums. Nothing else in the document does: a text has no line breaks, and other keys are
 /// indented further or have other names.
@@ -104,8 +104,22 @@ pub(super) fn forget(folder: &Path, document: &str, results: &[&Path]) -> Result
 fn change(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut Sums)) -> Result<(), SweepError> {
     // Only one that this program wrote ends so; others it does not write to.
     let Some(head) = document.strip_suffix(END) else { return Ok(()) };
+    let lock = folder.join(LOCK);
+    let turn = wait_for(&lock)?;
+    let written = write(folder, (document, head), first, change);
+    let removed = folder::remove(&lock);
+    drop(turn);
+    written.and(removed)
+}
+
+/// Writes the `document` of the folder, which begins with `head`, with other checksums.
+fn write(
+    folder: &Path,
+    (document, head): (&str, &str),
+    first: &Path,
+    change: impl FnOnce(&mut Sums),
+) -> Result<(), SweepError> {
     let path = folder.join(DOCUMENT);
-    let turn = wait_for(&folder.join(LOCK))?;
     folder::check_document(folder, document)?;
     let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
     let mut sums = read(&path, &text)?;
@@ -113,19 +127,16 @@ fn change(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut 
     let sums = serde_json::to_string_pretty(&sums).unwrap_or_default().replace('\n', "\n  ");
     // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
     let part = first.with_extension("json.part");
-    folder::write_synced(&part, format!("{head}{KEY}{sums}{END}").as_bytes())
+    let _begun = folder::write_synced(&part, format!("{head}{KEY}{sums}{END}").as_bytes())
         .map_err(SweepError::file("write", &part))?;
-    std::fs::rename(&part, &path).map_err(SweepError::file("write", &path))?;
-    let removed = folder::remove(&folder.join(LOCK));
-    drop(turn);
-    removed
+    folder::rename(&part, &path)
 }
 
 /// Waits until no other shard of the folder writes its own: they take turns.
-fn wait_for(lock: &Path) -> Result<File, SweepError> {
+fn wait_for(lock: &Path) -> Result<(File, Part), SweepError> {
     let end = Instant::now() + PATIENCE;
     loop {
-        match folder::lock(lock) {
+        match Part::begin(|| folder::lock(lock).map(|file| (file, lock.to_owned()))) {
             Err(SweepError::Locked { .. }) if Instant::now() < end => std::thread::sleep(Duration::from_millis(10)),
             other => return other,
         }

@@ -16,6 +16,15 @@ const SCRIPTS: [(&str, &str); 3] = [
 ];
 
 #[test]
+fn no_tutorial_calls_cargo() {
+    for (page, _) in SCRIPTS.into_iter().chain([("docs/tutorial/system.md", "")]) {
+        let chapter = Chapter::read(Path::new(page));
+        let calls = chapter.blocks.iter().find(|block| block.text.contains("cargo"));
+        assert!(calls.is_none(), "{}", calls.map_or_else(String::new, |block| chapter.place(block)));
+    }
+}
+
+#[test]
 fn the_scripts_are_the_tutorials() {
     for (page, script) in SCRIPTS {
         GOLDEN.file(root().join(script), &cells(&Chapter::read(Path::new(page))));
@@ -25,8 +34,10 @@ fn the_scripts_are_the_tutorials() {
 /// The page as a script: text as cells of Markdown, code as cells of code. What code prints is left to those who run it.
 fn cells(chapter: &Chapter) -> String {
     let page = chapter.path.display();
-    let mut script =
-        format!("# Made from {page} by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.\n");
+    let mut script = format!(
+        "# Made from {page} by `UPDATE_BOOK=1 cargo test --test book`; run in the root of the source tree.\n\n\
+         # %%\nimport sys\n\nsys.path.append(\"examples\")\n"
+    );
     let mut at = 0;
     for block in &chapter.blocks {
         let fence = chapter.text[..block.range.start].rfind("```").unwrap();
@@ -49,15 +60,13 @@ fn words(script: &mut String, text: &str) {
     }
 }
 
-/// Python as it is, commands as calls of a shell, files as they are written.
+/// Python as it is, commands as calls of a shell that finds the tool (`examples/find_videg.py`), files as they are written.
 fn code(block: &Block) -> Option<String> {
     match (block.language.as_str(), block.file()) {
         ("python", _) => Some(block.text.clone()),
         ("console", _) => {
-            let runs = console::steps(&block.text)
-                .into_iter()
-                .map(|step| format!("subprocess.run({:?}, shell=True, check=True)\n", step.command));
-            Some(format!("import subprocess\n\n{}", runs.collect::<String>()))
+            let runs = console::steps(&block.text).into_iter().map(|step| format!("run({:?})\n", step.command));
+            Some(format!("from find_videg import run\n\n{}", runs.collect::<String>()))
         }
         (_, Some(name)) => {
             let folder = format!("Path({name:?}).parent.mkdir(parents=True, exist_ok=True)");

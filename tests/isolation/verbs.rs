@@ -239,14 +239,14 @@ fn the_limits_of_an_isolated_fmu_decide_which_sweep_it_is() {
     assert_eq!(document["isolation"], serde_json::json!({"time_limit_s": 7.5, "memory_limit_bytes": null}));
     assert!(sweep(&limits).status.success(), "the same sweep again");
     for (other, differs) in [
-        (&["--time-limit", "8", "--memory-limit", "0"][..], "\"time_limit_s\":7.5"),
-        (&[][..], "\"memory_limit_bytes\":null"),
-        (&["--no-isolate"][..], "not nothing"),
+        (&["--time-limit", "8", "--memory-limit", "0"][..], "time_limit_s 7.5, is"),
+        (&[][..], "was any memory_limit_bytes"),
+        (&["--no-isolate"][..], "is not given"),
     ] {
         let output = sweep(other);
         let said = said(&output);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
-        assert!(said.contains("it belongs to another sweep (isolation is") && said.contains(differs), "{said}");
+        assert!(said.contains("it belongs to another sweep: the isolation was") && said.contains(differs), "{said}");
     }
 }
 

@@ -90,7 +90,7 @@ fn name(path: &Path) -> String {
 
 /// Whether a file is one that is not complete, by its name.
 pub fn is_partial(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|extension| extension == "part")
+    Path::new(name).extension().is_some_and(|extension| ["part", "unfinished"].contains(&&*extension.to_string_lossy()))
 }
 
 /// That a program which failed names a file in `folder` and what is wrong with the disk, in its last line.

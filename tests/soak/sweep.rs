@@ -71,7 +71,9 @@ fn disturbed(folder: &Path, command: impl Fn() -> Command, expected: &Files, fau
         }
         hits += 1;
         if random.u8(0..3) == 0 {
-            spoil(&folder.join("sweep.csv.part"), &mut random);
+            for name in ["sweep.csv.part", "sweep.csv.unfinished"] {
+                spoil(&folder.join(name), &mut random);
+            }
         }
     }
     hits

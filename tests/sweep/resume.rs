@@ -27,7 +27,11 @@ fn long(folder: &Path) -> Command {
 
 /// Lines of results that are being written.
 fn lines_written(folder: &Path) -> usize {
-    fs::read_to_string(folder.join("sweep.csv.part")).map_or(0, |text| text.lines().count())
+    lines(&folder.join("sweep.csv.part"))
+}
+
+fn lines(results: &Path) -> usize {
+    fs::read_to_string(results).map_or(0, |text| text.lines().count())
 }
 
 /// Starts a command and waits until it has written some lines, or is done.
@@ -105,13 +109,45 @@ fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
         done(Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]));
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
-        let written = lines_written(&folder) - 1;
+        assert_eq!(names(&folder), ["sweep.csv.unfinished", "sweep.json"]);
+        let kept = folder.join("sweep.csv.unfinished");
+        let written = lines(&kept) - 1;
         assert!(written > 0);
         let expected = format!(
-            "videg: interrupted after {written} of 1000000 runs; the same command without --fresh goes on from there\n"
+            "videg: interrupted after {written} of 1000000 runs, which are in {}; the same command without --fresh goes on \
+             from there\n",
+            kept.display()
         );
         assert_eq!(stderr(&output), expected);
     }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_sweep_interrupted_at_any_moment_leaves_nothing_half_written_and_ends_in_the_same_bytes() {
+    let (_guard, folder) = folder();
+    let [whole, broken] = ["whole", "broken"].map(|name| folder.join(name));
+    done(&mut long(&whole));
+    let mut random = fastrand::Rng::with_seed(3);
+    for _ in 0..12 {
+        let mut command = with_default_signals(&long(&broken));
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(random.u64(20..500)));
+        // It may have come to its end.
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
+        let code = child.wait().unwrap().code();
+        // Without a code, it was met before it could watch for signals.
+        assert!(matches!(code, None | Some(0 | 130)), "{code:?}");
+        let there = if broken.exists() { names(&broken) } else { Vec::new() };
+        let may_stay = ["sweep.csv", "sweep.csv.unfinished", "sweep.json", "sweep.parquet"];
+        assert!(there.iter().all(|name| may_stay.contains(&name.as_str())), "{there:?}");
+        if code == Some(0) {
+            fs::remove_dir_all(&broken).unwrap();
+        }
+    }
+    done(&mut long(&broken));
+    assert_same_results(&whole, &broken);
+    assert_eq!(names(&broken), ["sweep.csv", "sweep.json", "sweep.parquet"]);
 }
 
 #[test]
@@ -124,14 +160,19 @@ fn the_same_command_again_does_nothing_and_another_one_is_refused_with_what_diff
     assert_eq!((&said["resumed_from"], &said["runs"]), (&4.into(), &4.into()));
     assert_eq!(names(&folder), ["sweep.csv", "sweep.json", "sweep.parquet"]);
     for (more, named) in [
-        (&["--seed", "2"][..], "seed is 1, not 2"),
-        (&["--set", "ball.mass=0.004"], "settings is [], not [{\"name\":\"ball.mass\",\"value\":\"0.004\"}]"),
-        (&["--window", "0.5,2"], "window is [1.0], not [0.5]"),
-        (&["--samples", "2"], "samples is 1, not 2"),
+        (&["--seed", "2"][..], "--seed was 1, is 2"),
+        (&["--set", "ball.mass=0.004"], "--set ball.mass was not given, is 0.004"),
+        (&["--window", "0.5,2"], "--window was 1,2, is 0.5,2"),
+        (&["--vary", "membrane.restitution=0.2:0.9:5"], "--vary membrane.restitution was 0.2:0.9:4, is 0.2:0.9:5"),
+        (&["--record", "ball.position"], "the column ball.position was not given, is real"),
+        (&["--samples", "2"], "--samples was 1, is 2"),
     ] {
         let (code, message) = refused(&mut sweep(&folder, &[&FOUR[..], more].concat()));
         assert_eq!(code, Some(2));
-        assert!(message.contains("it belongs to another sweep") && message.contains(named), "{message}");
+        assert!(message.contains(&format!("it belongs to another sweep: {named}")), "{message}");
+        let to_type =
+            "; type the command with another --output to keep both, or with --fresh to replace what is there\n";
+        assert!(message.ends_with(to_type) && !message.contains(['{', '[', '"']), "{message}");
     }
     assert_eq!(fs::read(folder.join("sweep.csv")).unwrap(), before);
     done(sweep(&folder, &FOUR).args(["--seed", "2", "--fresh"]));
@@ -211,6 +252,8 @@ fn a_full_disk_is_named_and_what_was_written_is_gone_on_with() {
         message.contains("cannot write") && message.contains("the same command without --fresh goes on from there"),
         "{message}"
     );
+    assert_eq!(names(&full), ["sweep.csv.unfinished", "sweep.json"]);
+    assert!(message.contains(&*full.join("sweep.csv.unfinished").to_string_lossy()), "{message}");
     let said = json(&mut long(&full));
     assert!(said["resumed_from"].as_u64().unwrap() > 20, "{said}");
     assert_same_results(&whole, &full);

@@ -56,7 +56,10 @@ fn shards_that_do_not_make_a_whole_are_refused() {
     let message = refused(&[&one, &other_division]);
     assert!(message.contains("shards, others are of "), "{message}");
     let message = refused(&[&one, &two, &foreign]);
-    assert!(message.contains("it belongs to another sweep than ") && message.contains("seed is 1, not 9"), "{message}");
+    assert!(
+        message.contains("it belongs to another sweep than ") && message.contains("--seed is 9, not 1"),
+        "{message}"
+    );
     let message = refused(&[&one, &empty]);
     assert!(message.contains("cannot read") && message.contains("sweep.json"), "{message}");
     let text = fs::read_to_string(two.join("sweep.2-of-3.csv")).unwrap();

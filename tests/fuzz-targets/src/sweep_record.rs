@@ -53,11 +53,12 @@ fn lines(bytes: &[u8]) -> Vec<Vec<u8>> {
 fn check(bytes: &[u8]) -> bool {
     let Own { sweep, engine, lines: whole } = &*OWN;
     let folder = tempfile::tempdir().unwrap();
-    let [part, path] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
+    let [part, kept, path] =
+        ["sweep.csv.part", "sweep.csv.unfinished", "sweep.csv"].map(|name| folder.path().join(name));
     fs::write(folder.path().join("sweep.json"), sweep.document()).unwrap();
     fs::write(&part, bytes).unwrap();
     let outcome = run(folder.path(), sweep, engine);
-    let results = lines(&fs::read(if path.exists() { &path } else { &part }).unwrap());
+    let results = lines(&fs::read(if path.exists() { &path } else { &kept }).unwrap());
     let kept = results.iter().zip(lines(bytes)).take_while(|(one, other)| **one == *other).count();
     let is_torn = |line: &Vec<u8>| !line.ends_with(b"\n") || line.contains(&0);
     let due = lines(bytes).iter().take_while(|line| !is_torn(line)).count();

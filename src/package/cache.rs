@@ -1,0 +1,117 @@
+//! FMUs in the user's folder of caches, for a source tree that cannot be written. Their folder is named after what is in them:
+//! another program has other ones, and programs that write the same do not disturb each other.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest as _, Sha256};
+
+use super::error::{PackageError, Result};
+use super::write;
+
+/// FMUs, and why they are not where users know them, if they are not.
+#[derive(Debug)]
+pub struct Placed {
+    /// In the order of [`super::FMUS`].
+    pub archives: Vec<PathBuf>,
+    /// What was said when they were to be written there.
+    pub refused: Option<PackageError>,
+}
+
+/// Writes the archives into `folder`, or else into a folder of their own below that of caches.
+///
+/// # Errors
+/// When neither can be written.
+pub(super) fn place(archives: &[Vec<u8>], folder: &Path, caches: Option<PathBuf>) -> Result<Placed> {
+    let refused = match write(archives, folder) {
+        Ok(archives) => return Ok(Placed { archives, refused: None }),
+        Err(refused) => refused,
+    };
+    let Some(caches) = caches else { return Err(PackageError::NoPlace { refused: refused.into(), cached: None }) };
+    match write(archives, &caches.join("videg").join(name(archives))) {
+        Ok(archives) => Ok(Placed { archives, refused: Some(refused) }),
+        Err(cached) => Err(PackageError::NoPlace { refused: refused.into(), cached: Some(cached.into()) }),
+    }
+}
+
+/// The folder of the archives: version, and the beginning of a SHA-256 of all their bytes.
+fn name(archives: &[Vec<u8>]) -> String {
+    let hash = Sha256::digest(archives.concat());
+    hash.iter().take(8).fold(concat!(env!("CARGO_PKG_VERSION"), "-").to_owned(), |mut name, byte| {
+        // A text takes whatever is written into it.
+        let _ = write!(name, "{byte:02x}");
+        name
+    })
+}
+
+/// The user's folder of caches: `XDG_CACHE_HOME`, or that of the system.
+pub(super) fn folder() -> Option<PathBuf> {
+    folder_of(|name| std::env::var_os(name), std::env::home_dir())
+}
+
+fn folder_of(variable: impl Fn(&str) -> Option<OsString>, home: Option<PathBuf>) -> Option<PathBuf> {
+    // A path that is not absolute counts as none, as the XDG specification has it.
+    let absolute = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let of_system = || match std::env::consts::OS {
+        "windows" => absolute("LOCALAPPDATA"),
+        "macos" => home.map(|home| home.join("Library/Caches")),
+        _ => home.map(|home| home.join(".cache")),
+    };
+    absolute("XDG_CACHE_HOME").or_else(of_system)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn archives(content: &str) -> Vec<Vec<u8>> {
+        ["harvester", "circuit"].map(|name| format!("{name} {content}").into_bytes()).to_vec()
+    }
+
+    #[test]
+    fn archives_go_where_users_know_them_and_to_the_cache_where_that_cannot_be_written() {
+        let guard = tempfile::tempdir().unwrap();
+        let [tree, caches] = ["tree", "caches"].map(|name| guard.path().join(name));
+        let placed = place(&archives("1"), &tree, Some(caches.clone())).unwrap();
+        assert!(placed.refused.is_none() && placed.archives[0].starts_with(&tree) && !caches.exists());
+        fs::remove_dir_all(&tree).unwrap();
+        fs::write(&tree, "no folder").unwrap();
+        let placed = |content| place(&archives(content), &tree, Some(caches.clone())).unwrap();
+        let (first, again, changed) = (placed("1"), placed("1"), placed("2"));
+        assert!(first.refused.unwrap().to_string().contains(&*tree.to_string_lossy()));
+        assert_eq!(first.archives, again.archives);
+        assert_ne!(first.archives, changed.archives, "those of another program");
+        assert_eq!(fs::read(&first.archives[0]).unwrap(), b"harvester 1");
+        assert_eq!(fs::read(&changed.archives[1]).unwrap(), b"circuit 2");
+    }
+
+    #[test]
+    fn where_neither_can_be_written_both_are_named() {
+        let guard = tempfile::tempdir().unwrap();
+        let [tree, caches] = ["tree", "caches"].map(|name| guard.path().join(name));
+        for path in [&tree, &caches] {
+            fs::write(path, "no folder").unwrap();
+        }
+        for (asked, named) in [(Some(caches.clone()), "caches"), (None, "there is no folder of caches")] {
+            let said = place(&archives("1"), &tree, asked).unwrap_err().to_string();
+            assert!(said.contains("tree") && said.contains(named) && said.contains("set XDG_CACHE_HOME to"), "{said}");
+        }
+    }
+
+    #[test]
+    fn the_folder_of_caches_is_the_one_that_is_named_or_that_of_the_system() {
+        let home = std::env::temp_dir();
+        let named = home.join("named").into_os_string();
+        let of = |value: Option<OsString>| {
+            folder_of(|name| if name == "XDG_CACHE_HOME" { value.clone() } else { None }, Some(home.clone()))
+        };
+        assert_eq!(of(Some(named.clone())), Some(named.into()));
+        if cfg!(target_os = "linux") {
+            assert_eq!(of(Some("relative".into())), Some(home.join(".cache")));
+            assert_eq!(of(None), Some(home.join(".cache")));
+        }
+    }
+}
