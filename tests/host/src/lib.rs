@@ -8,6 +8,7 @@ mod arguments;
 mod call;
 mod functions;
 pub mod hostile;
+pub mod initial;
 mod instance;
 mod log;
 mod random;
