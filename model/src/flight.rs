@@ -165,6 +165,9 @@ impl Flight {
         if c2 != 0.0 || c3 != 0.0 || c0.abs() >= reach {
             return Some(window);
         }
+        if c1 == 0.0 {
+            return None;
+        }
         let elapsed = (reach - c0 * c1.signum()) / c1.abs();
         // Beyond 2^53 windows time itself has no digits left; a ball that slow never arrives.
         let windows = elapsed * self.frequency;

@@ -79,6 +79,9 @@ impl Flight {
     /// Zeros of a derivative whose polynomial part is constant: sine or cosine have a given value twice in a period.
     #[inline]
     fn harmonic_zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
+        if self.swing == 0.0 {
+            return Knots::default(); // a constant alone
+        }
         let [_, c1, c2, c3] = self.coefficients;
         let omega = self.omega();
         let (level, is_cosine) = match order {
@@ -88,7 +91,7 @@ impl Flight {
         };
         let mut zeros = Knots::default();
         if level.is_nan() || level.abs() > 1.0 {
-            return zeros; // the constant outweighs the harmonic part, or both are zero
+            return zeros; // the constant outweighs the harmonic part
         }
         let first = level.asin() * (1.0 / TAU);
         let other = ((1.0 - level) * (1.0 + level)).sqrt();
