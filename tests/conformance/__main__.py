@@ -86,7 +86,7 @@ def check(tool: str, fmus: dict[str, str], folder: Path) -> list[record.Record]:
         if not run(tool, folder, break_fmu(fmu, folder))[0]:
             complaints.append("does not notice that the GUID and the start value of an input are missing")
         found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=complaints, known=known)
-        records.append(judge_calls(found, calls, name))
+        records.append(judge_calls(found, calls, name) if loads(tool) else found)
     return records
 
 
@@ -98,7 +98,7 @@ def takes(tool: str, fmu: str) -> bool:
 def judge_calls(found: record.Record, folder: Path, fmu: str) -> record.Record:
     """Takes what the calls of a tool returned into its record."""
     calls = recorded.read(folder, fmu)
-    found.complaints += recorded.others(calls)
+    found.complaints += recorded.others(calls) if calls else ["called nothing that was counted"]
     found.calls = recorded.summary(calls)
     return found
 

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod call;
+pub mod experiment;
 mod functions;
 pub mod hostile;
 pub mod initial;
