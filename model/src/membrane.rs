@@ -102,7 +102,7 @@ impl Membrane {
         Tangent { cos, versine: half * sin, cos_slope: -sin * cos / root }
     }
 
-    /// 1 - `half`^2 where that loses its digits: R_2 + root - delta is taken from root^2 - delta^2 = R_2^2 - 2 r_b delta.
+    /// 1 - `half`^2 where that loses its digits: `R_2` + root - delta is taken from root^2 - delta^2 = `R_2`^2 - 2 `r_b` delta.
     ///
     /// Not inlined: the compiler would divide by the deflection ahead of the branch, by zero at rest, which a host may trap.
     #[cold]
