@@ -35,8 +35,9 @@ fn the_page_is_that_of_the_model_descriptions() {
 }
 
 fn write_table(text: &mut String, description: &ModelDescription) {
-    write!(text, "\n## {}\n\n{}.\n", description.model_name, description.description.as_deref().unwrap()).unwrap();
     use Causality::{CalculatedParameter, Input, Local, Output, Parameter};
+
+    write!(text, "\n## {}\n\n{}.\n", description.model_name, description.description.as_deref().unwrap()).unwrap();
     for causality in [Parameter, CalculatedParameter, Input, Output, Local] {
         let variables: Vec<_> = description.variables.iter().filter(|it| it.causality == causality).collect();
         if variables.is_empty() {
