@@ -35,16 +35,19 @@ fn the_page_is_that_of_the_model_descriptions() {
 }
 
 fn write_table(text: &mut String, description: &ModelDescription) {
+    use Causality::{CalculatedParameter, Input, Local, Output, Parameter};
+
     write!(text, "\n## {}\n\n{}.\n", description.model_name, description.description.as_deref().unwrap()).unwrap();
-    for causality in [Causality::Parameter, Causality::CalculatedParameter, Causality::Input, Causality::Output] {
+    for causality in [Parameter, CalculatedParameter, Input, Output, Local] {
         let variables: Vec<_> = description.variables.iter().filter(|it| it.causality == causality).collect();
         if variables.is_empty() {
             continue;
         }
         let heading = match causality {
-            Causality::Parameter => "Parameters",
-            Causality::CalculatedParameter => "Calculated parameters",
-            Causality::Input => "Inputs",
+            Parameter => "Parameters",
+            CalculatedParameter => "Calculated parameters",
+            Input => "Inputs",
+            Local => "Local variables",
             _ => "Outputs",
         };
         write!(text, "\n### {heading}\n\n| paper symbol | variable | unit | equation |\n|---|---|---|---|\n").unwrap();

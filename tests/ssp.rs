@@ -52,6 +52,8 @@ fn the_package_holds_both_fmus_their_connections_and_the_case() {
         assert!(structure.contains(&connection), "{connection} is not in {structure}");
     }
     assert!(structure.contains("<ssd:DefaultExperiment startTime=\"0.0\" stopTime=\"30.0\"/>"), "{structure}");
+    let master = structure.split_once("<ssc:Annotation type=\"org.openmodelica\">").unwrap().1;
+    assert!(master.contains("<oms:FixedStepMaster description=\"oms-ma\" stepSize=\"0.001\" "), "{structure}");
     let file = std::fs::File::open(folder.path().join("Harvester.ssp")).unwrap();
     let mut archive = zip::ZipArchive::new(file).unwrap();
     for fmu in ["VibroImpactHarvester", "HarvestingCircuit"] {

@@ -69,8 +69,8 @@ impl Devices {
             threshold: parameters.release_voltage(),
             resistance: parameters.resistance(),
             conductance: match parameters.release {
-                Release::Zener | Release::Storage => 1.0 / parameters.resistance(),
-                Release::Switch => (1.0 / parameters.resistance()).min(SWITCH_CONDUCTANCE),
+                Release::Zener | Release::Storage => parameters.conductance(),
+                Release::Switch => parameters.conductance().min(SWITCH_CONDUCTANCE),
             },
             release: parameters.release,
             saturation,

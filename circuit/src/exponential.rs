@@ -73,7 +73,7 @@ impl Exponential<'_> {
                 next = 0.1 * h;
                 continue;
             };
-            let proposed = h * (0.9 * step.error.powf(-0.25)).clamp(0.1, 4.0);
+            let proposed = h * (0.9 * step.error.max(f64::MIN_POSITIVE).powf(-0.25)).clamp(0.1, 4.0);
             if step.error > 1.0 {
                 next = proposed.min(if rejected { 0.2 * h } else { 0.9 * h });
                 rejected = true;

@@ -33,7 +33,7 @@ impl Elements {
                 Release::Switch | Release::Storage => 0.0,
             },
             conductance: match parameters.release {
-                Release::Zener | Release::Switch => 1.0 / parameters.resistance(),
+                Release::Zener | Release::Switch => parameters.conductance(),
                 Release::Storage => f64::INFINITY,
             },
             release: parameters.release,

@@ -204,6 +204,12 @@ impl Parameters {
         self.load_resistance.abs()
     }
 
+    /// Conductance of the load, S: infinite at 0 ohm, without a division by zero, which a host may trap.
+    pub(crate) fn conductance(&self) -> f64 {
+        let resistance = self.resistance();
+        if resistance == 0.0 { f64::INFINITY } else { 1.0 / resistance }
+    }
+
     /// Voltage at which a node begins to release its charge (V): `U_out` of a storage, else `U_z`.
     pub fn release_voltage(&self) -> f64 {
         match self.release {

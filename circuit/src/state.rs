@@ -82,10 +82,10 @@ pub struct State {
 }
 
 impl State {
-    /// The nodes, two in any case; on the shared node the second is empty.
+    /// The nodes, two in any case; on the shared node the second is empty, with a capacitance that can be divided by.
     pub(crate) fn nodes(&self, count: usize) -> [Node; 2] {
         let [left, right] = self.capacitance;
-        let capacitance = if count == 1 { [left + right, 0.0] } else { [left, right] };
+        let capacitance = if count == 1 { [left + right, right] } else { [left, right] };
         [0, 1].map(|j| Node { charge: self.charge[j], capacitance: capacitance[j], rate: 0.0, mode: self.mode(j) })
     }
 

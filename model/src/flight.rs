@@ -202,6 +202,9 @@ impl Flight {
             return Some(window);
         }
         let drift = self.rate - self.swing * self.omega() * sin;
+        if drift == 0.0 {
+            return None;
+        }
         let elapsed = (reach - middle * drift.signum()) / drift.abs();
         // Beyond 2^53 windows time itself has no digits left; a ball that slow never arrives.
         let windows = elapsed * self.frequency;

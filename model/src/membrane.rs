@@ -96,15 +96,22 @@ impl Membrane {
         let half = deflection / (r2 + root);
         let square = half * half;
         let inverse = 1.0 / (1.0 + square);
-        let mut complement = 1.0 - square;
-        if deflection > STEEP * r2 {
-            // Here that loses its digits: R_2 + root - delta is taken from root^2 - delta^2 = R_2^2 - 2 r_b delta instead.
-            let both = 1.0 + root / deflection;
-            let rest = r2 * r2 + rb * (r2 * (r2 / deflection) - 2.0 * rb) / both;
-            complement = ((r2 - rb) + rest / (both * deflection)) / (r2 + root) * (1.0 + half);
-        }
+        let complement =
+            if deflection > STEEP * r2 { self.steep_complement(deflection, root, half) } else { 1.0 - square };
         let (cos, sin) = (complement * inverse, 2.0 * half * inverse);
         Tangent { cos, versine: half * sin, cos_slope: -sin * cos / root }
+    }
+
+    /// 1 - `half`^2 where that loses its digits: `R_2` + root - delta is taken from root^2 - delta^2 = `R_2`^2 - 2 `r_b` delta.
+    ///
+    /// Not inlined: the compiler would divide by the deflection ahead of the branch, by zero at rest, which a host may trap.
+    #[cold]
+    #[inline(never)]
+    fn steep_complement(&self, deflection: f64, root: f64, half: f64) -> f64 {
+        let (r2, rb) = (self.radius, self.ball_radius);
+        let both = 1.0 + root / deflection;
+        let rest = r2 * r2 + rb * (r2 * (r2 / deflection) - 2.0 * rb) / both;
+        ((r2 - rb) + rest / (both * deflection)) / (r2 + root) * (1.0 + half)
     }
 
     /// cos(alpha) at `deflection`, m: Eq. (6).
@@ -195,8 +202,9 @@ impl Membrane {
     pub fn excess_of_chatter(&self, speed: f64, restitution: f64) -> f64 {
         let mut sum = 0.0;
         let (_, excess) = self.bounces(speed, restitution, |_, excess| sum += excess);
-        // 1 - r^(4 / (n + 1)), with its digits for r near 1.
-        let complement = -(4.0 / (self.exponent + 1.0) * restitution.ln()).exp_m1();
+        // 1 - r^(4 / (n + 1)), with its digits for r near 1, and without the logarithm of 0.
+        let exponent = 4.0 / (self.exponent + 1.0);
+        let complement = if restitution > 0.0 { -(exponent * restitution.ln()).exp_m1() } else { 1.0 };
         sum + excess / complement
     }
 

@@ -22,7 +22,7 @@ const GROUPS: [(Causality, &str); 5] = [
     (Causality::CalculatedParameter, "Calculated parameters"),
     (Causality::Input, "Inputs"),
     (Causality::Output, "Outputs"),
-    (Causality::Local, "Derivatives of the states (model exchange)"),
+    (Causality::Local, "Local variables: derivatives of the states (model exchange), and what is no Real"),
 ];
 
 #[derive(Template)]

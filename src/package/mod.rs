@@ -1,7 +1,8 @@
 //! Packager: from the compiled libraries to `.fmu` archives, and from those to the `.ssp` that connects them.
 //!
 //! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
-//! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses.
+//! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses; and the
+//! experiments of `fmu/*/extra`.
 //! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
 //! is packaged always belongs to the sources. Without it, the FMUs inside the program are taken (the feature
 //! `embedded-fmus`), or else the libraries beside it.
@@ -30,6 +31,7 @@ mod locate;
 mod picture;
 mod platform;
 mod put;
+mod references;
 mod ssp;
 mod target;
 mod tools;
@@ -157,6 +159,7 @@ fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
             contents.add_library(binary.platform, &binary.path);
         }
         documentation::add(&mut contents)?;
+        references::add(&mut contents);
         archives.push(contents.entries.packed(&file_name(fmu))?);
     }
     Ok((archives, output(workspace)))

@@ -1,5 +1,6 @@
 //! The system package: both FMUs, their connections and their parameters in one archive, after SSP 1.0.
 
+mod annotation;
 mod document;
 
 use std::path::Path;
@@ -25,6 +26,9 @@ const CONNECTIONS: [(&str, &str, &str); 4] = [
     (CIRCUIT, HARVESTER, "left.voltage"),
     (CIRCUIT, HARVESTER, "right.voltage"),
 ];
+
+/// Communication step, s, if the harvester proposes none.
+const STEP: f64 = 1e-3;
 
 /// An FMU in the package.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +80,9 @@ impl SystemPackage<'_> {
         entries.add_bytes("resources/system.ssv", xml("the parameter values", &ParameterSet::new(self.case, all))?);
         let description = format!("Vibro-impact harvester and its circuit. {}", self.description);
         let parts = (components, connections());
-        let structure = SystemStructureDescription::new("Harvester", description, parts, self.units(), self.until);
+        let step = self.harvester.description.default_experiment.step_size.unwrap_or(STEP);
+        let times = (step, self.until);
+        let structure = SystemStructureDescription::new("Harvester", description, parts, self.units(), times);
         entries.add_bytes("SystemStructure.ssd", xml("SystemStructure.ssd", &structure)?);
         entries.write(archive)?;
         Ok(set)

@@ -245,7 +245,7 @@ mod tests {
     fn what_a_variable_cannot_take_is_an_error_that_names_it() {
         for (text, design, named) in [
             ("membrane.restitutoin=1:2:3", Design::Grid, "did you mean \"membrane.restitution\""),
-            ("impact.count=1,2", Design::Grid, "--vary impact.count: it is a discrete output, which cannot be set"),
+            ("impact.count=1,2", Design::Grid, "--vary impact.count: it is a discrete local, which cannot be set"),
             ("membrane.restitution=0:1", Design::Grid, "a grid needs a count, as in 0:1:11"),
             ("membrane.restitution=0:1:0", Design::Grid, "a count of 0"),
             ("membrane.restitution=0:1:1", Design::Grid, "a count of 1 cannot go from 0 to 1"),

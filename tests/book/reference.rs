@@ -41,7 +41,10 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
     let mut page = format!(
         "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names \
          in `videg` and in a case file, and in FMI its number, from 1: `\"contact.law\": 2`, compliant, in the `start_values` of FMPy. \
-         Left is the end that the ball meets at $z_M - z_m = +s/2$ ([drawing](../theory/motion.md)).\n"
+         Left is the end that the ball meets at $z_M - z_m = +s/2$ ([drawing](../theory/motion.md)).\n\n\
+         All outputs are Reals: many importers read every output as one, and connect nothing else. What is an integer or a boolean by \
+         nature is a local variable, which any tool reads by its name, and `impact.countReal` and `contact.restingReal` give the same \
+         as Reals.\n"
     );
     for fmu in FMUS {
         let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
@@ -55,6 +58,7 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
             (Causality::CalculatedParameter, "calculated parameters"),
             (Causality::Input, "inputs"),
             (Causality::Output, "outputs"),
+            (Causality::Local, "local variables"),
         ] {
             let variables: Vec<_> = description.variables.iter().filter(|it| it.causality == causality).collect();
             if variables.is_empty() {

@@ -16,22 +16,25 @@ import numpy as np
 
 import job
 import record
+import recorded
 from job import harness
 
-CHECKERS = ("xsd", "fmpy_validate", "fmutool", "fmucheck", "fmi_sim")
+CHECKERS = ("xsd", "fmpy_validate", "fmutool", "vdmcheck", "fmucheck", "fmi_sim", "strict_client", "casadi_exchange")
 REFERENCE = "videg"
-IMPORTERS = (REFERENCE, "fmi_crate", "fmpy_master", "libcosim", "ecos")
+IMPORTERS = (REFERENCE, "fmi_crate", "fmpy_master", "libcosim", "ecos", "container2", "container3")
 """The first is what the others are compared with."""
 
 COMPLAINT = re.compile(r"warn|error|fatal|critical|fail|exception|assert", re.IGNORECASE)
 PAGE = harness.ROOT / "docs" / "conformance.md"
 
 
-def run(tool: str, folder: Path, *fmus: str) -> tuple[list[str], list[str], float]:
-    """Runs a tool; returns its complaints, what it says about itself, and the seconds that it took."""
+def run(tool: str, folder: Path, *fmus: str, calls: Path | None = None) -> tuple[list[str], list[str], float]:
+    """Runs a tool; returns its complaints, what it says about itself, and the seconds that it took. Calls of recorded FMUs are
+    written into the folder `calls`."""
     started = time.monotonic()
     command = [sys.executable, Path(__file__).parent / "worker.py", tool, folder, *fmus]
-    finished = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    environment = recorded.environment(calls) if calls else None
+    finished = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment)
     seconds = time.monotonic() - started
     lines = finished.stdout.splitlines()
     complaints = lines if finished.returncode != 0 else [line for line in lines if COMPLAINT.search(line)]
@@ -46,11 +49,17 @@ def run(tool: str, folder: Path, *fmus: str) -> tuple[list[str], list[str], floa
 def describe(tool: str) -> dict:
     module = importlib.import_module(f"tools.{tool}")
     optional = hasattr(module, "is_available")
-    return {"tool": module.NAME, "version": module.version(), "proves": module.PROVES, "optional": optional}
+    version = module.version() if is_available(tool) else ""
+    return {"tool": module.NAME, "version": version, "proves": module.PROVES, "optional": optional}
 
 
 def is_available(tool: str) -> bool:
     return getattr(importlib.import_module(f"tools.{tool}"), "is_available", lambda: True)()
+
+
+def loads(tool: str) -> bool:
+    """Whether a checker calls the FMU's library."""
+    return getattr(importlib.import_module(f"tools.{tool}"), "LOADS", False)
 
 
 def break_fmu(fmu: str, folder: Path) -> str:
@@ -70,22 +79,40 @@ def check(tool: str, fmus: dict[str, str], folder: Path) -> list[record.Record]:
     """What a checker finds. One that has nothing to say about a broken FMU is of no use."""
     records = []
     for name, fmu in fmus.items():
-        complaints, known, seconds = run(tool, folder, fmu)
+        if not takes(tool, name):
+            continue
+        calls = folder / f"calls of {tool}, {name}"
+        complaints, known, seconds = run(tool, folder, fmu, calls=calls)
         if not run(tool, folder, break_fmu(fmu, folder))[0]:
             complaints.append("does not notice that the GUID and the start value of an input are missing")
-        records.append(record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=complaints, known=known))
+        found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=complaints, known=known)
+        records.append(judge_calls(found, calls, name) if loads(tool) else found)
     return records
+
+
+def takes(tool: str, fmu: str) -> bool:
+    """Whether a checker is for this FMU."""
+    return fmu in getattr(importlib.import_module(f"tools.{tool}"), "FMUS", (fmu,))
+
+
+def judge_calls(found: record.Record, folder: Path, fmu: str) -> record.Record:
+    """Takes what the calls of a tool returned into its record."""
+    calls = recorded.read(folder, fmu)
+    found.complaints += recorded.others(calls) if calls else ["called nothing that was counted"]
+    found.calls = recorded.summary(calls)
+    return found
 
 
 def simulate(tool: str, fmus: dict[str, str], folder: Path, expected: dict[str, job.Series]) -> list[record.Record]:
     """What an importer makes of both FMUs, compared with the series expected of each, if any."""
-    complaints, known, seconds = run(tool, folder, *fmus.values())
+    calls = folder / "calls"
+    complaints, known, seconds = run(tool, folder, *fmus.values(), calls=calls)
     records = []
     for name in fmus:
-        found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=complaints, known=known)
+        found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=list(complaints), known=known)
         if name in expected and not complaints:
             found.worst = job.worst_difference(np.load(folder / f"{name}.npz"), expected[name])
-        records.append(found)
+        records.append(judge_calls(found, calls, name))
     return records
 
 
@@ -105,9 +132,15 @@ def main() -> int:
     fmus = harness.build_fmus()
     records = []
     with tempfile.TemporaryDirectory() as folder:
-        for tool in filter(is_available, CHECKERS):
-            records += check(tool, fmus, Path(folder))
-        records += importers(fmus, Path(folder))
+        recorder = recorded.build(Path(folder))
+        (Path(folder) / "recorded").mkdir()
+        wrapped = {name: recorded.wrap(fmu, recorder, Path(folder) / "recorded") for name, fmu in fmus.items()}
+        for tool in CHECKERS:
+            if is_available(tool):
+                records += check(tool, wrapped if loads(tool) else fmus, Path(folder))
+            else:
+                print(f"skipped: {describe(tool)['tool']}, which is not at hand")
+        records += importers(wrapped, Path(folder))
     for found in records:
         print(found.line())
         for line in found.complaints:

@@ -19,6 +19,7 @@ class Record:
     complaints: list[str]
     known: list[str] = field(default_factory=list)
     worst: float | None = None
+    calls: str = ""
     optional: bool = False
 
     @property
@@ -41,11 +42,14 @@ HEADER = """\
 
 Written by `./test.sh conformance`; do not edit. Checkers must find nothing, neither an error nor a warning, and must
 notice a broken FMU. Importers run the paper's Fig. 14 for {seconds:g} s in steps of {step:g} s, with the capacitances
-of the harvester connected to the circuit. At every communication point each of the {outputs} Real outputs must agree with
-videg's own importer within {bound:.0e} of its largest value; the last column has the worst of all.
+of the harvester connected to the circuit. At every communication point each of the {outputs} outputs must agree with
+videg's own importer within {bound:.0e} of its largest value; one column has the worst of all.
 
-| tool | version | what it shows | FMU | result | worst difference |
-|---|---|---|---|---|---|
+Wherever a tool calls the FMU, a library between the two counts what each call returns; anything but `fmi2OK` fails the tool. The
+last column says what they returned, and how many different functions there were.
+
+| tool | version | what it shows | FMU | result | worst difference | status of each call |
+|---|---|---|---|---|---|---|
 """
 
 
@@ -55,7 +59,7 @@ def table(records: list[Record], **facts) -> str:
     shown = [record for record in records if not record.optional]
     for record in shown:
         result = "passed" if record.passed else "failed"
-        cells = [record.tool, record.version, record.proves, record.fmu, result, record.difference()]
+        cells = [record.tool, record.version, record.proves, record.fmu, result, record.difference(), record.calls]
         text += f"| {' | '.join(cells)} |\n"
     known = sorted({f"- {record.tool}: {reason}." for record in shown for reason in record.known})
     if known:

@@ -41,7 +41,7 @@ def run(slave, steps: int) -> dict:
 
 def test_the_step_size_does_not_matter(slave):
     one = run(slave, 1)
-    assert one["impact.count"] > 590
+    assert one["impact.countReal"] > 590
     for steps in (1000, 7):
         assert run(slave, steps) == one
 
@@ -62,7 +62,7 @@ def test_a_restored_state_goes_on_to_the_same_bits(slave):
     harvester.setFMUstate(state)
     assert harvester.outputs() == before
     assert go_on() == first
-    assert first["impact.count"] > before["impact.count"]
+    assert first["impact.countReal"] > before["impact.countReal"]
     harvester.freeFMUstate(state)
 
 

@@ -109,3 +109,21 @@ def test_the_solver_stops_at_each_sample_of_the_phase_noise():
     exchanged, stepped = run_both(noisy, 4.0)
     assert exchanged["impact.count"][-1] == stepped["impact.count"][-1]
     assert exchanged["gain.voltage"][-1] == pytest.approx(stepped["gain.voltage"][-1], rel=1e-4)
+
+
+def test_the_default_experiment_keeps_the_cylinder_in_its_place():
+    """As users run it: without a tolerance of their own. A free cylinder drifts with each error of its velocity."""
+    exchanged, stepped = (run(kind, FIG14, 100.0) for kind in ("ModelExchange", "CoSimulation"))
+    drift = exchanged["cylinder.position"][-1] - stepped["cylinder.position"][-1]
+    assert abs(drift) < 1e-4
+    assert exchanged["gain.voltage"][-1] == pytest.approx(stepped["gain.voltage"][-1], rel=1e-6)
+
+
+def test_outputs_are_reals_and_twins_say_what_their_variables_say():
+    outputs = [variable for variable in read_model_description(FMU).modelVariables if variable.causality == "output"]
+    assert {variable.type for variable in outputs} == {"Real"}
+    twins = ["impact.count", "impact.countReal", "contact.resting", "contact.restingReal"]
+    result = simulate_fmu(FMU, stop_time=10.0, start_values=FLASHLIGHT, output=twins, output_interval=0.01)
+    for name in ("impact.count", "contact.resting"):
+        assert result[name].any()
+        assert np.array_equal(result[name].astype(float), result[f"{name}Real"])

@@ -79,28 +79,38 @@ macro_rules! capacitance {
 static INPUTS: [V; 2] =
     [capacitance!(0, names::LEFT_CAPACITANCE, "left"), capacitance!(1, names::RIGHT_CAPACITANCE, "right")];
 
-/// The outputs. The membranes hold charge, so no output depends on an input of the same communication point.
+/// The membranes are charged by the supply.
+const SUPPLY: &[&str] = &[names::SUPPLY_VOLTAGE];
+
+/// A storage has its voltage; a load has none before the first charge comes.
+const STORAGE: &[&str] = &["release", names::STORAGE_VOLTAGE];
+
+/// The outputs, with what their initial values depend on. The membranes hold charge, so no output depends on an input of the
+/// same communication point, nor does an initial value.
 macro_rules! outputs {
-    ($($name:expr, $unit:literal, $description:literal, $get:expr;)*) => {
-        [$(V::output($name, $unit, $description).depends_on(&[]).get(|slave| slave.read($get))),*]
+    ($($name:expr, $unit:literal, $description:literal, $initially:expr, $get:expr;)*) => {
+        [$(V::output($name, $unit, $description)
+            .depends_on(&[])
+            .initially_depends_on($initially)
+            .get(|slave| slave.read($get))),*]
     };
 }
 
 static OUTPUTS: [V; 14] = outputs! {
-    names::LEFT_VOLTAGE, "V", "U_DE: voltage of the left membrane, Table 1", |c| c.voltage()[0];
-    names::RIGHT_VOLTAGE, "V", "U_DE: voltage of the right membrane, Table 1", |c| c.voltage()[1];
-    "load.voltage", "V", "U_out: voltage across the load or of the storage, Fig. 8", Circuit::load_voltage;
-    "load.current", "A", "Current through the load or into the storage", Circuit::load_current;
-    "supply.current", "A", "Current drawn from the supply", Circuit::supply_current;
-    "supply.energy", "J", "Energy drawn from the supply since the start", |c| c.ledger().supply;
-    "load.energy", "J", "Energy given to the load or the storage since the start", |c| c.ledger().load;
-    "zener.energy", "J", "Energy burnt in the Zener diodes since the start", |c| c.ledger().zener;
-    "diode.energy", "J", "Energy burnt in the charging diodes and those into a storage since the start", |c| c.ledger().diode;
-    "stored.energy", "J", "Change of the energy stored in the membranes since the start", |c| c.ledger().stored;
-    "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + stored - supply", |c| c.ledger().converted();
-    "mechanical.energy", "J", "The same, as the work -1/2 U^2 dC on the capacitances: an independent sum", |c| c.ledger().mechanical;
-    "supply.charge", "C", "Charge drawn from the supply since the start", |c| c.ledger().supply_charge;
-    "load.charge", "C", "Charge through the load or into the storage since the start", |c| c.ledger().load_charge;
+    names::LEFT_VOLTAGE, "V", "U_DE: voltage of the left membrane, Table 1", &[SUPPLY], |c| c.voltage()[0];
+    names::RIGHT_VOLTAGE, "V", "U_DE: voltage of the right membrane, Table 1", &[SUPPLY], |c| c.voltage()[1];
+    "load.voltage", "V", "U_out: voltage across the load or of the storage, Fig. 8", &[STORAGE], Circuit::load_voltage;
+    "load.current", "A", "Current through the load or into the storage", &[], Circuit::load_current;
+    "supply.current", "A", "Current drawn from the supply", &[], Circuit::supply_current;
+    "supply.energy", "J", "Energy drawn from the supply since the start", &[], |c| c.ledger().supply;
+    "load.energy", "J", "Energy given to the load or the storage since the start", &[], |c| c.ledger().load;
+    "zener.energy", "J", "Energy burnt in the Zener diodes since the start", &[], |c| c.ledger().zener;
+    "diode.energy", "J", "Energy burnt in the charging diodes and those into a storage since the start", &[], |c| c.ledger().diode;
+    "stored.energy", "J", "Change of the energy stored in the membranes since the start", &[], |c| c.ledger().stored;
+    "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + stored - supply", &[], |c| c.ledger().converted();
+    "mechanical.energy", "J", "The same, as the work -1/2 U^2 dC on the capacitances: an independent sum", &[], |c| c.ledger().mechanical;
+    "supply.charge", "C", "Charge drawn from the supply since the start", &[], |c| c.ledger().supply_charge;
+    "load.charge", "C", "Charge through the load or into the storage since the start", &[], |c| c.ledger().load_charge;
 };
 
 /// Number of variables.

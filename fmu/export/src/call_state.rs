@@ -107,7 +107,7 @@ impl fmt::Display for CallState {
 pub enum Legality {
     /// FMI 2.0 allows it.
     Legal,
-    /// FMI 2.0 forbids it, but importers do it and no harm comes of it: it works, with a warning.
+    /// FMI 2.0 forbids it, but importers do it and no harm comes of it: it works, and is logged.
     Tolerated,
     /// Refused with `fmi2Error`.
     Illegal,

@@ -87,9 +87,13 @@ impl Hasher {
                 hash.text(name);
             }
         });
-        // A mark of its own, so that tables without such states keep their GUID.
+        // Marks of their own, so that tables without such states and promises keep their GUID.
         if variable.reinit() {
             self.text("reinit");
+        }
+        if let Some(groups) = variable.initial_dependencies() {
+            self.text("initially");
+            groups.iter().copied().flatten().for_each(|name| self.text(name));
         }
         self.text(variable.kind().type_name());
         self.kind(variable.kind());

@@ -52,6 +52,8 @@
 //!
 //! # What the exporter sees to
 //! - Call order: one table says which [`Function`] is legal in which [`CallState`].
+//! - Calls that FMI 2.0 forbids, but importers make and no harm comes of, work and return `fmi2OK`; the category
+//!   `logTolerated` tells of them. `fmi2Warning` is the model's, for what a host should stop and look at.
 //! - A Set is all or nothing: type, causality, variability, bounds and finiteness of every value are checked before
 //!   the first is written. A refused value is an error that names variable, value and bound.
 //! - Any `fmi2Error` leaves the instance in the error state, from which only restoring an FMU state or
@@ -63,7 +65,7 @@
 //! - Calls from inside a callback are refused. Calls from a second thread, which FMI 2.0 forbids, are usually refused;
 //!   nothing guarantees it, and two that begin together are undefined behaviour.
 //! - Panics become `fmi2Error` ([`ffi`] says what that means for stderr).
-//! - Messages go to the importer's logger only. Events, warnings and discarded steps are reported while logging is on
+//! - Messages go to the importer's logger only. Events, tolerated calls, warnings and discarded steps are reported while logging is on
 //!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.
 //!
 //! # Not offered

@@ -14,6 +14,8 @@ use std::ffi::CString;
 pub enum LogCategory {
     /// Events of the model.
     Events,
+    /// Calls that FMI 2.0 forbids and that work all the same.
+    Tolerated,
     /// Messages that go with `fmi2Warning`.
     Warning,
     /// Messages that go with `fmi2Discard`.
@@ -26,7 +28,7 @@ pub enum LogCategory {
 
 impl LogCategory {
     /// All categories, in the order of `modelDescription.xml`.
-    pub const ALL: [Self; 5] = [Self::Events, Self::Warning, Self::Discard, Self::Error, Self::Fatal];
+    pub const ALL: [Self; 6] = [Self::Events, Self::Tolerated, Self::Warning, Self::Discard, Self::Error, Self::Fatal];
 
     /// Name of the category that stands for all of them.
     pub const ALL_NAME: &'static str = "logAll";
@@ -34,6 +36,7 @@ impl LogCategory {
     const fn c_name(self) -> &'static CStr {
         match self {
             Self::Events => c"logEvents",
+            Self::Tolerated => c"logTolerated",
             Self::Warning => c"logStatusWarning",
             Self::Discard => c"logStatusDiscard",
             Self::Error => c"logStatusError",
@@ -41,7 +44,7 @@ impl LogCategory {
         }
     }
 
-    /// The name that FMI 2.0 gives it.
+    /// The name that FMI 2.0 gives it; `logTolerated` is a category of this exporter.
     pub fn name(self) -> &'static str {
         self.c_name().to_str().unwrap_or_default()
     }
@@ -50,6 +53,7 @@ impl LogCategory {
     pub const fn description(self) -> &'static str {
         match self {
             Self::Events => "Events of the model",
+            Self::Tolerated => "Calls that FMI 2.0 forbids and that work all the same; they return fmi2OK",
             Self::Warning => "Messages that go with fmi2Warning",
             Self::Discard => "Messages that go with fmi2Discard",
             Self::Error => "Messages that go with fmi2Error",
@@ -78,7 +82,7 @@ pub struct Logger {
     given: Cell<u64>,
 }
 
-const ALL_BITS: u8 = 0b1_1111;
+const ALL_BITS: u8 = 0b11_1111;
 const ALWAYS_ON: u8 = LogCategory::Error.bit() | LogCategory::Fatal.bit();
 
 impl Logger {
@@ -102,6 +106,12 @@ impl Logger {
     /// Reports an event of the model (category `logEvents`).
     pub fn event(&self, message: impl Display) {
         self.send(fmi2OK, LogCategory::Events, &message);
+    }
+
+    /// Reports a call that FMI 2.0 forbids and that works all the same (category `logTolerated`). The C function returns
+    /// `fmi2OK`: many importers take `fmi2Warning` for a failure.
+    pub(crate) fn tolerated(&self, message: impl Display) {
+        self.send(fmi2OK, LogCategory::Tolerated, &message);
     }
 
     /// Reports that something is odd though the computation goes on (category `logStatusWarning`). The C function

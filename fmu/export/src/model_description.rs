@@ -300,9 +300,11 @@ fn model_structure<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
     let output = |v: &Variable<M>| v.causality() == Causality::Output;
     let derivative = |v: &Variable<M>| v.derivative_of().is_some();
     element(xml, "ModelStructure", &[], |xml| {
-        unknowns(xml, "Outputs", table, output, true)?;
-        unknowns(xml, "Derivatives", table, derivative, true)?;
-        unknowns(xml, "InitialUnknowns", table, |v| v.is_initial_unknown(table), false)
+        let present = |v: &Variable<M>| v.dependencies().map(<[&str]>::to_vec);
+        let initial = |v: &Variable<M>| v.initial_dependencies().map(<[&[&str]]>::concat);
+        unknowns(xml, "Outputs", table, output, present)?;
+        unknowns(xml, "Derivatives", table, derivative, present)?;
+        unknowns(xml, "InitialUnknowns", table, |v| v.is_initial_unknown(table), initial)
     })
 }
 
@@ -311,7 +313,7 @@ fn unknowns<M>(
     name: &str,
     table: &[Variable<M>],
     is_listed: impl Fn(&Variable<M>) -> bool,
-    with_dependencies: bool,
+    dependencies: impl Fn(&Variable<M>) -> Option<Vec<&'static str>>,
 ) -> Written {
     let listed: Vec<_> = (1..).zip(table).filter(|(_, v)| is_listed(v)).collect();
     if listed.is_empty() {
@@ -321,9 +323,7 @@ fn unknowns<M>(
         listed.iter().try_for_each(|(position, variable)| {
             let position: u32 = *position;
             let mut attributes = vec![("index", position.to_string())];
-            if let Some(names) = variable.dependencies().filter(|_| with_dependencies) {
-                attributes.push(("dependencies", positions(table, names)));
-            }
+            attributes.extend(dependencies(variable).map(|names| ("dependencies", positions(table, &names))));
             empty(xml, "Unknown", &attributes)
         })
     })

@@ -73,7 +73,8 @@ pub trait Slave: Clone + Send + 'static {
     }
 
     /// Advances from time `t` to `t + h`, s. `h` is finite and positive; `t` agrees with the end of the step
-    /// before to within rounding.
+    /// before to within the rounding of the master, which may count in single precision: 2.4e-7 of the time, or of 1 s, and at
+    /// most a tenth of `h`.
     ///
     /// # Errors
     /// [`SlaveError::discard`] if the step was done in part or not at all and a smaller one may work,

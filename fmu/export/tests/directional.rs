@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, INPUT, INTEGRAL, SEED};
+use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
 use common::*;
 use core::ptr::{null, null_mut};
 use fmi2_export::abi::*;
@@ -46,6 +46,14 @@ fn in_co_simulation_an_input_acts_through_the_step_whatever_depends_on_it_at_one
     assert_eq!(derivative(&host, &[INTEGRAL, DERIVATIVE], &[INPUT], &[3.0]), Ok(vec![6.0, 6.0]));
 }
 
+/// Between events a discrete variable is constant; at events and in co-simulation the model is asked.
+#[test]
+fn derivatives_of_and_for_discrete_variables_are_zero_between_events() {
+    for (host, at_event) in [(Host::at_event(), 1.0), (Host::exchanging(), 0.0), (Host::initialized(), 1.0)] {
+        assert_eq!(derivative(&host, &[HELD, DERIVATIVE], &[SWITCHED], &[1.0]), Ok(vec![at_event; 2]));
+    }
+}
+
 #[test]
 fn each_mode_has_the_unknowns_and_knowns_that_the_standard_lists() {
     type Mode = fn() -> Host;
@@ -57,6 +65,8 @@ fn each_mode_has_the_unknowns_and_knowns_that_the_standard_lists() {
         (INPUT, [false; 4], [true; 4]),
         (INTEGRAL, [true; 4], [false, true, true, true]),
         (DERIVATIVE, [true; 4], [false; 4]),
+        (SWITCHED, [false; 4], [true; 4]),
+        (HELD, [true; 4], [false; 4]),
         (COUNT, [false; 4], [false; 4]),
     ];
     for (variable, unknown, known) in rows {

@@ -111,6 +111,8 @@ fn the_guid_changes_with_the_interface_but_not_with_a_description() {
     slave!(Bound, V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v));
     slave!(Tunable, V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v));
     slave!(Input, V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    slave!(Output, V::output("a", "m", "one").get(|m| m.0));
+    slave!(Initial, V::output("a", "m", "one").initially_depends_on(&[]).get(|m| m.0));
     let base = Guid::of::<Base>();
     assert_eq!(base, Guid::of::<Described>());
     let others = [
@@ -120,6 +122,8 @@ fn the_guid_changes_with_the_interface_but_not_with_a_description() {
         Guid::of::<Bound>(),
         Guid::of::<Tunable>(),
         Guid::of::<Input>(),
+        Guid::of::<Output>(),
+        Guid::of::<Initial>(),
     ];
     for (i, other) in others.iter().enumerate() {
         assert_ne!(*other, base, "{i}");
@@ -152,6 +156,15 @@ fn mistakes_in_a_table_are_found_and_named() {
     assert_eq!(mistake::<Tunable>(), "the FMU is faulty: a: a Real cannot be a tunable input");
     slave!(Unknown, V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0));
     assert_eq!(mistake::<Unknown>(), "the FMU is faulty: a: it depends on b, which is not in the table");
+    slave!(
+        Initially,
+        V::output("a", "m", "").get(|m| m.0),
+        V::output("b", "m", "").initially_depends_on(&[&["a"]]).get(|m| m.0)
+    );
+    assert_eq!(
+        mistake::<Initially>(),
+        "the FMU is faulty: b: it initially depends on a, which is no input or parameter"
+    );
     slave!(Item, V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ()));
     assert_eq!(mistake::<Item>(), "the FMU is faulty: a: start 2: no item of Law; allowed: 1 (a)");
     slave!(Types, V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1),);

@@ -48,6 +48,36 @@ fn rounding_and_nanosecond_clocks_do_not_disturb() {
     }
 }
 
+/// The clock counts in single precision, as `n * h` or as a sum, and the size of a step is what its ends differ by.
+#[test]
+fn a_clock_in_single_precision_does_not_disturb() {
+    const STEPS: u16 = if cfg!(miri) { 200 } else { 10_000 };
+    let product = |step: u16| f32::from(step) * 0.01;
+    let sums: Vec<f32> = (0..=STEPS).scan(0.0, |sum: &mut f32, _| Some(core::mem::replace(sum, *sum + 0.01))).collect();
+    for times in [(0..=STEPS).map(product).collect(), sums] {
+        let (size, differences) = (Host::initialized(), Host::initialized());
+        for ends in times.windows(2) {
+            let t = f64::from(ends[0]);
+            assert_eq!(size.step(t, f64::from(0.01_f32)), fmi2OK, "{t} s");
+            assert_eq!(differences.step(t, f64::from(ends[1] - ends[0])), fmi2OK, "{t} s");
+        }
+    }
+}
+
+#[test]
+fn a_communication_point_off_by_a_good_part_of_a_step_is_refused() {
+    for size in [1e-6, 1e-3, 0.01, 10.0] {
+        for part in [-0.5, -0.11, 0.11, 0.5, 1.0] {
+            let host = Host::new();
+            assert_eq!(host.setup(100.0, None), fmi2OK);
+            assert_eq!(host.initialize(), fmi2OK);
+            assert_eq!(host.step(100.0, size), fmi2OK);
+            assert_eq!(host.step(100.0 + (1.0 + part) * size, size), fmi2Error, "{part} of {size} s");
+            assert!(host.error().contains("currentCommunicationPoint = "));
+        }
+    }
+}
+
 #[test]
 fn a_step_size_that_is_no_step_is_refused() {
     for h in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {

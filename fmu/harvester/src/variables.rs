@@ -1,109 +1,35 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the tables of the
 //! model.
 
-use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
-use videg_model::{Energies, Parameters, Side};
+mod initial;
+mod parameters;
+
+use fmi2_export::{Variable, concat};
+use videg_model::{Energies, Side};
 
 use crate::slave::Harvester;
+use initial::{BALL, DRIVE, FILM, FORCE, FORCE_LAW, IMPACT, OPTIONS, VOLTAGES};
+use parameters::{CHOICES, PARAMETERS};
 
 type V = Variable<Harvester>;
-
-static CONTACT_LAW: EnumerationType = EnumerationType::new(
-    "ContactLaw",
-    "Law of the contact between ball and membrane",
-    &[
-        EnumerationItem::new("impulsive", "An impact takes no time, Eqs. (10) and (11)"),
-        EnumerationItem::new("compliant", "The membrane is a nonlinear spring with losses"),
-    ],
-);
-
-static NOISE_MODEL: EnumerationType = EnumerationType::new(
-    "NoiseModel",
-    "How the phase noise of Section 5.2 is read",
-    &[
-        EnumerationItem::new("held", "A fresh Gaussian sample in each hold interval, as the formula of the paper says"),
-        EnumerationItem::new("wiener", "A Wiener process, sampled at each hold interval"),
-    ],
-);
-
-static OUTSIDE_GAP: EnumerationType = EnumerationType::new(
-    "OutsideGap",
-    "What a start with abs(z_M - z_m) > s/2 means",
-    &[
-        EnumerationItem::new("project", "The ball is put on the membrane that it is beyond"),
-        EnumerationItem::new("free", "The ball is free until it has come inside the gap"),
-    ],
-);
-
-/// Real parameter number `INDEX` of the model's table.
-const fn parameter<const INDEX: usize>() -> V {
-    let quantity = &Parameters::TABLE[INDEX];
-    V::parameter(quantity.name, quantity.unit, quantity.start, quantity.description)
-        .min(quantity.min)
-        .max(quantity.max)
-        .access(
-            |slave| (Parameters::TABLE[INDEX].get)(&slave.parameters),
-            |slave, value| (Parameters::TABLE[INDEX].set)(&mut slave.parameters, value),
-        )
-}
-
-macro_rules! parameters {
-    ($($index:literal)*) => { [$(parameter::<$index>()),*] };
-}
-
-/// Every real parameter of the model.
-static PARAMETERS: [V; Parameters::TABLE.len()] = parameters!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21);
-
-/// Integer parameter number `INDEX` of the model's choices.
-const fn number<const INDEX: usize>() -> V {
-    let choice = &Parameters::CHOICES[INDEX];
-    V::integer_parameter(choice.name, choice.start, choice.description).access(
-        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters),
-        |slave, value| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, value),
-    )
-}
-
-/// Number `INDEX` of the model's choices, among the items of an enumeration.
-const fn item<const INDEX: usize>(of: &'static EnumerationType) -> V {
-    let choice = &Parameters::CHOICES[INDEX];
-    V::enumeration_parameter(choice.name, of, choice.start, choice.description).access(
-        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters),
-        |slave, item| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, item),
-    )
-}
-
-/// Number `INDEX` of the model's choices, on or off.
-const fn switch<const INDEX: usize>() -> V {
-    let choice = &Parameters::CHOICES[INDEX];
-    V::boolean_parameter(choice.name, choice.start != 0, choice.description).access(
-        |slave| (Parameters::CHOICES[INDEX].get)(&slave.parameters) != 0,
-        |slave, on| (Parameters::CHOICES[INDEX].set)(&mut slave.parameters, i32::from(on)),
-    )
-}
-
-/// Parameters that choose or count.
-static CHOICES: [V; Parameters::CHOICES.len()] = [
-    number::<0>(),
-    item::<1>(&NOISE_MODEL),
-    item::<2>(&OUTSIDE_GAP),
-    item::<3>(&CONTACT_LAW),
-    switch::<4>(),
-    switch::<5>(),
-];
 
 /// What follows from the parameters.
 static CALCULATED: [V; 4] = [
     V::calculated_parameter("membrane.radius", "m", "R_2 = lambda R_1: radius of the membrane in its frame, Table 1")
+        .initially_depends_on(&[&["membrane.initialRadius", "membrane.prestretch"]])
         .get(|slave| slave.parameters.membrane_radius()),
     V::calculated_parameter("membrane.thickness", "m", "h_2 = h_1 / lambda^2: thickness of the flat membrane, Table 1")
+        .initially_depends_on(&[&["membrane.initialThickness", "membrane.prestretch"]])
         .get(|slave| slave.parameters.membrane_thickness()),
     V::calculated_parameter("membrane.restCapacitance", "F", "C_2: capacitance of the flat membrane, Eq. (1)")
+        .initially_depends_on(&[FILM])
         .get(|slave| slave.read(|model| model.membrane().rest_capacitance())),
     V::calculated_parameter(
         "ball.travel",
         "m",
         "s = d + 2 w - 2 r_b: largest distance that the ball moves, Section 3.2",
     )
+    .initially_depends_on(&[&["cylinder.length", "frame.width", "ball.radius"]])
     .get(|slave| slave.parameters.travel()),
 ];
 
@@ -143,6 +69,7 @@ macro_rules! membrane_outputs {
                 .nominal(1e-11)
                 .output_derivatives(1, |slave, _order| slave.read(|model| model.capacitance_rate($side)))
                 .depends_on(&[])
+                .initially_depends_on(&[FILM])
                 .get(|slave| slave.read(|model| model.capacitance($side))),
             V::output(
                 $deflection,
@@ -156,6 +83,7 @@ macro_rules! membrane_outputs {
             .nominal(1e-3)
             .output_derivatives(1, |slave, _order| slave.read(|model| model.deflection($side).rate))
             .depends_on(&[])
+            .initially_depends_on(&[])
             .get(|slave| slave.read(|model| model.deflection($side).value)),
             V::output(
                 $area_ratio,
@@ -163,6 +91,7 @@ macro_rules! membrane_outputs {
                 concat!("A_3 / A_2: area of the ", $which, " membrane over its flat area, Eq. (3)"),
             )
             .depends_on(&[])
+            .initially_depends_on(&[])
             .get(|slave| slave.read(|model| model.membrane().area_ratio(model.deflection($side).value))),
         ]
     };
@@ -192,35 +121,41 @@ static MOTION: [V; 5] = [
         .nominal(1e-2)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_velocity))
         .depends_on(&["cylinder.position"])
+        .initially_depends_on(&[&["initial.cylinderPosition"]])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_position)),
     V::output("cylinder.velocity", "m/s", "z_M': velocity of the cylinder, Eq. (7)")
         .nominal(1e-1)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_acceleration))
         .depends_on(&["cylinder.velocity"])
+        .initially_depends_on(&[&["initial.cylinderVelocity"]])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
         .nominal(1e-2)
         .reinit()
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::ball_velocity))
         .depends_on(&["cylinder.position", "ball.position"])
+        .initially_depends_on(&[IMPACT])
         .get(|slave| slave.read(videg_model::Harvester::ball_position)),
     V::output("ball.velocity", "m/s", "z_m': velocity of the ball, Eq. (11)")
         .nominal(1e-1)
         .reinit()
         .depends_on(&["cylinder.velocity", "ball.velocity"])
+        .initially_depends_on(&[IMPACT])
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output("relativeDisplacement", "m", "z_M - z_m: relative displacement, Eq. (8)")
         .depends_on(&["cylinder.position", "ball.position"])
+        .initially_depends_on(&[IMPACT])
         .get(|slave| slave.read(videg_model::Harvester::relative_displacement)),
 ];
 
 static EVENTS: [V; 8] = [
     V::integer_output("impact.count", "Number of impacts since the start; the endless tail of a chattering end is not counted")
-        .depends_on(&[])
+        .local()
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().impacts).unwrap_or(i32::MAX))),
     V::output("impact.lastVelocity", "m/s", "abs(v_m - v_M) before the last impact, Eq. (10); 0 before the first")
         .discrete()
         .depends_on(&[])
+        .initially_depends_on(&[IMPACT])
         .get(|slave| slave.read(|model| model.totals().last_speed)),
     V::output(
         "impact.nextTime",
@@ -229,6 +164,7 @@ static EVENTS: [V; 8] = [
     )
     .discrete()
     .depends_on(&FORESEEN_FROM)
+    .initially_depends_on(&[IMPACT, FORCE])
     .get(|slave| slave.foresee(videg_model::Harvester::next_impact)),
     V::output(
         "pulse.nextKnot",
@@ -237,21 +173,24 @@ static EVENTS: [V; 8] = [
     )
     .discrete()
     .depends_on(&FORESEEN_FROM)
+    .initially_depends_on(&[IMPACT, BALL, FORCE, FILM, FORCE_LAW, OPTIONS, VOLTAGES])
     .get(|slave| slave.foresee(videg_model::Harvester::next_knot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])
+        .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
         .get(|slave| slave.read(|model| model.totals().voltage_gain)),
     V::output("gain.energyEq13", "J", "Sum of W over all impacts, Eqs. (13) and (14)")
         .discrete()
         .nominal(1e-6)
         .depends_on(&[])
+        .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
         .get(|slave| slave.read(|model| model.totals().energy)),
     V::boolean_output("contact.resting", "The ball rests on a membrane, pressed by the acceleration of the cylinder")
-        .depends_on(&[])
+        .local()
         .get(|slave| slave.model().is_some_and(|model| model.resting().is_some())),
     V::integer_output("solver.events", "Number of events computed since the start: impacts and releases")
-        .depends_on(&[])
+        .local()
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
 ];
 
@@ -265,33 +204,41 @@ static ENERGIES: [V; 8] = [
     V::output("energy.kinetic", "J", "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical")
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity", "ball.velocity"])
+        .initially_depends_on(&[IMPACT, BALL])
         .get(|slave| energy(slave, |e| e.ball)),
     V::output("energy.cylinderKinetic", "J", "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction")
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
+        .initially_depends_on(&[&["cylinder.mass", "initial.cylinderVelocity"]])
         .get(|slave| energy(slave, |e| e.cylinder)),
     V::output("energy.elastic", "J", "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law")
         .nominal(1e-4)
         .depends_on(&[])
+        .initially_depends_on(&[])
         .get(|slave| energy(slave, |e| e.elastic)),
     V::output("energy.impactLoss", "J", "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact")
         .nominal(1e-4)
         .depends_on(&[])
+        .initially_depends_on(&[IMPACT, BALL])
         .get(|slave| energy(slave, |e| e.impact_loss)),
     V::output("energy.excitation", "J", "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction")
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
+        .initially_depends_on(&[])
         .get(|slave| energy(slave, |e| e.excitation)),
     V::output("energy.electrical", "J", "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC")
         .nominal(1e-6)
         .depends_on(&[])
+        .initially_depends_on(&[])
         .get(|slave| energy(slave, |e| e.electrical)),
     V::output("energy.wall", "J", "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed")
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity"])
+        .initially_depends_on(&[IMPACT, BALL])
         .get(|slave| energy(slave, |e| e.wall)),
     V::output("contact.time", "s", "Time in contact since the start under the compliant law; impacts of the impulsive law take none")
         .depends_on(&[])
+        .initially_depends_on(&[])
         .get(|slave| slave.read(videg_model::Harvester::contact_time)),
 ];
 
@@ -312,6 +259,7 @@ macro_rules! membrane_loads {
             )
             .nominal(1e7)
             .depends_on(&[$voltage])
+            .initially_depends_on(&[&[$voltage, "membrane.initialThickness", "membrane.prestretch"]])
             .get(|slave| {
                 let voltage = slave.voltages[$side.index()];
                 slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
@@ -326,6 +274,7 @@ macro_rules! membrane_loads {
                 ),
             )
             .depends_on(&[])
+            .initially_depends_on(&[&["membrane.prestretch"]])
             .get(|slave| slave.read(|model| model.membrane().stretch(model.deflection($side).value))),
         ]
     };
@@ -341,16 +290,19 @@ static DERIVATIVES: [V; 4] = [
         .local()
         .depends_on(&["cylinder.velocity"])
         .derivative_of("cylinder.position")
+        .initially_depends_on(&[&["initial.cylinderVelocity"]])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("der(cylinder.velocity)", "m/s2", "z_M'': time derivative of cylinder.velocity, Eq. (7)")
         .local()
         .depends_on(&["externalForce"])
         .derivative_of("cylinder.velocity")
+        .initially_depends_on(&[DRIVE, FORCE])
         .get(|slave| slave.read(videg_model::Harvester::cylinder_acceleration)),
     V::output("der(ball.position)", "m/s", "z_m': time derivative of ball.position")
         .local()
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .derivative_of("ball.position")
+        .initially_depends_on(&[IMPACT])
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output(
         "der(ball.velocity)",
@@ -360,8 +312,34 @@ static DERIVATIVES: [V; 4] = [
     .local()
     .depends_on(&["externalForce"])
     .derivative_of("ball.velocity")
+    .initially_depends_on(&[IMPACT, BALL, FORCE])
     .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
 ];
+
+/// Twins of variables that are no Reals. Many importers read every output as a Real, and connect nothing else: so these are the
+/// outputs, and the variables of the types that fit are local.
+static TWINS: [V; 2] = [
+    V::output("impact.countReal", "1", "impact.count as a Real, for connections and tools that read Reals alone")
+        .discrete()
+        .depends_on(&[])
+        .initially_depends_on(&[IMPACT])
+        .get(|slave| slave.model().map_or(0.0, |model| as_real(model.totals().impacts))),
+    V::output(
+        "contact.restingReal",
+        "1",
+        "contact.resting as a Real, for connections and tools that read Reals alone: 1 or 0",
+    )
+    .discrete()
+    .depends_on(&[])
+    .initially_depends_on(&[IMPACT])
+    .get(|slave| slave.model().map_or(0.0, |model| f64::from(u8::from(model.resting().is_some())))),
+];
+
+/// A count as a Real: exact up to 2^53, which no run reaches.
+#[allow(clippy::cast_precision_loss)]
+const fn as_real(count: u64) -> f64 {
+    count as f64
+}
 
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
@@ -375,7 +353,8 @@ const COUNT: usize = PARAMETERS.len()
     + ENERGIES.len()
     + LEFT_LOADS.len()
     + RIGHT_LOADS.len()
-    + DERIVATIVES.len();
+    + DERIVATIVES.len()
+    + TWINS.len();
 
 /// The whole table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
@@ -391,8 +370,5 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &LEFT_LOADS,
     &RIGHT_LOADS,
     &DERIVATIVES,
+    &TWINS,
 ]);
-
-#[cfg(test)]
-#[path = "variables_tests.rs"]
-mod tests;

@@ -87,7 +87,8 @@ impl Step {
         if !error.is_finite() {
             return Err(TooLong { proposal: 0.3 * length }); // forces overflow
         }
-        let proposal = length * (0.9 * (TOLERANCE / error).powf(1.0 / DEGREE as f64)).clamp(0.2, 4.0);
+        let proposal =
+            length * (0.9 * (TOLERANCE / error.max(f64::MIN_POSITIVE)).powf(1.0 / DEGREE as f64)).clamp(0.2, 4.0);
         if error > TOLERANCE {
             return Err(TooLong { proposal });
         }

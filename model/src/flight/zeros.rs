@@ -82,6 +82,9 @@ impl Flight {
     /// Zeros of a derivative whose polynomial part is constant: sine or cosine have a given value twice in a period.
     #[inline]
     fn harmonic_zeros(&self, order: usize, begin: f64, end: f64) -> Knots {
+        if self.swing == 0.0 {
+            return Knots::default(); // a constant alone
+        }
         let ([c2, c3], omega) = (self.external, self.omega());
         let (level, is_cosine) = match order {
             1 => (self.sine[0] - self.rate / (self.swing * omega), false),
@@ -90,7 +93,7 @@ impl Flight {
         };
         let mut zeros = Knots::default();
         if level.is_nan() || level.abs() > 1.0 {
-            return zeros; // the constant outweighs the harmonic part, or both are zero
+            return zeros; // the constant outweighs the harmonic part
         }
         let first = level.asin() * (1.0 / TAU);
         // cos x is the sine of an angle that is ahead by a quarter of a turn.

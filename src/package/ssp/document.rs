@@ -3,6 +3,8 @@
 
 use serde::Serialize;
 
+use super::annotation::Annotations;
+
 const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
 const STRUCTURE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
 const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
@@ -38,9 +40,14 @@ impl SystemStructureDescription {
         description: String,
         (components, connections): (Vec<Component>, Vec<Connection>),
         units: Vec<Unit>,
-        stop_time: f64,
+        (step, stop_time): (f64, f64),
     ) -> Self {
-        let system = System { name, elements: Elements { components }, connections: Connections { connections } };
+        let system = System {
+            name,
+            elements: Elements { components },
+            connections: Connections { connections },
+            annotations: Annotations::new(step),
+        };
         Self {
             common: COMMON,
             structure: STRUCTURE,
@@ -64,6 +71,8 @@ struct System {
     elements: Elements,
     #[serde(rename = "ssd:Connections")]
     connections: Connections,
+    #[serde(rename = "ssd:Annotations")]
+    annotations: Annotations,
 }
 
 #[derive(Serialize)]
@@ -282,7 +291,7 @@ impl Value {
 }
 
 /// A number as XML Schema spells it; reading it gives the same bits.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     match value {
         f64::INFINITY => "INF".to_owned(),
         f64::NEG_INFINITY => "-INF".to_owned(),

@@ -6,8 +6,10 @@
 
 mod arguments;
 mod call;
+pub mod experiment;
 mod functions;
 pub mod hostile;
+pub mod initial;
 mod instance;
 mod log;
 mod random;

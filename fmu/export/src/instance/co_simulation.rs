@@ -28,12 +28,19 @@ impl LastStep {
 /// Relative difference of two communication points that comes from rounding.
 const TIME_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// How far two communication points may differ and still be the same, s. Masters count time as `n * h`, as a sum
-/// or in integer nanoseconds; a difference that could be a step of its own is never accepted.
+/// Relative difference of two communication points that a master with a clock in single precision may have: one unit in
+/// the last place for each.
+const SINGLE_PRECISION: f64 = 2.0 * f32::EPSILON as f64;
+
+/// Part of a step by which communication points may differ, whatever the clock of the master.
+const PART_OF_STEP: f64 = 0.1;
+
+/// How far two communication points may differ and still be the same, s: by 2.4e-7 of the time or of 1 s, if that is more,
+/// but at most by a tenth of the step. Masters count time as `n * h`, as a sum, in integer nanoseconds or in single
+/// precision; a difference that could be a step of its own is never accepted, unless it is rounding in double precision.
 pub(crate) fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
-    let magnitude = a.abs().max(b.abs()).max(1.0);
-    let rounding = TIME_ROUNDING * a.abs().max(b.abs());
-    rounding.max((1e-9 * magnitude).min(1e-3 * step))
+    let magnitude = a.abs().max(b.abs());
+    (TIME_ROUNDING * magnitude).max((SINGLE_PRECISION * magnitude.max(1.0)).min(PART_OF_STEP * step))
 }
 
 impl<S: Slave> Instance<S> {
@@ -219,10 +226,13 @@ mod tests {
     use super::time_tolerance;
 
     #[test]
-    fn the_tolerance_takes_rounding_and_nanosecond_clocks_but_no_step() {
+    fn the_tolerance_takes_rounding_and_the_clocks_of_masters_but_no_step() {
         assert!(time_tolerance(0.3, 0.1 + 0.2, 0.1) > 1e-16);
-        assert!(time_tolerance(100.0, 100.0, 1e-5) >= 0.5e-9);
-        assert!(time_tolerance(1.0, 1.0, 1e-12) < 1e-12);
+        assert!(time_tolerance(100.0, 100.0, 1e-5) >= 0.5e-9, "nanoseconds");
+        assert_eq!(time_tolerance(100.0, 99.9, 0.01), 100.0 * f64::from(2.0 * f32::EPSILON), "single precision");
+        for step in [1e-12, 1e-6, 1e-3] {
+            assert_eq!(time_tolerance(1.0, 1.0, step), (0.1 * step).min(f64::from(2.0 * f32::EPSILON)));
+        }
         assert!(time_tolerance(0.0, 0.0, 1e-3) <= 1e-6);
     }
 }

@@ -43,7 +43,8 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
-    /// In model exchange, after initialisation, an unknown depends on what its row of the table says and on nothing else.
+    /// Between events discrete variables are constant: their derivatives are zero. In model exchange, after initialisation, an
+    /// unknown depends on what its row of the table says and on nothing else.
     ///
     /// Not so in co-simulation: the dependencies are those "at the current Communication Point", of `f_output` and `f_der`
     /// (section 2.2.8), but the equations of Step Mode are `f_doStep` (section 4.1), through which an input of the step acts
@@ -52,12 +53,10 @@ impl<S: Slave> Instance<S> {
         let ask = !self.core.exchange
             || self.core.state.is_before_initialization()
             || unknown.dependencies().is_none_or(|names| names.contains(&known.name()));
-        if ask { self.core.model.partial_derivative(unknown, known) } else { 0.0 }
-    }
-
-    /// Discrete variables take part except between events.
-    fn takes_part(&self, variable: &Variable<S>) -> bool {
-        variable.variability() == Variability::Continuous || self.core.state != CallState::ContinuousTimeMode
+        let constant = |variable: &Variable<S>| variable.variability() == Variability::Discrete;
+        let between_events = self.core.state == CallState::ContinuousTimeMode;
+        let asked = ask && !(between_events && (constant(unknown) || constant(known)));
+        if asked { self.core.model.partial_derivative(unknown, known) } else { 0.0 }
     }
 
     /// An input; during initialisation a parameter, afterwards a continuous state, too.
@@ -67,7 +66,7 @@ impl<S: Slave> Instance<S> {
         let is_state = || states_and_derivatives(S::variables()).any(|(state, _)| state.name() == variable.name());
         let may_be = match variable.causality() {
             Causality::Parameter => initializing,
-            Causality::Input => self.takes_part(variable),
+            Causality::Input => true,
             _ => !initializing && is_state(),
         };
         self.check_real(variable, may_be, "known")
@@ -78,7 +77,7 @@ impl<S: Slave> Instance<S> {
         let variable = variable::<S>(reference)?;
         let may_be = match variable.causality() {
             Causality::CalculatedParameter => self.core.state.is_before_initialization(),
-            Causality::Output => self.takes_part(variable),
+            Causality::Output => true,
             _ => variable.derivative_of().is_some(),
         };
         self.check_real(variable, may_be, "unknown")

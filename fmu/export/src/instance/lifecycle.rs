@@ -21,17 +21,17 @@ pub(super) fn fault(experiment: &Experiment) -> Option<(&'static str, f64, Strin
 }
 
 impl<S: Slave> Instance<S> {
-    /// `fmi2SetDebugLogging`. Without names, all categories are meant. An unknown name earns a warning and no more:
+    /// `fmi2SetDebugLogging`. Without names, all categories are meant. An unknown name is logged and no more:
     /// the computation can go on.
     pub(crate) fn set_debug_logging(&mut self, on: bool, names: &[&str]) {
         if !on || names.is_empty() || names.contains(&LogCategory::ALL_NAME) {
             self.logger.enable_all(on);
             return;
         }
-        // While the categories so far are on: the new ones may not show a warning.
+        // While the categories so far are on: the new ones may not show the message.
         let is_unknown = |name: &&&str| LogCategory::from_name(name).is_none();
         for name in names.iter().filter(is_unknown) {
-            self.logger.warning(format_args!("there is no log category {name:?}"));
+            self.logger.tolerated(format_args!("there is no log category {name:?}; tolerated"));
         }
         let known = names.iter().filter_map(|name| LogCategory::from_name(name));
         self.logger.enable_only(known);
@@ -51,7 +51,7 @@ impl<S: Slave> Instance<S> {
     /// `fmi2EnterInitializationMode`. A missing `fmi2SetupExperiment` is tolerated: the simulation starts at 0.
     pub(crate) fn enter_initialization_mode(&mut self) -> Call {
         if self.core.experiment.is_none() {
-            self.logger.warning("fmi2SetupExperiment was not called; the simulation starts at 0 s");
+            self.logger.tolerated("fmi2SetupExperiment was not called; tolerated, the simulation starts at 0 s");
             self.setup_experiment(Experiment { start_time: 0.0, stop_time: None, tolerance: None })?;
         }
         self.core.state = CallState::InitializationMode;

@@ -113,7 +113,7 @@ impl<S: Slave> Instance<S> {
             Legality::Legal => Ok(()),
             Legality::Tolerated => {
                 self.logger
-                    .warning(format_args!("{}: FMI 2.0 forbids it in state {state}; tolerated", function.name()));
+                    .tolerated(format_args!("{}: FMI 2.0 forbids it in state {state}; tolerated", function.name()));
                 Ok(())
             }
             Legality::Illegal => Err(CallError::IllegalState { state, legal: function.legal_states(interface) }),

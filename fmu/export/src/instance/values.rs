@@ -89,6 +89,6 @@ impl<S: Slave> Instance<S> {
         let (name, causality) = (variable.name(), variable.causality().as_str());
         let state = self.core.state;
         self.logger
-            .warning(format_args!("FMI 2.0 forbids that {causality} {name} be {what} in state {state}; tolerated"));
+            .tolerated(format_args!("FMI 2.0 forbids that {causality} {name} be {what} in state {state}; tolerated"));
     }
 }

@@ -26,6 +26,7 @@ pub struct Declaration<T: Copy, A> {
     causality: Causality,
     variability: Variability,
     dependencies: Option<&'static [&'static str]>,
+    initial_dependencies: Option<&'static [&'static [&'static str]]>,
     derivative_of: Option<&'static str>,
     reinit: bool,
     spec: T,
@@ -50,6 +51,7 @@ const fn declare<T: Copy, A>(
         causality,
         variability,
         dependencies: None,
+        initial_dependencies: None,
         derivative_of: None,
         reinit: false,
         spec,
@@ -242,6 +244,7 @@ impl<T: Copy, A> Declaration<T, A> {
             variability: self.variability,
             kind,
             dependencies: self.dependencies,
+            initial_dependencies: self.initial_dependencies,
             derivative_of: self.derivative_of,
             reinit: self.reinit,
         }
@@ -260,6 +263,13 @@ impl<T: Copy> Declaration<T, ReadOnly> {
     /// list says that it has no direct feedthrough, so that masters need not look for algebraic loops.
     pub const fn depends_on(mut self, names: &'static [&'static str]) -> Self {
         self.dependencies = Some(names);
+        self
+    }
+
+    /// Promises that the initial value depends on the inputs and parameters in these groups of names and on no others. It
+    /// must be the value of every valid set of parameters: what an option of the model makes depend counts.
+    pub const fn initially_depends_on(mut self, groups: &'static [&'static [&'static str]]) -> Self {
+        self.initial_dependencies = Some(groups);
         self
     }
 }

@@ -2,7 +2,7 @@
 //! as an FMU that some importers refuse.
 
 use super::kind::{EnumerationType, Kind, RealSpec};
-use super::{Causality, Variability, Variable};
+use super::{Causality, Initial, Variability, Variable};
 use crate::info::ModelInfo;
 use crate::slave::Slave;
 use std::collections::{HashMap, HashSet};
@@ -79,7 +79,8 @@ fn check_table<M>(table: &[Variable<M>]) -> Check {
     ensure(clash.is_none(), clash.unwrap_or(&""), || "a variable and an enumeration share this name".into())?;
     let times = table.iter().filter(|v| v.causality == Causality::Independent);
     ensure(times.count() <= 1, "table", || "there are two independent variables".into())?;
-    table.iter().try_for_each(|v| check_dependencies(v, &names))
+    table.iter().try_for_each(|v| check_dependencies(v, &names))?;
+    table.iter().try_for_each(|v| check_initial_dependencies(v, table))
 }
 
 /// Only a continuous state of model exchange can jump.
@@ -172,4 +173,14 @@ fn check_dependencies<M>(variable: &Variable<M>, names: &HashSet<&str>) -> Check
         ensure(names.contains(other), variable.name, || format!("it depends on {other}, which is not in the table"))?;
     }
     Ok(())
+}
+
+/// What an initial value may depend on is known before: inputs, and what has `initial = "exact"` (section 2.2.8).
+fn check_initial_dependencies<M>(variable: &Variable<M>, table: &[Variable<M>]) -> Check {
+    let is_known = |row: &Variable<M>| row.causality == Causality::Input || row.initial() == Some(Initial::Exact);
+    let groups = variable.initial_dependencies.unwrap_or_default();
+    groups.iter().copied().flatten().try_for_each(|other| {
+        let known = table.iter().any(|row| row.name == *other && is_known(row));
+        ensure(known, variable.name, || format!("it initially depends on {other}, which is no input or parameter"))
+    })
 }

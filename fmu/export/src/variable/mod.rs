@@ -106,6 +106,7 @@ pub struct Variable<M: 'static> {
     pub(crate) variability: Variability,
     pub(crate) kind: Kind<M>,
     pub(crate) dependencies: Option<&'static [&'static str]>,
+    pub(crate) initial_dependencies: Option<&'static [&'static [&'static str]]>,
     pub(crate) derivative_of: Option<&'static str>,
     pub(crate) reinit: bool,
 }
@@ -179,6 +180,11 @@ impl<M> Variable<M> {
     /// which importers read as "on every input".
     pub const fn dependencies(&self) -> Option<&'static [&'static str]> {
         self.dependencies
+    }
+
+    /// Names of the inputs and parameters that an initial value depends on, in groups; `None` if nothing is promised.
+    pub const fn initial_dependencies(&self) -> Option<&'static [&'static [&'static str]]> {
+        self.initial_dependencies
     }
 
     /// Name of the continuous state whose time derivative this is.

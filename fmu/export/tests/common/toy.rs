@@ -34,6 +34,7 @@ pub struct Toy {
     updates: i32,
     start_time: f64,
     time: f64,
+    switched: f64,
 }
 
 impl Clone for Toy {
@@ -66,7 +67,9 @@ pub const TROUBLE: u32 = 13;
 pub const UPDATES: u32 = 14;
 pub const TIME: u32 = 15;
 pub const DERIVATIVE: u32 = 16;
-pub const COUNT_OF_VARIABLES: u32 = 17;
+pub const SWITCHED: u32 = 17;
+pub const HELD: u32 = 18;
+pub const COUNT_OF_VARIABLES: u32 = 19;
 
 type V = Variable<Toy>;
 
@@ -86,7 +89,7 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
         .tunable()
         .infinity_allowed()
         .access(|m| m.limit, |m, v| m.limit = v),
-    V::calculated_parameter("doubled", "N/m", "2 k").get(|m| m.doubled),
+    V::calculated_parameter("doubled", "N/m", "2 k").initially_depends_on(&[&["toy.gain"]]).get(|m| m.doubled),
     V::input("u", "V", 1.0, "Input")
         .input_derivatives(1, |m, _order, v| m.slope = v)
         .access(|m| m.input, |m, v| m.input = v),
@@ -109,9 +112,15 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
     V::independent("time", "Time").get(|m| m.time),
     V::output("der(integral)", "V.N/m", "k u")
         .local()
-        .depends_on(&["u"])
+        .depends_on(&["u", "switched"])
+        .initially_depends_on(&[&["toy.gain"], &["u", "switched"]])
         .derivative_of("integral")
-        .get(|m| m.gain * m.input),
+        .get(|m| m.gain * m.input + m.switched),
+    V::input("switched", "1", 0.0, "Added to k u").discrete().access(|m| m.switched, |m, v| m.switched = v),
+    V::output("held", "1", "What is added to k u")
+        .discrete()
+        .initially_depends_on(&[&["switched"]])
+        .get(|m| m.switched),
 ];
 
 impl Toy {
@@ -231,6 +240,7 @@ impl Slave for Toy {
             ("doubled", "toy.gain") => 2.0,
             // Of the integral through a step of one second; at one point it depends on nothing, as the table says.
             ("der(integral)" | "integral", "u") => self.gain,
+            ("der(integral)" | "held", "switched") => 1.0,
             _ => 0.0,
         }
     }
@@ -242,7 +252,7 @@ impl Slave for Toy {
     fn write_state(&self, out: &mut StateWriter) {
         self.fail_in("write");
         out.f64s(&[self.gain, self.limit, self.doubled, self.input, self.slope, self.integral]);
-        out.f64s(&[self.start_time, self.time]);
+        out.f64s(&[self.start_time, self.time, self.switched]);
         out.i32(self.count);
         out.i32(self.seed);
         out.bool(self.on);
@@ -255,13 +265,14 @@ impl Slave for Toy {
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         let numbers = from.f64s()?;
         let times = from.f64s()?;
-        let ([gain, limit, doubled, input, slope, integral], [start_time, time]) = (&numbers[..], &times[..]) else {
+        let ([gain, limit, doubled, input, slope, integral], [start_time, time, switched]) = (&numbers[..], &times[..])
+        else {
             return Err(StateError::Invalid("wrong number of numbers".into()));
         };
         let mut toy = Self::default();
         (toy.gain, toy.limit, toy.doubled) = (*gain, *limit, *doubled);
         (toy.input, toy.slope, toy.integral) = (*input, *slope, *integral);
-        (toy.start_time, toy.time) = (*start_time, *time);
+        (toy.start_time, toy.time, toy.switched) = (*start_time, *time, *switched);
         toy.count = from.i32()?;
         toy.seed = from.i32()?;
         toy.on = from.bool()?;

@@ -1,0 +1,50 @@
+"""The strict client, compiled with the standard's own headers (FMPy brings them); it loads the library of an FMU."""
+
+import subprocess
+import zipfile
+from pathlib import Path
+
+import fmpy
+
+from program import HEADERS, STRICT
+
+
+def role(variable, states: set) -> str:
+    if variable in states:
+        return "state"
+    if variable.derivative is not None:
+        return "derivative"
+    return variable.causality if variable.causality in ("parameter", "input", "output") else "rest"
+
+
+def start(variable) -> str:
+    """A start value as C reads it; a word for what has none."""
+    return {"true": "1", "false": "0", None: "-"}.get(variable.start, variable.start) or "-"
+
+
+def table(description) -> str:
+    variables = description.modelVariables
+    states = {variable.derivative for variable in variables if variable.derivative is not None}
+    lines = [f"states {len(states)}", f"indicators {description.numberOfEventIndicators}"]
+    for interface in (description.coSimulation, description.modelExchange):
+        if interface is not None:
+            lines.append(f"interface {type(interface).__name__}")
+            lines += ["derivatives"] if interface.providesDirectionalDerivative else []
+    for variable in variables:
+        kind = {"Enumeration": "Integer"}.get(variable.type, variable.type).lower()
+        lines.append(f"variable {variable.valueReference} {kind} {role(variable, states)} {start(variable)}")
+    return "\n".join(lines) + "\n"
+
+
+def run(fmu: str, folder: Path) -> tuple[int, list[str]]:
+    """What the client says of an FMU: its exit code and its lines."""
+    program = folder / "strict"
+    source = Path(__file__).parent / "strict.c"
+    subprocess.run(["cc", *STRICT, "-Wno-pedantic", "-I", HEADERS, source, "-ldl", "-lm", "-o", program], check=True)
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(folder)
+    description = fmpy.read_model_description(fmu)
+    library = folder / "binaries" / "linux64" / f"{Path(fmu).stem}.so"
+    command = [program, library, description.guid]
+    finished = subprocess.run(command, input=table(description), stdout=subprocess.PIPE, text=True)
+    return finished.returncode, finished.stdout.splitlines()
