@@ -23,7 +23,9 @@ fn toy() -> Fmu {
 fn a_hundred_thousand_random_call_sequences_go_as_the_tables_say() {
     let census = run(&toy(), 0..SEQUENCES).unwrap();
     if LOGS {
-        assert!(census.statuses.iter().all(|count| *count > 1000), "all sorts of status: {:?}", census.statuses);
+        // Warnings are the model's alone, and it gives few.
+        let enough = |(status, count): (usize, &u64)| *count > if status == 1 { 100 } else { 1000 };
+        assert!(census.statuses.iter().enumerate().all(enough), "all sorts of status: {:?}", census.statuses);
         // Co-simulation has seven states that an instance can be in, model exchange too.
         assert_eq!(CallState::ALL.len() - 2, 9);
         let cells = (Function::ALL.len() - 1) * (7 + 7);
