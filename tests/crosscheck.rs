@@ -4,6 +4,9 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+#[path = "../examples/random_crosschecks/draw.rs"]
+mod draw;
+
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -99,6 +102,52 @@ fn the_solvers_agree_without_impacts_and_at_hundreds_of_kilovolts() {
     }
 }
 
+/// Half of such circuits ended with "Timestep too small" where steps shrank without end at corners of C(t).
+/// `cargo run --release --example random_crosschecks` does the same with any number of them.
+#[test]
+fn random_circuits_run_to_their_end_and_agree() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for index in 0..5 {
+        let arguments = draw::arguments(2026, index);
+        let found = videg(folder.path(), &with_json(&arguments), &[]);
+        assert_eq!(draw::verdict(&found), draw::Verdict::Agrees, "{}", arguments.join(" "));
+        assert_eq!(draw::repeated(&found), Vec::<String>::new(), "{}", arguments.join(" "));
+    }
+}
+
+fn with_json(arguments: &[String]) -> Vec<&str> {
+    ["crosscheck", "--json"].into_iter().chain(arguments.iter().map(String::as_str)).collect()
+}
+
+/// By the trapezoidal rule the current of a diode swings, which a run with a time point on each corner of C(t) pays for
+/// with 1.4e-3 to 4e-3 of its charge here; trapezoidal sums of currents that jump cost another 1e-4.
+#[test]
+fn ngspice_step_by_step_loses_no_charge_to_quick_loads() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let values = "excitation.amplitude=2.672 excitation.frequency=4.41 membrane.stiffness=111850 membrane.restitution=0.78 \
+                  ball.mass=5.09e-3 load.resistance=1.01e6 biasVoltage=3265";
+    let mut arguments = vec!["crosscheck", "--json", "--until", "2", "--topology", "isolated", "--release", "switch"];
+    arguments.extend(values.split_whitespace().flat_map(|value| ["--set", value]));
+    let found = json(&videg(folder.path(), &arguments, &[]), 0);
+    for name in ["supply charge", "load charge", "load energy"] {
+        let by = |solver: &str| check(&found, name)["values"][solver].as_f64().unwrap();
+        let same_diodes = by("embedded_exponential");
+        for solver in ["ngspice_batch", "ngspice_live"] {
+            assert!(
+                (by(solver) / same_diodes - 1.0).abs() < 1e-5,
+                "{name} by {solver}: {}",
+                by(solver) / same_diodes - 1.0
+            );
+        }
+    }
+}
+
 /// What stands in the README of the folder is what ngspice prints there.
 fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
     let page = std::fs::read_to_string(folder.join("README.txt")).unwrap();
@@ -115,8 +164,9 @@ fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
             let number = |text: &str| text.split_whitespace().next().unwrap().parse::<f64>().unwrap();
             let found = printed.lines().find_map(|line| line.strip_prefix(&format!("{} = ", name.trim())));
             let (found, expected) = (number(found.unwrap_or_else(|| panic!("{name}: {printed}"))), number(rest));
-            // Closed forms are met to some 1e-7, runs of the same program to the digits printed.
-            assert!((found / expected - 1.0).abs() < 1e-6, "{}: {name} {found} {expected}", own.display());
+            // Closed forms are met to some 1e-7. The scripts sum currents by the trapezoidal rule alone.
+            let tolerance = if own.file_name().unwrap().to_string_lossy().starts_with("check_") { 1e-6 } else { 3e-5 };
+            assert!((found / expected - 1.0).abs() < tolerance, "{}: {name} {found} {expected}", own.display());
             compared += 1;
         }
     }

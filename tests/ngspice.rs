@@ -166,16 +166,19 @@ fn the_capacitor_of_the_netlists_obeys_its_closed_forms() {
     let left: Vec<f64> = time.iter().map(wave).collect();
     let wave = CapacitanceTable::new(&time, &left, &left).unwrap();
     let ramp = CapacitanceTable::new(&[0.0, 1.0], &[15e-12, 30e-12], &[15e-12; 2]).unwrap();
-    for (check, table) in [
-        (Check::ChargedCapacitor, &wave),
-        (Check::ConstantVoltage, &wave),
-        (Check::RcDischarge { resistance: 1e10 }, &ramp),
-        (Check::RcDischarge { resistance: 1e11 }, &ramp),
+    // The charge is a sum of currents by the trapezoidal rule. A current that jumps, as at each row of the wave, may cost it
+    // half a step times the jump, 1.4e-3 of the charge if all were of one sign.
+    for (check, table, tolerance) in [
+        (Check::ChargedCapacitor, &wave, 1e-6),
+        (Check::ConstantVoltage, &wave, 1e-4),
+        (Check::ConstantVoltage, &ramp, 1e-6),
+        (Check::RcDischarge { resistance: 1e10 }, &ramp, 1e-6),
+        (Check::RcDischarge { resistance: 1e11 }, &ramp, 1e-6),
     ] {
         let deviation = check.run(&ngspice, 2000.0, table, &Run::new(table.until(), table.growth())).unwrap();
         println!("{check:?}: {deviation:?}");
-        assert!(deviation.largest < 1e-6, "{check:?}: {deviation:?}");
-        assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < 1e-6);
+        assert!(deviation.largest < tolerance, "{check:?}: {deviation:?}");
+        assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < tolerance);
     }
 }
 

@@ -256,8 +256,9 @@ fn page_text(title: &str, items: &[Item]) -> String {
         "{MARK}\n\n{title}\n\nEach folder holds a circuit for ngspice (with its XSPICE code models, as Debian's package \
          has them): the\nnetlist {netlist}, C(t) in {} (time in s, capacitances of the left and the right membrane in \
          pF),\nand {EVALUATION}, which sums up the result. In such a folder\n\n    ngspice -n -b {netlist}\n    ngspice -n -b \
-         {EVALUATION}\n\nleaves the waveforms in {raw} and prints the values that stand here. They agree to 3e-4 or better\n\
-         with another version of ngspice; with the closed forms as far as the crosscheck says.\n",
+         {EVALUATION}\n\nleaves the waveforms in {raw} and prints the values that stand here: to some 1e-5, as the script sums\ncurrents by \
+         the trapezoidal rule alone; to 3e-4 or better with another version of ngspice; the closed forms as far as the\n\
+         crosscheck says.\n",
         FileName::Table.name()
     );
     for item in items {

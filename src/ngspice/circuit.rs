@@ -115,7 +115,7 @@ impl Elements {
     /// A number that is not finite.
     pub fn netlist(&self, source: CapacitanceSource, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
         let (whole, release) = self.templates();
-        self.fill(&whole, &release, run.values(source, initial, self.vectors())?)
+        self.fill(&whole, &release, run.values(source, self.supply_voltage, initial, self.vectors())?)
     }
 
     fn fill(&self, whole: &Template, release: &Template, run: Values) -> Result<Netlist, NgspiceError> {
@@ -221,17 +221,15 @@ pub struct Run {
     pub current_tolerance: f64,
     /// `vntol`, V.
     pub voltage_tolerance: f64,
-    /// `chgtol`, C.
-    pub charge_tolerance: f64,
     /// `gmin`, S.
     pub minimum_conductance: f64,
 }
 
 impl Run {
-    /// A run until `until`, s, while capacitances grow to at most `growth` times what they are at rest, with options that
-    /// were found to hold: `reltol` times the voltage must stay below N Vt, over
-    /// which the current of a diode changes by e, or Newton's iteration ends at false solutions; smaller tolerances end
-    /// in "timestep too small". Where the voltage rises to many times `U_in`, charge and current rise with its square.
+    /// A run until `until`, s, while capacitances grow to at most `growth` times what they are at rest. `reltol` times the
+    /// voltage must stay below N Vt, over which the current of a diode changes by e, or Newton's iteration ends at false
+    /// solutions. Where the voltage rises to many times `U_in`, the current rises with its square.
+    /// `ngspice_netlists/README.md` has a reason for each option.
     pub fn new(until: f64, growth: f64) -> Self {
         let coarseness = coarseness(growth);
         Self {
@@ -240,15 +238,19 @@ impl Run {
             relative_tolerance: 1e-8 * coarseness.sqrt(),
             current_tolerance: 1e-11 * coarseness * coarseness,
             voltage_tolerance: 1e-6,
-            charge_tolerance: 1e-13 * coarseness * coarseness,
             minimum_conductance: 1e-20,
         }
     }
 
-    /// Values that every netlist has: C(t), options, commands.
+    /// Values that every netlist has: C(t), options, commands; for membranes charged to `voltage`, V.
+    ///
+    /// `chgtol` is the charge of the membranes at the start, which is what `reltol` means here: the element of the charge
+    /// that C(t) adds to it passes through 0 wherever C(t) does, and an error relative to that would let no step
+    /// cross a corner of C(t).
     pub(super) fn values(
         &self,
         source: CapacitanceSource,
+        voltage: f64,
         [left, right]: [f64; 2],
         saved: &'static [&'static str],
     ) -> Result<Values, NgspiceError> {
@@ -258,7 +260,7 @@ impl Run {
             .number("reltol", self.relative_tolerance)
             .number("abstol", self.current_tolerance)
             .number("vntol", self.voltage_tolerance)
-            .number("chgtol", self.charge_tolerance)
+            .number("chgtol", voltage * (left + right))
             .number("gmin", self.minimum_conductance)
             .number("initial_left", left)
             .number("initial_right", right)
@@ -299,8 +301,11 @@ mod tests {
         let (table, parameters) = (pulse(), Parameters::default());
         let elements = Elements::new(&parameters, table.growth()).unwrap();
         // Loose, for the wrong form gets nowhere with the tight options.
-        let run = Run { relative_tolerance: 1e-5, charge_tolerance: 1e-12, ..Run::new(table.until(), table.growth()) };
-        let values = run.values(CapacitanceSource::Table, table.initial(), elements.vectors()).unwrap();
+        let loose = Run::new(table.until(), table.growth());
+        let run = Run { relative_tolerance: 1e-5, current_tolerance: 1e-9, ..loose };
+        let values = run
+            .values(CapacitanceSource::Table, parameters.supply_voltage, table.initial(), elements.vectors())
+            .unwrap();
         let netlist = elements.fill(whole, &template!("zener_shared.cir"), values).unwrap();
         let finished = ngspice.run(&netlist, &table).unwrap();
         let raw = finished.raw().unwrap().unwrap();
