@@ -138,6 +138,38 @@ fn both_solvers_agree_for_loads_and_voltages_drawn_at_random() {
     }
 }
 
+/// ngspice keeps all its time points in memory, so long runs are divided, and each piece begins where the last one ended.
+#[test]
+fn a_divided_run_equals_an_undivided_one() {
+    let Some(ngspice) = ngspice() else { return };
+    let table = table(&harvester_fmu(), "fig14", 3.0);
+    for ideal in variants() {
+        let elements = Elements::new(&ideal, table.growth()).unwrap();
+        let run = |piece| Run { piece, ..Run::new(table.until(), table.growth()) };
+        let follow = |piece: f64| {
+            let parts = std::cell::RefCell::new(Vec::new());
+            let outcome =
+                ngspice.follow(&elements, &table, &run(piece), &|part| parts.borrow_mut().push(part)).unwrap();
+            assert!(outcome.stop.is_none() && outcome.repeated.is_empty(), "{outcome:?}");
+            (outcome.waveforms, parts.into_inner().len())
+        };
+        let ((whole, one), (divided, many)) = (follow(1e3), follow(0.17));
+        assert!(one == 1 && many > 10, "{one} {many}");
+        assert_eq!(whole.time, divided.time);
+        let (a, b) = (whole.ledger(), divided.ledger());
+        let pairs = [(a.supply, b.supply), (a.load, b.load), (a.zener, b.zener), (a.stored, b.stored)];
+        let difference = pairs.iter().map(|(a, b)| (a - b).abs() / whole.ledger().supply).fold(0.0, f64::max);
+        println!(
+            "{:?} {:?}: {difference:.1e}, {:?} V",
+            ideal.topology,
+            ideal.release,
+            whole.voltage_difference(&divided)
+        );
+        assert!(difference < 1e-6, "{:?} {:?}: {a:?} {b:?}", ideal.topology, ideal.release);
+        assert!(whole.voltage_difference(&divided).unwrap().iter().all(|volts| *volts < 1e-2));
+    }
+}
+
 #[test]
 fn a_storage_takes_the_charge_that_a_zener_without_load_passes() {
     let Some(ngspice) = ngspice() else { return };

@@ -1,8 +1,8 @@
 //! Checks of ngspice's time-varying capacitor against closed forms: if these fail, nothing else from it counts.
 
 use super::capacitance::{CapacitanceTable, PICO};
-use super::circuit::{CapacitanceSource, Run};
 use super::raw::RawReader;
+use super::run::{CapacitanceSource, Run};
 use super::runner::Ngspice;
 use super::template::{Netlist, Template, template};
 use super::{NgspiceError, Said};

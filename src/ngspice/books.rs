@@ -7,7 +7,7 @@
 
 use videg_circuit::{Ledger, Topology};
 
-use super::circuit::{Branch, Elements};
+use super::circuit::{Branch, Elements, Start};
 use crate::circuit_sample::CircuitSample;
 
 /// What holds at one time point of ngspice.
@@ -46,7 +46,7 @@ impl Books {
                 Topology::Isolated => capacitance,
             },
             voltage: [elements.supply_voltage; 2],
-            load_voltage: elements.initial_load_voltage(),
+            load_voltage: elements.start().load,
             ..Instant::default()
         };
         Self { elements: *elements, initial_energy: stored(&start), last: start, sums: Ledger::default() }
@@ -57,20 +57,22 @@ impl Books {
     /// `None` if there are too few of them.
     pub fn instant(elements: &Elements, time: f64, values: &[f64]) -> Option<Instant> {
         use super::capacitance::PICO;
+        let load_voltage =
+            |voltage: &[f64], current: f64| voltage.first().map_or(elements.resistance() * current, |v| *v);
         match (elements.topology, values) {
-            (Topology::SharedNode, &[cl, cr, de, out, supply, release]) => Some(Instant {
+            (Topology::SharedNode, &[cl, cr, de, supply, release, ref out @ ..]) => Some(Instant {
                 time,
                 capacitance: [(cl + cr) * PICO, 0.0],
                 voltage: [de; 2],
-                load_voltage: out,
+                load_voltage: load_voltage(out, release),
                 supply: [supply, 0.0],
                 release: [release, 0.0],
             }),
-            (Topology::Isolated, &[cl, cr, left, right, out, sl, sr, rl, rr]) => Some(Instant {
+            (Topology::Isolated, &[cl, cr, left, right, sl, sr, rl, rr, ref out @ ..]) => Some(Instant {
                 time,
                 capacitance: [cl * PICO, cr * PICO],
                 voltage: [left, right],
-                load_voltage: out,
+                load_voltage: load_voltage(out, rl + rr),
                 supply: [sl, sr],
                 release: [rl, rr],
             }),
@@ -136,6 +138,11 @@ impl Books {
             supply_current: last.supply.iter().sum(),
             ledger: self.ledger(),
         }
+    }
+
+    /// Voltages at the last time point taken.
+    pub fn end(&self) -> Start {
+        Start { membranes: self.last.voltage, load: self.last.load_voltage }
     }
 
     /// Last time point taken, s.

@@ -101,6 +101,22 @@ pub enum NgspiceError {
     Harvester(Box<dyn std::error::Error + Send + Sync>),
 }
 
+impl NgspiceError {
+    /// Whether ngspice has ended too early: what it has found until then stands.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::Stopped { .. } | Self::TimeLimit { .. } | Self::Failed { .. } | Self::Live(_))
+    }
+
+    /// Whether it found no way on from a point of time; from others it may.
+    pub fn is_lost(&self) -> bool {
+        match self {
+            Self::Stopped { said, .. } => said.gave_up(),
+            Self::Live(live) => Said::in_output(&live.to_string()).gave_up(),
+            _ => false,
+        }
+    }
+}
+
 /// Lines of ngspice that tell why it stopped; empty if it said nothing of the kind.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Said(Vec<String>);
