@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 #[path = "../examples/random_crosschecks/draw.rs"]
+#[allow(dead_code, reason = "the example takes more of it")]
 mod draw;
 
 use std::os::unix::fs::PermissionsExt as _;
@@ -165,7 +166,7 @@ fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
             let found = printed.lines().find_map(|line| line.strip_prefix(&format!("{} = ", name.trim())));
             let (found, expected) = (number(found.unwrap_or_else(|| panic!("{name}: {printed}"))), number(rest));
             // Closed forms are met to some 1e-7. The scripts sum currents by the trapezoidal rule alone.
-            let tolerance = if own.file_name().unwrap().to_string_lossy().starts_with("check_") { 1e-6 } else { 3e-5 };
+            let tolerance = if own.file_name().unwrap().to_string_lossy().starts_with("check_") { 1e-6 } else { 1e-4 };
             assert!((found / expected - 1.0).abs() < tolerance, "{}: {name} {found} {expected}", own.display());
             compared += 1;
         }
@@ -232,6 +233,75 @@ fn a_capacitor_of_the_wrong_form_fails() {
     }
 }
 
+/// An ngspice that runs circuits up to 0.7 s only, and then says what ngspice says when it is lost.
+fn ngspice_until_700_ms(folder: &Path, program: &Path) -> PathBuf {
+    let path = folder.join("short-winded-ngspice");
+    let script = format!(
+        "#!/bin/sh\nif grep -q 'videg: harvesting circuit' harvesting.cir; then\n\
+         sed -i 's/^tran \\([^ ]*\\) [^ ]* /tran \\1 0.7 /' harvesting.cir\n\
+         echo 'doAnalyses: TRAN:  Timestep too small; time = 0.7'\nfi\nexec '{}' \"$@\"\n",
+        program.display()
+    );
+    std::fs::write(&path, script).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[test]
+fn where_ngspice_stops_all_judges_are_reported_up_to_there_and_open_claims_named() {
+    let Some(program) = ngspice() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let short = ngspice_until_700_ms(folder.path(), &program);
+    let output = videg(folder.path(), &["crosscheck", "--json", "--until", "1.5"], &[("VIDEG_NGSPICE", &short)]);
+    let found = json(&output, 1);
+    assert_eq!(found["passed"], false);
+    let stopped = found["stopped"].as_array().unwrap();
+    let main = stopped.iter().find(|stop| stop["task"] == "ngspice, batch").unwrap_or_else(|| panic!("{stopped:?}"));
+    let reached = main["reached"].as_f64().unwrap();
+    assert!(reached > 0.69 && reached <= 0.7 && main["until"] == 1.5, "{main}");
+    let reason = main["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("Timestep too small") && reason.contains("so it did with steps of at most 5e-5 s"),
+        "{reason}"
+    );
+    assert!(
+        main["open"].as_array().unwrap().iter().any(|claim| claim.as_str().unwrap().contains("W of Eq. (13)")),
+        "{main}"
+    );
+    // Up to there all four solvers stand side by side and agree; what the embedded one has is of the whole run.
+    let supply = check(&found, &format!("supply energy, up to {reached} s"));
+    for solver in ["embedded_ideal", "embedded_exponential", "ngspice_batch", "ngspice_live"] {
+        assert!(supply["values"][solver].as_f64().unwrap() > 0.0, "{supply}");
+    }
+    assert_eq!(supply["agreement"]["agree"], true, "{supply}");
+    assert_eq!(draw::verdict(&output), draw::Verdict::GaveUp(draw_reasons(stopped)));
+    let times: Vec<_> = found["solvers"].as_array().unwrap().iter().map(|solver| solver["reached"].clone()).collect();
+    assert_eq!(times, [1.5.into(), 1.5.into(), main["reached"].clone(), 1.5.into()]);
+    let said = stderr(&output);
+    assert!(said.contains("ngspice, batch stopped: ") && said.contains("What stays open from 0.6"), "{said}");
+    let waveforms = std::fs::read_to_string(folder.path().join("out/crosscheck-fig14/waveforms.csv")).unwrap();
+    assert!(waveforms.lines().last().unwrap().contains(",,,,,,,"), "no zeros where nothing was found");
+    assert!(folder.path().join("out/crosscheck-fig14/report.html").is_file());
+}
+
+fn draw_reasons(stopped: &[Value]) -> String {
+    stopped.iter().map(|stop| stop["reason"].as_str().unwrap()).collect::<Vec<_>>().join("; ")
+}
+
+#[test]
+fn without_the_shared_library_the_other_judges_are_reported() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let none = ("VIDEG_NGSPICE_LIBRARY", Path::new("/nowhere/libngspice.so.0"));
+    let found = json(&videg(folder.path(), &["crosscheck", "--json", "--until", "0.5"], &[none]), 1);
+    let stopped = found["stopped"].as_array().unwrap();
+    assert!(stopped.len() == 1 && stopped[0]["task"] == "ngspice, live" && stopped[0]["reached"] == 0.0, "{stopped:?}");
+    assert!(stopped[0]["reason"].as_str().unwrap().contains("apt install libngspice0"), "{stopped:?}");
+    assert_eq!(check(&found, "supply energy")["agreement"]["agree"], true);
+}
+
 fn assert_refused(output: &Output, parts: &[&str]) {
     let stderr = stderr(output);
     assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{stderr}");
@@ -258,7 +328,6 @@ fn what_cannot_run_is_named() {
         (&["--release", "spark"][..], &["--release", "spark", "storage"][..]),
         (&["--set", "load.resistance=inf", "--until", "1"], &["load.resistance = inf"]),
         (&["--set", "load.resistance=1\n.control\nshell touch pwned\n.endc"], &["load.resistance"]),
-        (&["--until", "1000"], &["--until = 1000 s", "300 s"]),
     ] {
         let output = videg(folder.path(), &[&["crosscheck"], arguments].concat(), &[]);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {}", stderr(&output));

@@ -60,6 +60,16 @@ pub fn verdict(output: &Output) -> Verdict {
     }
 }
 
+/// The check that uses up most of its tolerance, as a part of that, and its name.
+pub fn closest(output: &Output) -> Option<(f64, String)> {
+    let found: Value = serde_json::from_slice(&output.stdout).ok()?;
+    let part = |check: &Value| {
+        let [deviation, tolerance] = ["deviation", "tolerance"].map(|key| check["agreement"][key].as_f64());
+        Some((deviation?.abs() / tolerance?, format!("{}: {}", check["name"], check["agreement"]["between"])))
+    };
+    found["checks"].as_array()?.iter().filter_map(part).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 /// What was changed where ngspice did not run at once.
 pub fn repeated(output: &Output) -> Vec<String> {
     let found: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();

@@ -18,6 +18,8 @@ use draw::Verdict;
 struct Ran {
     verdict: Verdict,
     repeated: Vec<String>,
+    /// The check that uses up most of its tolerance.
+    closest: Option<(f64, String)>,
 }
 
 impl Ran {
@@ -74,7 +76,7 @@ fn main() -> anyhow::Result<ExitCode> {
 fn run(program: &Path, folder: &Path, arguments: &[String]) -> std::io::Result<Ran> {
     let output =
         Command::new(program).args(["crosscheck", "--json", "--output"]).arg(folder).args(arguments).output()?;
-    Ok(Ran { verdict: draw::verdict(&output), repeated: draw::repeated(&output) })
+    Ok(Ran { verdict: draw::verdict(&output), repeated: draw::repeated(&output), closest: draw::closest(&output) })
 }
 
 fn show(index: u64, arguments: &[String], found: &Ran) {
@@ -82,6 +84,9 @@ fn show(index: u64, arguments: &[String], found: &Ran) {
     println!("{index:>5}  {word:<9}  {}", arguments.join(" "));
     for line in reason.split("; ").filter(|line| !line.is_empty()) {
         println!("{:>18}{}", "", line.replace('\n', " |"));
+    }
+    if let Some((part, check)) = &found.closest {
+        println!("{:>18}at most {part:.3} of a tolerance, {check}", "");
     }
     for change in &found.repeated {
         println!("{:>18}repeated: {change}", "");
@@ -92,8 +97,11 @@ fn sum_up(ran: &[Ran], seed: u64) -> ExitCode {
     let count = |word| ran.iter().filter(|found| found.words().0 == word).count();
     let [agree, disagree, gave_up, broke] = ["agrees", "DISAGREES", "gave up", "BROKE"].map(count);
     let repeated = ran.iter().filter(|found| !found.repeated.is_empty()).count();
-    println!("\n| seed | circuits | run and agree | disagree | gave up | broke | repeated with changes |");
-    println!("|---|---|---|---|---|---|---|");
-    println!("| {seed} | {} | {agree} | {disagree} | {gave_up} | {broke} | {repeated} |", ran.len());
+    let closest = ran.iter().filter_map(|found| Some(found.closest.as_ref()?.0)).fold(0.0, f64::max);
+    println!(
+        "\n| seed | circuits | run and agree | disagree | gave up | broke | repeated with changes | largest part of a tolerance |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    println!("| {seed} | {} | {agree} | {disagree} | {gave_up} | {broke} | {repeated} | {closest:.3} |", ran.len());
     ExitCode::from(u8::from(disagree + broke > 0 || 100 * gave_up > ran.len()))
 }
