@@ -46,14 +46,7 @@ fn solve(
     bar.finish();
     pulses = found.shorten(pulses);
     let mut all = found.main_checks(&case, &settings, pulses.as_ref());
-    let (compared, limits) = found.compared(&bench, &case, &settings, &others)?;
-    for (compared, reached) in compared.iter().zip(limits) {
-        let own = comparison_checks(std::slice::from_ref(compared));
-        all.extend(match reached {
-            Some(reached) => limited(own, reached),
-            None => own,
-        });
-    }
+    let compared = found.compared(&bench, &case, &settings, &others, &mut all)?;
     let Gathered { runs, open, capacitor, mut stops, mut repeats, .. } = found;
     all.extend(capacitor);
     if let Some(sweep) = &sweep {
@@ -65,10 +58,9 @@ fn solve(
     warnings.extend(voltage_warning(&settings, case.bias_voltage));
     warnings.extend(stops.iter().map(Stop::sentence));
     let conclusion = conclusion(&all, &compared, &stops, &repeats);
-    let label = label(&settings);
     Ok(Finished {
         scenario,
-        label,
+        label: label(&settings),
         settings,
         runs,
         pulses,
@@ -178,36 +170,38 @@ impl Gathered {
         all
     }
 
-    /// The circuit asked for and the others, by both solvers as far as both got, and how far that is where it is not the
-    /// end, s.
+    /// The circuit asked for and the others, by both solvers as far as both got; what is checked of them goes to `checks`.
     fn compared(
         &self,
         bench: &Bench<'_>,
         case: &Case,
         asked: &Settings,
         others: &[Settings],
-    ) -> Result<(Vec<Compared>, Vec<Option<f64>>), NgspiceError> {
+        checks: &mut Vec<Check>,
+    ) -> Result<Vec<Compared>, NgspiceError> {
         let eq13 = case.mechanics.energy_eq13;
         let run = |solver| {
             let (_, run) = self.runs.iter().find(|(other, _)| *other == solver)?;
             Some((run.summary(eq13), run.samples.len()))
         };
         let first = (asked, [run(Solver::Exponential), run(Solver::Batch)]);
-        let (mut compared, mut limits) = (Vec::new(), Vec::new());
+        let mut all = Vec::new();
         for (settings, pair) in std::iter::once(first).chain(others.iter().zip(self.others.iter().cloned())) {
-            let [Some((embedded, _)), Some((ngspice, rows))] = pair else { continue };
+            let [Some((mut embedded, _)), Some((ngspice, rows))] = pair else { continue };
             if rows == case.table.len() {
-                compared.push(Compared::new(label(settings), case, settings, embedded, ngspice));
-                limits.push(None);
+                let compared = Compared::new(label(settings), case, settings, embedded, ngspice);
+                checks.extend(comparison_checks(&compared));
+                all.push(compared);
             } else if rows > 1 {
                 let case = case.cut(rows);
                 let bench = Bench { table: &case.table, ..*bench };
-                let embedded = bench.run(Solver::Exponential, settings, &|_| ())?.waveforms.summary(eq13);
-                compared.push(Compared::new(label(settings), &case, settings, embedded, ngspice));
-                limits.push(Some(case.table.until()));
+                embedded = bench.run(Solver::Exponential, settings, &|_| ())?.waveforms.summary(eq13);
+                let compared = Compared::new(label(settings), &case, settings, embedded, ngspice);
+                checks.extend(limited(comparison_checks(&compared).to_vec(), case.table.until()));
+                all.push(compared);
             }
         }
-        Ok((compared, limits))
+        Ok(all)
     }
 }
 

@@ -6,7 +6,9 @@ use super::{Check, Compared, Repeat, Stop};
 pub fn conclusion(checks: &[Check], compared: &[Compared], stops: &[Stop], repeats: &[Repeat]) -> Vec<String> {
     let mut lines = vec![agreement(checks)];
     lines.extend(stops.iter().map(|stop| stop.sentence() + "."));
-    lines.extend(repeats.iter().map(|repeat| repeat.sentence() + "."));
+    // Where that did not help, the sentence before says so.
+    let helped = repeats.iter().filter(|repeat| stops.iter().all(|stop| stop.task != repeat.task));
+    lines.extend(helped.map(|repeat| repeat.sentence() + "."));
     lines.extend(claims(checks, true));
     lines.extend(claims(checks, false));
     lines.extend(why(checks));

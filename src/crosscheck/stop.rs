@@ -25,7 +25,7 @@ impl Stop {
     pub fn of(task: &str, outcome: &Outcome, until: f64, open: Vec<String>) -> Option<Self> {
         let error = outcome.stop.as_ref()?.to_string();
         let lines: Vec<_> = error.lines().map(str::trim).collect();
-        let also = outcome.repeated.iter().map(|change| format!("; so it did with {change}"));
+        let also = outcome.repeated.iter().map(|change| format!(", also with {change}"));
         let reason = lines.join(", ") + &also.collect::<String>();
         let reached = outcome.waveforms.time.last().copied().unwrap_or_default();
         Some(Self { task: task.to_owned(), reached, until, reason, open })
@@ -33,13 +33,12 @@ impl Stop {
 
     /// It in words.
     pub fn sentence(&self) -> String {
-        let open = if self.open.is_empty() { "nothing".to_owned() } else { self.open.join("; ") };
         let from = if self.reached > 0.0 {
-            format!("from {} s on, up to which all solvers are compared", self.reached)
+            format!("beyond {} s, up to which all solvers are compared", microseconds(self.reached))
         } else {
             "for the whole run".to_owned()
         };
-        format!("{} stopped: {}. What stays open {from}: {open}", self.task, self.reason)
+        format!("{}: {}. What stays open {from}: {}", self.task, self.reason, self.open.join("; "))
     }
 }
 
@@ -64,6 +63,11 @@ impl Repeat {
     }
 }
 
+/// A time, s, to the microsecond, for people to read.
+fn microseconds(time: f64) -> f64 {
+    (1e6 * time).round() / 1e6
+}
+
 /// Case and runs up to where the first run stopped; runs that hold nothing are left out. `None` if all are whole.
 pub fn common(case: &Case, runs: &[(Solver, Waveforms)]) -> Option<(Case, Vec<(Solver, Waveforms)>)> {
     let held = || runs.iter().filter(|(_, run)| run.samples.len() > 1);
@@ -81,8 +85,8 @@ pub fn common(case: &Case, runs: &[(Solver, Waveforms)]) -> Option<(Case, Vec<(S
 
 /// Says in the names of `checks`, and in their claims, that they are about the time up to `reached`, s.
 pub fn limited(checks: Vec<Check>, reached: f64) -> Vec<Check> {
+    let to = format!(", up to {} s", microseconds(reached));
     let limit = |mut check: Check| {
-        let to = format!(", up to {reached} s");
         check.name += &to;
         if let Some(claim) = &mut check.claim {
             claim.says += &to;

@@ -44,7 +44,7 @@ pub enum NgspiceError {
         said: Said,
     },
     /// It claims success and has no, or half a, result.
-    #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{}{said}", hint(said))]
+    #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{said}")]
     Stopped {
         /// Last time in its result, s; 0 if there is none.
         reached: f64,
@@ -155,9 +155,4 @@ impl std::fmt::Display for Said {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.iter().try_for_each(|line| write!(f, "\n  ngspice: {line}"))
     }
-}
-/// What a user can do about an iteration of ngspice that found no solution.
-fn hint(said: &Said) -> &'static str {
-    let is_lost = said.to_string().contains("Timestep too small");
-    if is_lost { " (with another --step its time points fall elsewhere, which mostly helps)" } else { "" }
 }
