@@ -93,8 +93,9 @@ quit
 # - `reltol` times 2 kV must stay well below N Vt (26 mV for `N=1`), over which the current of a diode changes by e. Above that Newton's
 #   iteration stops at false solutions without a word: with `N=0.01` and `reltol=1e-5` the gain at 2050 V is off by 15 %. A run with
 #   a tenth of `reltol` must give the same.
-# - A diode of `N=1` takes some 0.3 V of the 2 kV. One nearer to an ideal one needs a smaller `reltol`, which this table, with a row each
-#   millisecond, does not allow: ngspice ends with "Timestep too small", and with exit code 0.
+# - A diode of `N=1` takes some 0.3 V of the 2 kV. One nearer to an ideal one needs a smaller `reltol`, and with that `chgtol` must be larger, as
+#   no step across a corner of C(t) would be short enough: ngspice ends with "Timestep too small", and with exit code 0. `N=0.01`,
+#   `reltol=1e-8`, `method=gear` and for `chgtol` the charge of the membranes, `6e-8`, give 1.76425e-03 and 1.89513e-03.
 #
 # `ngspice_netlists/README.md` in the source tree says what videg's own netlists do about it.
 

@@ -4,6 +4,10 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+#[path = "../examples/random_crosschecks/draw.rs"]
+#[allow(dead_code, reason = "the example takes more of it")]
+mod draw;
+
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -99,6 +103,52 @@ fn the_solvers_agree_without_impacts_and_at_hundreds_of_kilovolts() {
     }
 }
 
+/// Half of such circuits ended with "Timestep too small" where steps shrank without end at corners of C(t).
+/// `cargo run --release --example random_crosschecks` does the same with any number of them.
+#[test]
+fn random_circuits_run_to_their_end_and_agree() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for index in 0..3 {
+        let arguments = draw::arguments(2026, index);
+        let found = videg(folder.path(), &with_json(&arguments), &[]);
+        assert_eq!(draw::verdict(&found), draw::Verdict::Agrees, "{}", arguments.join(" "));
+        assert_eq!(draw::repeated(&found), Vec::<String>::new(), "{}", arguments.join(" "));
+    }
+}
+
+fn with_json(arguments: &[String]) -> Vec<&str> {
+    ["crosscheck", "--json"].into_iter().chain(arguments.iter().map(String::as_str)).collect()
+}
+
+/// By the trapezoidal rule the current of a diode swings, which a run with a time point on each corner of C(t) pays for
+/// with 1.4e-3 to 4e-3 of its charge here; trapezoidal sums of currents that jump cost another 1e-4.
+#[test]
+fn ngspice_step_by_step_loses_no_charge_to_quick_loads() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let values = "excitation.amplitude=2.672 excitation.frequency=4.41 membrane.stiffness=111850 membrane.restitution=0.78 \
+                  ball.mass=5.09e-3 load.resistance=1.01e6 biasVoltage=3265";
+    let mut arguments = vec!["crosscheck", "--json", "--until", "2", "--topology", "isolated", "--release", "switch"];
+    arguments.extend(values.split_whitespace().flat_map(|value| ["--set", value]));
+    let found = json(&videg(folder.path(), &arguments, &[]), 0);
+    for name in ["supply charge", "load charge", "load energy"] {
+        let by = |solver: &str| check(&found, name)["values"][solver].as_f64().unwrap();
+        let same_diodes = by("embedded_exponential");
+        for solver in ["ngspice_batch", "ngspice_live"] {
+            assert!(
+                (by(solver) / same_diodes - 1.0).abs() < 1e-5,
+                "{name} by {solver}: {}",
+                by(solver) / same_diodes - 1.0
+            );
+        }
+    }
+}
+
 /// What stands in the README of the folder is what ngspice prints there.
 fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
     let page = std::fs::read_to_string(folder.join("README.txt")).unwrap();
@@ -115,8 +165,9 @@ fn runs_by_ngspice_alone(program: &Path, folder: &Path) {
             let number = |text: &str| text.split_whitespace().next().unwrap().parse::<f64>().unwrap();
             let found = printed.lines().find_map(|line| line.strip_prefix(&format!("{} = ", name.trim())));
             let (found, expected) = (number(found.unwrap_or_else(|| panic!("{name}: {printed}"))), number(rest));
-            // Closed forms are met to some 1e-7, runs of the same program to the digits printed.
-            assert!((found / expected - 1.0).abs() < 1e-6, "{}: {name} {found} {expected}", own.display());
+            // Closed forms are met to some 1e-7. The scripts sum currents by the trapezoidal rule alone.
+            let tolerance = if own.file_name().unwrap().to_string_lossy().starts_with("check_") { 1e-6 } else { 1e-4 };
+            assert!((found / expected - 1.0).abs() < tolerance, "{}: {name} {found} {expected}", own.display());
             compared += 1;
         }
     }
@@ -182,6 +233,75 @@ fn a_capacitor_of_the_wrong_form_fails() {
     }
 }
 
+/// An ngspice that runs circuits up to 0.7 s only, and then says what ngspice says when it is lost.
+fn ngspice_until_700_ms(folder: &Path, program: &Path) -> PathBuf {
+    let path = folder.join("short-winded-ngspice");
+    let script = format!(
+        "#!/bin/sh\nif grep -q 'videg: harvesting circuit' harvesting.cir; then\n\
+         sed -i 's/^tran \\([^ ]*\\) [^ ]* /tran \\1 0.7 /' harvesting.cir\n\
+         echo 'doAnalyses: TRAN:  Timestep too small; time = 0.7'\nfi\nexec '{}' \"$@\"\n",
+        program.display()
+    );
+    std::fs::write(&path, script).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[test]
+fn where_ngspice_stops_all_judges_are_reported_up_to_there_and_open_claims_named() {
+    let Some(program) = ngspice() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let short = ngspice_until_700_ms(folder.path(), &program);
+    let output = videg(folder.path(), &["crosscheck", "--json", "--until", "1.5"], &[("VIDEG_NGSPICE", &short)]);
+    let found = json(&output, 1);
+    assert_eq!(found["passed"], false);
+    let stopped = found["stopped"].as_array().unwrap();
+    let main = stopped.iter().find(|stop| stop["task"] == "ngspice, batch").unwrap_or_else(|| panic!("{stopped:?}"));
+    let reached = main["reached"].as_f64().unwrap();
+    assert!(reached > 0.69 && reached <= 0.7 && main["until"] == 1.5, "{main}");
+    let reason = main["reason"].as_str().unwrap();
+    assert!(reason.contains("Timestep too small") && reason.contains("also with steps of at most 5e-5 s"), "{reason}");
+    assert!(
+        main["open"].as_array().unwrap().iter().any(|claim| claim.as_str().unwrap().contains("W of Eq. (13)")),
+        "{main}"
+    );
+    // Up to there all four solvers stand side by side and agree; what the embedded one has is of the whole run.
+    let supply = check(&found, &format!("supply energy, up to {reached:.6} s"));
+    for solver in ["embedded_ideal", "embedded_exponential", "ngspice_batch", "ngspice_live"] {
+        assert!(supply["values"][solver].as_f64().unwrap() > 0.0, "{supply}");
+    }
+    assert_eq!(supply["agreement"]["agree"], true, "{supply}");
+    assert_eq!(draw::verdict(&output), draw::Verdict::GaveUp(draw_reasons(stopped)));
+    let times: Vec<_> = found["solvers"].as_array().unwrap().iter().map(|solver| solver["reached"].clone()).collect();
+    assert_eq!(times, [1.5.into(), 1.5.into(), main["reached"].clone(), 1.5.into()]);
+    let said = stderr(&output);
+    assert!(
+        said.contains("ngspice, batch: ngspice stopped at 0.7") && said.contains("What stays open beyond 0.69"),
+        "{said}"
+    );
+    let waveforms = std::fs::read_to_string(folder.path().join("out/crosscheck-fig14/waveforms.csv")).unwrap();
+    assert!(waveforms.lines().last().unwrap().contains(",,,,,,,"), "no zeros where nothing was found");
+    assert!(folder.path().join("out/crosscheck-fig14/report.html").is_file());
+}
+
+fn draw_reasons(stopped: &[Value]) -> String {
+    stopped.iter().map(|stop| stop["reason"].as_str().unwrap()).collect::<Vec<_>>().join("; ")
+}
+
+#[test]
+fn without_the_shared_library_the_other_judges_are_reported() {
+    if ngspice().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let none = ("VIDEG_NGSPICE_LIBRARY", Path::new("/nowhere/libngspice.so.0"));
+    let found = json(&videg(folder.path(), &["crosscheck", "--json", "--until", "0.5"], &[none]), 1);
+    let stopped = found["stopped"].as_array().unwrap();
+    assert!(stopped.len() == 1 && stopped[0]["task"] == "ngspice, live" && stopped[0]["reached"] == 0.0, "{stopped:?}");
+    assert!(stopped[0]["reason"].as_str().unwrap().contains("apt install libngspice0"), "{stopped:?}");
+    assert_eq!(check(&found, "supply energy")["agreement"]["agree"], true);
+}
+
 fn assert_refused(output: &Output, parts: &[&str]) {
     let stderr = stderr(output);
     assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{stderr}");
@@ -208,7 +328,6 @@ fn what_cannot_run_is_named() {
         (&["--release", "spark"][..], &["--release", "spark", "storage"][..]),
         (&["--set", "load.resistance=inf", "--until", "1"], &["load.resistance = inf"]),
         (&["--set", "load.resistance=1\n.control\nshell touch pwned\n.endc"], &["load.resistance"]),
-        (&["--until", "1000"], &["--until = 1000 s", "300 s"]),
     ] {
         let output = videg(folder.path(), &[&["crosscheck"], arguments].concat(), &[]);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {}", stderr(&output));

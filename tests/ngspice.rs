@@ -138,6 +138,38 @@ fn both_solvers_agree_for_loads_and_voltages_drawn_at_random() {
     }
 }
 
+/// ngspice keeps all its time points in memory, so long runs are divided, and each piece begins where the last one ended.
+#[test]
+fn a_divided_run_equals_an_undivided_one() {
+    let Some(ngspice) = ngspice() else { return };
+    let table = table(&harvester_fmu(), "fig14", 3.0);
+    for ideal in variants() {
+        let elements = Elements::new(&ideal, table.growth()).unwrap();
+        let run = |piece| Run { piece, ..Run::new(table.until(), table.growth()) };
+        let follow = |piece: f64| {
+            let parts = std::cell::RefCell::new(Vec::new());
+            let outcome =
+                ngspice.follow(&elements, &table, &run(piece), &|part| parts.borrow_mut().push(part)).unwrap();
+            assert!(outcome.stop.is_none() && outcome.repeated.is_empty(), "{outcome:?}");
+            (outcome.waveforms, parts.into_inner().len())
+        };
+        let ((whole, one), (divided, many)) = (follow(1e3), follow(0.17));
+        assert!(one == 1 && many > 10, "{one} {many}");
+        assert_eq!(whole.time, divided.time);
+        let (a, b) = (whole.ledger(), divided.ledger());
+        let pairs = [(a.supply, b.supply), (a.load, b.load), (a.zener, b.zener), (a.stored, b.stored)];
+        let difference = pairs.iter().map(|(a, b)| (a - b).abs() / whole.ledger().supply).fold(0.0, f64::max);
+        println!(
+            "{:?} {:?}: {difference:.1e}, {:?} V",
+            ideal.topology,
+            ideal.release,
+            whole.voltage_difference(&divided)
+        );
+        assert!(difference < 1e-6, "{:?} {:?}: {a:?} {b:?}", ideal.topology, ideal.release);
+        assert!(whole.voltage_difference(&divided).unwrap().iter().all(|volts| *volts < 1e-2));
+    }
+}
+
 #[test]
 fn a_storage_takes_the_charge_that_a_zener_without_load_passes() {
     let Some(ngspice) = ngspice() else { return };
@@ -166,16 +198,19 @@ fn the_capacitor_of_the_netlists_obeys_its_closed_forms() {
     let left: Vec<f64> = time.iter().map(wave).collect();
     let wave = CapacitanceTable::new(&time, &left, &left).unwrap();
     let ramp = CapacitanceTable::new(&[0.0, 1.0], &[15e-12, 30e-12], &[15e-12; 2]).unwrap();
-    for (check, table) in [
-        (Check::ChargedCapacitor, &wave),
-        (Check::ConstantVoltage, &wave),
-        (Check::RcDischarge { resistance: 1e10 }, &ramp),
-        (Check::RcDischarge { resistance: 1e11 }, &ramp),
+    // The charge is a sum of currents by the trapezoidal rule. A current that jumps, as at each row of the wave, may cost it
+    // half a step times the jump, 1.4e-3 of the charge if all were of one sign.
+    for (check, table, tolerance) in [
+        (Check::ChargedCapacitor, &wave, 1e-6),
+        (Check::ConstantVoltage, &wave, 1e-4),
+        (Check::ConstantVoltage, &ramp, 1e-6),
+        (Check::RcDischarge { resistance: 1e10 }, &ramp, 1e-6),
+        (Check::RcDischarge { resistance: 1e11 }, &ramp, 1e-6),
     ] {
         let deviation = check.run(&ngspice, 2000.0, table, &Run::new(table.until(), table.growth())).unwrap();
         println!("{check:?}: {deviation:?}");
-        assert!(deviation.largest < 1e-6, "{check:?}: {deviation:?}");
-        assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < 1e-6);
+        assert!(deviation.largest < tolerance, "{check:?}: {deviation:?}");
+        assert!(deviation.found != 0.0 && (deviation.found / deviation.expected - 1.0).abs() < tolerance);
     }
 }
 

@@ -86,8 +86,9 @@ fn waveforms(path: &Path, finished: &Finished) -> anyhow::Result<()> {
     });
     let rows = kept.map(|(row, (time, [left, right]))| {
         let of = |run: &crate::ngspice::Waveforms| {
-            let sample = run.samples.get(row).copied().unwrap_or_default();
-            COLUMNS.map(|(_, value)| format!("{:.9e}", value(&sample)))
+            // Nothing where ngspice has stopped.
+            let sample = run.samples.get(row);
+            COLUMNS.map(|(_, value)| sample.map_or_else(String::new, |sample| format!("{:.9e}", value(sample))))
         };
         let values = finished.runs.iter().flat_map(|(_, run)| of(run));
         [time, left, right].map(|value| format!("{value:.9e}")).into_iter().chain(values).collect()

@@ -13,6 +13,7 @@ mod crosscheck;
 mod crosscheck_files;
 mod crosscheck_picture;
 mod crosscheck_report;
+mod crosscheck_solve;
 mod electrical;
 mod fmu;
 mod fmu_check;

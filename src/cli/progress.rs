@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::message::{plain, say};
 use crate::cosim::{CosimError, Observer, Row};
-use crate::crosscheck::Watch;
+use crate::crosscheck::{Running, Watch};
 use crate::{paper, sweep};
 
 /// Parts into which the bar divides a run.
@@ -70,11 +70,15 @@ impl TaskBar {
 }
 
 impl Watch for TaskBar {
-    fn show(&self, total: usize, done: usize, running: &[&str]) {
+    fn show(&self, total: usize, done: usize, running: &[Running]) {
+        let task = |task: &Running| match task.percent {
+            Some(percent) => format!("{} {percent} %", task.name),
+            None => task.name.clone(),
+        };
         self.bar.set_prefix(self.name.clone());
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
-        self.bar.set_message(running.join(" | "));
+        self.bar.set_message(running.iter().map(task).collect::<Vec<_>>().join(" | "));
     }
 }
 

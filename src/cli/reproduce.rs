@@ -12,9 +12,8 @@ use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
-use super::{Verdict, cosim, crosscheck, crosscheck_files, format, output, packaging, reproduce_files as files};
+use super::{Verdict, cosim, crosscheck_files, crosscheck_solve, format, output, packaging, reproduce_files as files};
 use crate::cosim::Coupling;
-use crate::crosscheck::Check;
 use crate::fmi::{Fmu, nearest_name};
 use crate::ngspice::Ngspice;
 use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Verdict as Of, Workshop};
@@ -73,7 +72,7 @@ struct Book<'a> {
     folder: &'a Path,
     chapters: Vec<Chapter>,
     warnings: Vec<String>,
-    /// Whether the solvers of the crosscheck disagree.
+    /// Whether the solvers of the crosscheck disagree, or ngspice stopped.
     solvers_disagree: bool,
 }
 
@@ -189,8 +188,8 @@ impl Book<'_> {
         let folder = self.folder.join(CROSSCHECK);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
-        let finished = crosscheck::follow(fmu, scenario, &ngspice, false)?;
-        self.solvers_disagree = finished.checks.iter().any(Check::failed);
+        let finished = crosscheck_solve::follow(fmu, scenario, &ngspice, false)?;
+        self.solvers_disagree = !finished.passed();
         let (files, figures) = crosscheck_files::write_data(&folder, &finished)?;
         self.warnings.extend(finished.warnings.iter().cloned());
         self.chapters.push(Chapter::crosscheck(CROSSCHECK, &finished, figures, files));

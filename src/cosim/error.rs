@@ -80,6 +80,9 @@ pub enum CosimError {
 
 impl From<CosimError> for NgspiceError {
     fn from(error: CosimError) -> Self {
-        Self::Harvester(Box::new(error))
+        match error {
+            CosimError::Ngspice { cause, .. } => *cause,
+            other => Self::Harvester(Box::new(other)),
+        }
     }
 }

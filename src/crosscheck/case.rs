@@ -66,6 +66,15 @@ impl Case {
         Ok(Self { table, mechanics, impacts: log.impacts, rest, bias_voltage, warnings })
     }
 
+    /// The first `rows` rows, with the impacts that they hold. The mechanics stay those of the whole run.
+    #[must_use]
+    pub fn cut(&self, rows: usize) -> Self {
+        let table = self.table.part(0, rows - 1);
+        let mut impacts = self.impacts.clone();
+        impacts.retain(|impact| impact.time <= table.until());
+        Self { table, impacts, warnings: self.warnings.clone(), ..*self }
+    }
+
     /// Smallest scale of a deviation of charges, C: about as much as an impact moves.
     pub fn least_charge(&self, settings: &Settings) -> f64 {
         /// In units of what the membranes hold at rest.

@@ -53,12 +53,11 @@ pub struct Agreement {
 }
 
 /// Solvers that are compared, with the relative tolerance. The same diodes in two programs: both integrate to some 1e-5.
-/// Ideal diodes: those of ngspice drop some mV of the 30 V and more that the load sees. ngspice live sees an element
-/// switch up to one of its time steps late, 1e-4 s of a pulse of 30 ms.
+/// Ideal diodes: those of ngspice drop some mV of the 30 V and more that the load sees.
 const PAIRS: [(Solver, Solver, f64); 3] = [
     (Solver::Exponential, Solver::Batch, 3e-4),
     (Solver::Ideal, Solver::Batch, 1e-3),
-    (Solver::Live, Solver::Batch, 1e-3),
+    (Solver::Live, Solver::Batch, 3e-4),
 ];
 
 /// Tolerance of the root of the mean square of the difference of voltages: V, or relative to the highest voltage if that is

@@ -52,9 +52,9 @@ impl Compared {
 const SOLVERS: f64 = 3e-4;
 const CLAIM: f64 = 0.02;
 
-/// Load energy and surplus of each circuit by both solvers, and the surplus of a storage against its closed form.
-pub fn comparison_checks(circuits: &[Compared]) -> Vec<Check> {
-    circuits.iter().flat_map(|circuit| [load(circuit), surplus(circuit)]).collect()
+/// Load energy and surplus of a circuit by both solvers, and the surplus of a storage against its closed form.
+pub fn comparison_checks(circuit: &Compared) -> [Check; 2] {
+    [load(circuit), surplus(circuit)]
 }
 
 fn row(circuit: &Compared, quantity: &str, value: fn(&Energies) -> f64) -> Check {

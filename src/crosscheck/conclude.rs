@@ -1,10 +1,14 @@
 //! What a crosscheck comes to, in words, with the numbers of the run.
 
-use super::{Check, Compared};
+use super::{Check, Compared, Repeat, Stop};
 
 /// The conclusion, a paragraph a line: whether the solvers agree, what holds, what does not and why, what gains.
-pub fn conclusion(checks: &[Check], compared: &[Compared]) -> Vec<String> {
+pub fn conclusion(checks: &[Check], compared: &[Compared], stops: &[Stop], repeats: &[Repeat]) -> Vec<String> {
     let mut lines = vec![agreement(checks)];
+    lines.extend(stops.iter().map(|stop| stop.sentence() + "."));
+    // Where that did not help, the sentence before says so.
+    let helped = repeats.iter().filter(|repeat| stops.iter().all(|stop| stop.task != repeat.task));
+    lines.extend(helped.map(|repeat| repeat.sentence() + "."));
     lines.extend(claims(checks, true));
     lines.extend(claims(checks, false));
     lines.extend(why(checks));
@@ -48,7 +52,7 @@ fn why(checks: &[Check]) -> Option<String> {
     let value = |name| millijoules(checks, name);
     let (supply, zener, load) = (value("supply energy")?, value("Zener energy")?, value("load energy")?);
     let (surplus, converted) = (value("surplus")?, value("converted")?);
-    let eq13 = 1e3 * checks.iter().find(|check| check.name == "load energy")?.analytic?;
+    let eq13 = 1e3 * checks.iter().find(|check| check.name.starts_with("load energy"))?.analytic?;
     let zener = if zener > 0.0 { format!(", of which the Zener burns {zener:.4} mJ") } else { String::new() };
     Some(format!(
         "Why: W of Eq. (13), {eq13:.4} mJ here, is half of what the supply gives for U_in dC, and the change of the stored \

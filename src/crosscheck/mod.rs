@@ -5,6 +5,8 @@
 //! - [`Bench`] runs a circuit in one [`Solver`], [`in_parallel`] several at once;
 //! - [`checks`] holds the solvers against each other and against the closed forms: a [`Check`] says separately whether
 //!   the solvers [agree](Agreement) and whether a [claim](Claim) holds. A refuted claim is a finding, no failure;
+//! - [`Stop`] is a run of ngspice that ended too early: what was found until then stands, and [`common`] and [`limited`] say how
+//!   far that is;
 //! - [`conclusion`] says it in words;
 //! - [`Sweep`] follows the net gain over load and voltage of release;
 //! - [`export`] writes it all for somebody who has ngspice and nothing else.
@@ -17,13 +19,15 @@ mod compare;
 mod conclude;
 pub mod export;
 mod peaks;
+mod stop;
 mod sweep;
 
-pub use bench::{Bench, Solver, Task, Watch, in_parallel};
+pub use bench::{Bench, Progress, Running, Solver, Task, Watch, in_parallel};
 pub use case::{Case, Impact};
 pub use check::{Agreement, Check, Claim, Values};
-pub use claims::{Findings, checks};
+pub use claims::{Findings, checks, pulse_checks};
 pub use compare::{Compared, comparison_checks};
 pub use conclude::conclusion;
 pub use peaks::Pulses;
+pub use stop::{Repeat, Stop, common, limited};
 pub use sweep::{Curve, Point, Sweep};

@@ -25,6 +25,8 @@ pub struct Pulses {
     pub table: CapacitanceTable,
     /// The impacts that made them, by their indices in the case, in this order.
     pub order: Vec<usize>,
+    /// These impacts.
+    impacts: Vec<Impact>,
     /// First row of each, and the number of rows.
     starts: Vec<usize>,
 }
@@ -78,8 +80,9 @@ impl Pulses {
             right.push(case.rest[1]);
         }
         starts.push(time.len());
-        let order = pieces.into_iter().map(|(index, _)| index).collect();
-        Ok(Some(Self { table: CapacitanceTable::new(&time, &left, &right)?, order, starts }))
+        let order: Vec<_> = pieces.into_iter().map(|(index, _)| index).collect();
+        let impacts = order.iter().map(|&index| case.impacts[index]).collect();
+        Ok(Some(Self { table: CapacitanceTable::new(&time, &left, &right)?, order, impacts, starts }))
     }
 
     /// First and last row of a pulse between the rows of two impacts, if both membranes are at rest there.
@@ -93,21 +96,30 @@ impl Pulses {
 
     /// `U_DE4` of each pulse by `U_in C_3 / C_2` of the node, V.
     pub fn expected(&self, case: &Case, topology: Topology, supply_voltage: f64) -> Vec<f64> {
-        let form = |&index: &usize| {
-            let [c2, c3] = node_capacitances(case, topology, &case.impacts[index]);
+        let form = |impact: &Impact| {
+            let [c2, c3] = node_capacitances(case, topology, impact);
             formulas::peak_voltage(supply_voltage, c2, c3)
         };
-        self.order.iter().map(form).collect()
+        self.impacts.iter().map(form).collect()
     }
 
-    /// Highest voltage of the struck membrane after each pulse in `waveforms`, which are of [`Self::table`], V.
-    pub fn peaks(&self, case: &Case, waveforms: &Waveforms) -> Vec<f64> {
-        let highest = |(&index, ends): (&usize, &[usize])| {
+    /// Leaves out all but the first `count`.
+    pub fn truncate(&mut self, count: usize) {
+        self.order.truncate(count);
+        self.impacts.truncate(count);
+        self.starts.truncate(count + 1);
+    }
+
+    /// Highest voltage of the struck membrane after each pulse in `waveforms`, which are of [`Self::table`], V; of the
+    /// pulses that they hold to the end.
+    pub fn peaks(&self, waveforms: &Waveforms) -> Vec<f64> {
+        let highest = |(impact, ends): (&Impact, &[usize])| {
             let samples = &waveforms.samples[ends[0]..ends[1]];
-            let voltages = samples.iter().map(|sample| sample.voltage[case.impacts[index].side]);
+            let voltages = samples.iter().map(|sample| sample.voltage[impact.side]);
             voltages.max_by(f64::total_cmp).unwrap_or(f64::NAN)
         };
-        self.order.iter().zip(self.starts.windows(2)).map(highest).collect()
+        let whole = self.starts.windows(2).take_while(|ends| ends[1] <= waveforms.samples.len());
+        self.impacts.iter().zip(whole).map(highest).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, formulas};
 
-use super::{Agreement, Bench, Case, Check, Solver, Task, Values, Watch, in_parallel};
+use super::{Agreement, Bench, Case, Check, Repeat, Solver, Stop, Task, Values, Watch, in_parallel};
 use crate::ngspice::NgspiceError;
 
 /// What a circuit comes to at one point.
@@ -81,6 +81,19 @@ pub struct Sweep {
     /// `(U_in / 2) (C_3 / C_2 + 1)` on the shared node and with isolated membranes, V, for the `C_3` / `C_2` that
     /// [`formulas::best_release_ratio`] takes from the impacts.
     pub predicted: [f64; 2],
+    /// Points at which ngspice stopped: they have no witness.
+    #[serde(skip)]
+    pub stops: Vec<Stop>,
+    /// Points that it got to with changes.
+    #[serde(skip)]
+    pub repeats: Vec<Repeat>,
+}
+
+/// What a run at a point comes to.
+struct Visit {
+    point: Point,
+    stop: Option<Stop>,
+    repeats: Vec<Repeat>,
 }
 
 const TOPOLOGIES: [(Topology, &str); 2] = [(Topology::SharedNode, "shared node"), (Topology::Isolated, "isolated")];
@@ -115,14 +128,21 @@ impl Sweep {
         let plans: Vec<Plan> = over_voltage(case, settings, predicted).chain(over_load(settings)).collect();
         let tasks = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
         let mut results = in_parallel(tasks, watch)?.into_iter();
+        let (mut stops, mut repeats) = (Vec::new(), Vec::new());
+        let mut whole = |visit: Visit| {
+            repeats.extend(visit.repeats);
+            let is_whole = visit.stop.is_none();
+            stops.extend(visit.stop);
+            is_whole.then_some(visit.point)
+        };
         let mut curves = plans.into_iter().map(|plan| {
-            let points = results.by_ref().take(plan.xs.len()).collect();
-            let witnesses = results.by_ref().take(plan.witnesses.len()).collect();
+            let points = results.by_ref().take(plan.xs.len()).filter_map(&mut whole).collect();
+            let witnesses = results.by_ref().take(plan.witnesses.len()).filter_map(&mut whole).collect();
             Curve { circuit: plan.circuit, parameter: plan.parameter, points, witnesses }
         });
         let voltage = curves.by_ref().take(TOPOLOGIES.len() * RELEASES.len()).collect();
         let load = curves.collect();
-        Ok(Self { voltage, load, predicted })
+        Ok(Self { voltage, load, predicted, stops, repeats })
     }
 }
 
@@ -142,15 +162,23 @@ fn with_witnesses(xs: impl Iterator<Item = f64>, witnesses: &[f64]) -> Vec<f64> 
 }
 
 impl Plan {
-    fn tasks<'a>(&'a self, bench: &'a Bench<'a>) -> impl Iterator<Item = Task<'a, Point>> {
+    fn tasks<'a>(&'a self, bench: &'a Bench<'a>) -> impl Iterator<Item = Task<'a, Visit>> {
         let embedded = self.xs.iter().map(|&x| (x, Solver::Ideal));
         let witnesses = self.witnesses.iter().map(|&x| (x, Solver::Batch));
         embedded.chain(witnesses).map(move |(x, solver)| {
             let mut settings = self.settings;
             (self.set)(&mut settings, x);
-            Task::new(format!("{} in {}", self.circuit, solver.name()), move || {
-                let ledger = bench.run(solver, &settings)?.ledger();
-                Ok(Point { x, converted: ledger.converted(), surplus: ledger.surplus(), supply: ledger.supply })
+            let name = format!("{} in {}", self.circuit, solver.name());
+            Task::new(name.clone(), move |progress| {
+                let outcome = bench.run(solver, &settings, progress)?;
+                let ledger = outcome.waveforms.ledger();
+                let (converted, surplus) = (ledger.converted(), ledger.surplus());
+                let open = vec![format!("the point {} = {x:.6} of the sweep", self.parameter)];
+                Ok(Visit {
+                    point: Point { x, converted, surplus, supply: ledger.supply },
+                    stop: Stop::of(&name, &outcome, bench.table.until(), open),
+                    repeats: Repeat::of(&name, &outcome).collect(),
+                })
             })
         })
     }

@@ -1,8 +1,8 @@
 //! Checks of ngspice's time-varying capacitor against closed forms: if these fail, nothing else from it counts.
 
 use super::capacitance::{CapacitanceTable, PICO};
-use super::circuit::{CapacitanceSource, Run};
 use super::raw::RawReader;
+use super::run::{CapacitanceSource, Run};
 use super::runner::Ngspice;
 use super::template::{Netlist, Template, template};
 use super::{NgspiceError, Said};
@@ -54,7 +54,8 @@ impl Check {
     /// # Errors
     /// A number that is not finite.
     pub fn netlist(self, voltage: f64, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
-        let values = run.values(CapacitanceSource::Table, initial, self.vectors())?.number("supply_voltage", voltage);
+        let values =
+            run.values(CapacitanceSource::Table, voltage, initial, self.vectors())?.number("supply_voltage", voltage);
         let values = match self {
             Self::RcDischarge { resistance } => values.number("load_resistance", resistance),
             Self::ChargedCapacitor | Self::ConstantVoltage => values,

@@ -1,12 +1,13 @@
 //! Energies and charges from the time points of ngspice.
 //!
-//! ngspice integrates charges by the trapezoidal rule; the same rule over its own points gives back exactly the charge
-//! that each of its capacitors took. Integrators within the netlist would do the same with tolerances of their own and
-//! would weigh in the control of the step.
+//! Currents are summed by the trapezoidal rule over ngspice's own points. What a node's charge C V changes by is what has
+//! flowed in less what has flowed out, so the difference that the rule leaves where a current jumps is known: the flows
+//! take it in proportion to what they carry. Integrators within the netlist would have tolerances of their own and would
+//! weigh in the control of the step.
 
 use videg_circuit::{Ledger, Topology};
 
-use super::circuit::{Branch, Elements};
+use super::circuit::{Branch, Elements, Start};
 use crate::circuit_sample::CircuitSample;
 
 /// What holds at one time point of ngspice.
@@ -45,7 +46,7 @@ impl Books {
                 Topology::Isolated => capacitance,
             },
             voltage: [elements.supply_voltage; 2],
-            load_voltage: elements.initial_load_voltage(),
+            load_voltage: elements.start().load,
             ..Instant::default()
         };
         Self { elements: *elements, initial_energy: stored(&start), last: start, sums: Ledger::default() }
@@ -56,20 +57,22 @@ impl Books {
     /// `None` if there are too few of them.
     pub fn instant(elements: &Elements, time: f64, values: &[f64]) -> Option<Instant> {
         use super::capacitance::PICO;
+        let load_voltage =
+            |voltage: &[f64], current: f64| voltage.first().map_or(elements.resistance() * current, |v| *v);
         match (elements.topology, values) {
-            (Topology::SharedNode, &[cl, cr, de, out, supply, release]) => Some(Instant {
+            (Topology::SharedNode, &[cl, cr, de, supply, release, ref out @ ..]) => Some(Instant {
                 time,
                 capacitance: [(cl + cr) * PICO, 0.0],
                 voltage: [de; 2],
-                load_voltage: out,
+                load_voltage: load_voltage(out, release),
                 supply: [supply, 0.0],
                 release: [release, 0.0],
             }),
-            (Topology::Isolated, &[cl, cr, left, right, out, sl, sr, rl, rr]) => Some(Instant {
+            (Topology::Isolated, &[cl, cr, left, right, sl, sr, rl, rr, ref out @ ..]) => Some(Instant {
                 time,
                 capacitance: [cl * PICO, cr * PICO],
                 voltage: [left, right],
-                load_voltage: out,
+                load_voltage: load_voltage(out, rl + rr),
                 supply: [sl, sr],
                 release: [rl, rr],
             }),
@@ -86,31 +89,38 @@ impl Books {
 
     /// Books what flowed between two time points.
     fn book(&mut self, last: &Instant, now: &Instant) {
+        (0..2).for_each(|j| self.book_node(last, now, j));
+    }
+
+    fn book_node(&mut self, last: &Instant, now: &Instant, j: usize) {
         let half = 0.5 * (now.time - last.time);
-        let sum = |rate: fn(&Elements, &Instant, usize) -> f64| {
-            let both = (0..2).map(|j| rate(&self.elements, last, j) + rate(&self.elements, now, j));
-            half * both.sum::<f64>()
+        let [entered, left] = [|at: &Instant, j: usize| at.supply[j], |at: &Instant, j: usize| at.release[j]];
+        let charge = |flow: fn(&Instant, usize) -> f64| half * (flow(last, j) + flow(now, j));
+        let missing = missing(last, now, j, half, [charge(entered), charge(left)]);
+        // The charge of a flow, and its energy where it crosses a voltage, with what the rule has missed.
+        let energy = |flow: fn(&Instant, usize) -> f64, missing: f64, drop: &dyn Fn(&Instant) -> f64| {
+            let (a, b) = (drop(last), drop(now));
+            half * (a * flow(last, j) + b * flow(now, j)) + 0.5 * (a + b) * missing
         };
-        let supply_charge = sum(|_, at, j| at.supply[j]);
-        let load_charge = sum(|_, at, j| at.release[j]);
-        let load = sum(|elements, at, j| match elements.branch {
-            Branch::Switch { .. } => at.voltage[j] * at.release[j],
-            Branch::Zener { .. } | Branch::Storage { .. } => at.load_voltage * at.release[j],
-        });
-        let drop = sum(|_, at, j| (at.voltage[j] - at.load_voltage) * at.release[j]);
-        let charging = sum(|elements, at, j| (elements.supply_voltage - at.voltage[j]) * at.supply[j]);
+        let supply_charge = charge(entered) + missing[0];
+        let drop = energy(left, missing[1], &|at| at.voltage[j] - at.load_voltage);
+        let load = match self.elements.branch {
+            Branch::Switch { .. } => energy(left, missing[1], &|at| at.voltage[j]),
+            Branch::Zener { .. } | Branch::Storage { .. } => energy(left, missing[1], &|at| at.load_voltage),
+        };
         let (zener, release_diode) = match self.elements.branch {
             Branch::Zener { .. } => (drop, 0.0),
             Branch::Switch { .. } => (0.0, 0.0),
             Branch::Storage { .. } => (0.0, drop),
         };
+        let supply_voltage = self.elements.supply_voltage;
         self.sums.supply_charge += supply_charge;
-        self.sums.supply += self.elements.supply_voltage * supply_charge;
-        self.sums.load_charge += load_charge;
+        self.sums.supply += supply_voltage * supply_charge;
+        self.sums.load_charge += charge(left) + missing[1];
         self.sums.load += load;
         self.sums.zener += zener;
-        self.sums.diode += charging + release_diode;
-        self.sums.mechanical += (0..2).map(|j| work(last, now, j)).sum::<f64>();
+        self.sums.diode += energy(entered, missing[0], &|at| supply_voltage - at.voltage[j]) + release_diode;
+        self.sums.mechanical += work(last, now, j);
     }
 
     /// The books at the last time point taken.
@@ -130,10 +140,27 @@ impl Books {
         }
     }
 
+    /// Voltages at the last time point taken.
+    pub fn end(&self) -> Start {
+        Start { membranes: self.last.voltage, load: self.last.load_voltage }
+    }
+
     /// Last time point taken, s.
     pub fn time(&self) -> f64 {
         self.last.time
     }
+}
+
+/// What the trapezoidal rule misses of the charges that have `entered` and `left` node `j`, C, so that they make up for the
+/// change of its charge. In `half` a step on either side it misses at most the change of a current times that, for a
+/// current that rises or falls all the way; what lies beyond is an error of ngspice, and stays.
+fn missing(last: &Instant, now: &Instant, j: usize, half: f64, [entered, left]: [f64; 2]) -> [f64; 2] {
+    let held = |at: &Instant| at.capacitance[j] * at.voltage[j];
+    let difference = held(now) - held(last) - (entered - left);
+    let most = [now.supply[j] - last.supply[j], now.release[j] - last.release[j]].map(|change| half * change.abs());
+    let both = most[0] + most[1];
+    let share = if both > 0.0 { (difference / both).clamp(-1.0, 1.0) } else { 0.0 };
+    [share * most[0], -share * most[1]]
 }
 
 /// Energy of the field, J.

@@ -106,6 +106,26 @@ impl CapacitanceTable {
         self.time.last().copied().unwrap_or_default()
     }
 
+    /// The rows from `from` to `to`, both included, as a table that begins at 0 s.
+    pub(crate) fn part(&self, from: usize, to: usize) -> Self {
+        let cut = |column: &[f64]| column[from..=to].to_vec();
+        let time = self.time[from..=to].iter().map(|time| time - self.time[from]).collect();
+        Self { time, left: cut(&self.left), right: cut(&self.right) }
+    }
+
+    /// Last rows of pieces of at least `length`, s, but for the last one, which may be half as long.
+    pub(super) fn pieces(&self, length: f64) -> Vec<usize> {
+        let (mut ends, mut due, until) = (Vec::new(), length, self.until());
+        for (row, &time) in self.time.iter().enumerate() {
+            if time >= due && until - time >= 0.5 * length {
+                ends.push(row);
+                due = time + length;
+            }
+        }
+        ends.push(self.len().saturating_sub(1));
+        ends
+    }
+
     /// Writes the table as ngspice's `filesource` reads it: time in s, left and right in pF. A last row beyond the end
     /// keeps the capacitances where the last step of ngspice may overshoot.
     ///
@@ -117,5 +137,22 @@ impl CapacitanceTable {
             writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO)?;
         }
         out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_follow_each_other_and_end_with_the_table() {
+        let time: Vec<f64> = (0..=24).map(f64::from).collect();
+        let table = CapacitanceTable::new(&time, &[1e-12; 25], &[1e-12; 25]).unwrap();
+        assert_eq!(table.pieces(10.0), [10, 24]);
+        assert_eq!(table.pieces(8.0), [8, 16, 24]);
+        assert_eq!(table.pieces(24.0), [24]);
+        assert_eq!(table.pieces(100.0), [24]);
+        let part = table.part(8, 16);
+        assert_eq!((part.times()[0], part.until(), part.len()), (0.0, 8.0, 9));
     }
 }

@@ -3,8 +3,8 @@
 use videg_circuit::{DiodeParameters, Diodes, Parameters, Release, Topology, names};
 
 use super::NgspiceError;
-use super::capacitance::PICO;
-use super::template::{FileName, Netlist, Template, Value, Values, template};
+use super::run::{CapacitanceSource, Run, coarseness};
+use super::template::{Netlist, Template, Value, Values, template};
 
 /// What lets the charge out to the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,18 +95,31 @@ impl Elements {
 
     /// Vectors that ngspice saves, after the time. Those of [`super::Books`], in its order.
     pub fn vectors(&self) -> &'static [&'static str] {
-        match self.topology {
+        let all: &[&str] = match self.topology {
             Topology::SharedNode => &SHARED,
             Topology::Isolated => &ISOLATED,
-        }
+        };
+        // A load behind a switch is no node.
+        &all[..all.len() - usize::from(self.is_switched())]
     }
 
-    /// Voltage across the load before any charge has come through, V.
-    pub fn initial_load_voltage(&self) -> f64 {
-        match self.branch {
+    fn is_switched(&self) -> bool {
+        matches!(self.branch, Branch::Switch { .. })
+    }
+
+    /// `R`, ohm, as ngspice gets it. The embedded solver bounds the conductance of a switch likewise, see its
+    /// `SWITCH_CONDUCTANCE`.
+    pub(super) fn resistance(&self) -> f64 {
+        if self.is_switched() { self.load_resistance.max(LEAST_SWITCHED_RESISTANCE) } else { self.load_resistance }
+    }
+
+    /// Voltages before any charge has moved.
+    pub fn start(&self) -> Start {
+        let load = match self.branch {
             Branch::Storage { voltage } => voltage,
             Branch::Zener { .. } | Branch::Switch { .. } => 0.0,
-        }
+        };
+        Start { membranes: [self.supply_voltage; 2], load }
     }
 
     /// The netlist of a run from `initial` capacitances (left, right), F.
@@ -114,12 +127,28 @@ impl Elements {
     /// # Errors
     /// A number that is not finite.
     pub fn netlist(&self, source: CapacitanceSource, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
-        let (whole, release) = self.templates();
-        self.fill(&whole, &release, run.values(source, initial, self.vectors())?)
+        self.netlist_from(&self.start(), source, initial, run)
     }
 
-    fn fill(&self, whole: &Template, release: &Template, run: Values) -> Result<Netlist, NgspiceError> {
-        let values = self.device_values(run.number("initial_out", self.initial_load_voltage()));
+    /// The netlist of a run that begins with other voltages: those in which an earlier one ended.
+    ///
+    /// # Errors
+    /// A number that is not finite.
+    pub fn netlist_from(
+        &self,
+        start: &Start,
+        source: CapacitanceSource,
+        initial: [f64; 2],
+        run: &Run,
+    ) -> Result<Netlist, NgspiceError> {
+        let (whole, release) = self.templates();
+        self.fill(&whole, &release, start, run.values(source, self.supply_voltage, initial, self.vectors())?)
+    }
+
+    fn fill(&self, whole: &Template, release: &Template, start: &Start, run: Values) -> Result<Netlist, NgspiceError> {
+        let [left, right] = start.membranes;
+        let run = run.number("start_left", left).number("start_right", right).number("start_out", start.load);
+        let values = self.device_values(run);
         let release = release.render(&values)?;
         let models = template!("models.cir").render(&values)?;
         whole.render(&values.with("release", Value::Fragment(release)).with("models", Value::Fragment(models)))
@@ -151,14 +180,9 @@ impl Elements {
     fn device_values(&self, values: Values) -> Values {
         let diode = &self.diode;
         let (Branch::Zener { voltage } | Branch::Switch { voltage } | Branch::Storage { voltage }) = self.branch;
-        // The embedded solver bounds the conductance of a switch likewise, see its `SWITCH_CONDUCTANCE`.
-        let resistance = match self.branch {
-            Branch::Switch { .. } => self.load_resistance.max(LEAST_SWITCHED_RESISTANCE),
-            Branch::Zener { .. } | Branch::Storage { .. } => self.load_resistance,
-        };
         values
             .number("supply_voltage", self.supply_voltage)
-            .number("load_resistance", resistance)
+            .number("load_resistance", self.resistance())
             .number("zener_voltage", voltage)
             .number("storage_voltage", voltage)
             .number("saturation_current", diode.saturation_current)
@@ -172,10 +196,13 @@ impl Elements {
     }
 }
 
-/// By how much diodes and tolerances have to be coarser than for the pulses of the paper's Fig. 9 to 15, which raise the
-/// voltage by less than a factor of 5: doubles resolve a voltage of 300 kV to 60 pV only.
-fn coarseness(growth: f64) -> f64 {
-    (growth / 5.0).max(1.0)
+/// Voltages that a run begins with, V.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Of the membranes, left and right; on a shared node the first counts.
+    pub membranes: [f64; 2],
+    /// Across the load or storage.
+    pub load: f64,
 }
 
 /// Diodes whose drop is negligible, `coarseness` times as coarse as the default ones.
@@ -189,8 +216,8 @@ fn near_ideal(coarseness: f64) -> DiodeParameters {
     }
 }
 
-const SHARED: [&str; 6] = ["v(cl)", "v(cr)", "v(de)", "v(out)", "i(vs)", "i(vr)"];
-const ISOLATED: [&str; 9] = ["v(cl)", "v(cr)", "v(left)", "v(right)", "v(out)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)"];
+const SHARED: [&str; 6] = ["v(cl)", "v(cr)", "v(de)", "i(vs)", "i(vr)", "v(out)"];
+const ISOLATED: [&str; 9] = ["v(cl)", "v(cr)", "v(left)", "v(right)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)", "v(out)"];
 
 /// Smallest load behind a switch, ohm.
 const LEAST_SWITCHED_RESISTANCE: f64 = 1e3;
@@ -198,91 +225,11 @@ const LEAST_SWITCHED_RESISTANCE: f64 = 1e3;
 /// 0 degrees Celsius, K: ngspice takes Celsius.
 const ZERO_CELSIUS: f64 = 273.15;
 
-/// Where C(t) comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CapacitanceSource {
-    /// The table file beside the netlist, for a batch run.
-    Table,
-    /// The voltage sources `vcl` and `vcr` of type `external`, in pF, for a program that has loaded ngspice as a library.
-    /// The netlist then has no control section: its owner gives the commands.
-    External,
-}
-
-/// Length and accuracy of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
-    /// End of the run, s.
-    pub until: f64,
-    /// Longest internal step, s. The table sets no breakpoints, so this must stay well below the length of a pulse.
-    pub max_step: f64,
-    /// `reltol`.
-    pub relative_tolerance: f64,
-    /// `abstol`, A.
-    pub current_tolerance: f64,
-    /// `vntol`, V.
-    pub voltage_tolerance: f64,
-    /// `chgtol`, C.
-    pub charge_tolerance: f64,
-    /// `gmin`, S.
-    pub minimum_conductance: f64,
-}
-
-impl Run {
-    /// A run until `until`, s, while capacitances grow to at most `growth` times what they are at rest, with options that
-    /// were found to hold: `reltol` times the voltage must stay below N Vt, over
-    /// which the current of a diode changes by e, or Newton's iteration ends at false solutions; smaller tolerances end
-    /// in "timestep too small". Where the voltage rises to many times `U_in`, charge and current rise with its square.
-    pub fn new(until: f64, growth: f64) -> Self {
-        let coarseness = coarseness(growth);
-        Self {
-            until,
-            max_step: 1e-4,
-            relative_tolerance: 1e-8 * coarseness.sqrt(),
-            current_tolerance: 1e-11 * coarseness * coarseness,
-            voltage_tolerance: 1e-6,
-            charge_tolerance: 1e-13 * coarseness * coarseness,
-            minimum_conductance: 1e-20,
-        }
-    }
-
-    /// Values that every netlist has: C(t), options, commands.
-    pub(super) fn values(
-        &self,
-        source: CapacitanceSource,
-        [left, right]: [f64; 2],
-        saved: &'static [&'static str],
-    ) -> Result<Values, NgspiceError> {
-        let values = Values::default()
-            .number("until", self.until)
-            .number("max_step", self.max_step)
-            .number("reltol", self.relative_tolerance)
-            .number("abstol", self.current_tolerance)
-            .number("vntol", self.voltage_tolerance)
-            .number("chgtol", self.charge_tolerance)
-            .number("gmin", self.minimum_conductance)
-            .number("initial_left", left)
-            .number("initial_right", right)
-            .number("initial_total", left + right)
-            .number("initial_left_pf", left / PICO)
-            .number("initial_right_pf", right / PICO)
-            .number("initial_total_pf", (left + right) / PICO)
-            .with("saved", Value::Vectors(saved))
-            .with("table_file", Value::File(FileName::Table))
-            .with("raw_file", Value::File(FileName::Raw));
-        let (capacitance, run) = match source {
-            CapacitanceSource::Table => (template!("capacitance_table.cir"), template!("run_batch.cir")),
-            CapacitanceSource::External => (template!("capacitance_external.cir"), template!("run_live.cir")),
-        };
-        let capacitance = capacitance.render(&values)?;
-        let run = run.render(&values)?;
-        Ok(values.with("capacitance", Value::Fragment(capacitance)).with("run", Value::Fragment(run)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ngspice::CapacitanceTable;
+    use crate::ngspice::reading::Reading;
     use crate::ngspice::{Ngspice, Waveforms};
 
     /// A pulse of the left membrane by 40 %.
@@ -299,13 +246,16 @@ mod tests {
         let (table, parameters) = (pulse(), Parameters::default());
         let elements = Elements::new(&parameters, table.growth()).unwrap();
         // Loose, for the wrong form gets nowhere with the tight options.
-        let run = Run { relative_tolerance: 1e-5, charge_tolerance: 1e-12, ..Run::new(table.until(), table.growth()) };
-        let values = run.values(CapacitanceSource::Table, table.initial(), elements.vectors()).unwrap();
-        let netlist = elements.fill(whole, &template!("zener_shared.cir"), values).unwrap();
+        let loose = Run::new(table.until(), table.growth());
+        let run = Run { relative_tolerance: 1e-5, current_tolerance: 1e-9, ..loose };
+        let values = run
+            .values(CapacitanceSource::Table, parameters.supply_voltage, table.initial(), elements.vectors())
+            .unwrap();
+        let netlist = elements.fill(whole, &template!("zener_shared.cir"), &elements.start(), values).unwrap();
         let finished = ngspice.run(&netlist, &table).unwrap();
-        let raw = finished.raw().unwrap().unwrap();
-        let found = Waveforms::from_raw(raw, &elements, &table, finished.said()).unwrap();
-        let expected = Waveforms::embedded(&parameters, &table).unwrap();
+        let mut found = Reading::new(&elements, &table);
+        found.take(finished.raw().unwrap().unwrap(), 0).unwrap();
+        let (found, expected) = (found.finish(), Waveforms::embedded(&parameters, &table).unwrap());
         (found.ledger().load_charge / expected.ledger().load_charge - 1.0).abs()
     }
 

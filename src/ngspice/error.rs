@@ -44,7 +44,7 @@ pub enum NgspiceError {
         said: Said,
     },
     /// It claims success and has no, or half a, result.
-    #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{}{said}", hint(said))]
+    #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{said}")]
     Stopped {
         /// Last time in its result, s; 0 if there is none.
         reached: f64,
@@ -101,6 +101,22 @@ pub enum NgspiceError {
     Harvester(Box<dyn std::error::Error + Send + Sync>),
 }
 
+impl NgspiceError {
+    /// Whether ngspice has ended too early: what it has found until then stands.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::Stopped { .. } | Self::TimeLimit { .. } | Self::Failed { .. } | Self::Live(_))
+    }
+
+    /// Whether it found no way on from a point of time; from others it may.
+    pub fn is_lost(&self) -> bool {
+        match self {
+            Self::Stopped { said, .. } => said.gave_up(),
+            Self::Live(live) => Said::in_output(&live.to_string()).gave_up(),
+            _ => false,
+        }
+    }
+}
+
 /// Lines of ngspice that tell why it stopped; empty if it said nothing of the kind.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Said(Vec<String>);
@@ -139,9 +155,4 @@ impl std::fmt::Display for Said {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.iter().try_for_each(|line| write!(f, "\n  ngspice: {line}"))
     }
-}
-/// What a user can do about an iteration of ngspice that found no solution.
-fn hint(said: &Said) -> &'static str {
-    let is_lost = said.to_string().contains("Timestep too small");
-    if is_lost { " (with another --step its time points fall elsewhere, which mostly helps)" } else { "" }
 }

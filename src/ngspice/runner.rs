@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use super::capacitance::CapacitanceTable;
 use super::drain::Drain;
+use super::reading::Reading;
 use super::template::{FileName, Netlist};
 use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
 use crate::children::Group;
@@ -28,6 +29,31 @@ pub struct Ngspice {
 pub struct Finished {
     folder: TemporaryFolder,
     said: Said,
+}
+
+/// A run in one of the solvers, as far as it got.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The circuit up to there.
+    pub waveforms: Waveforms,
+    /// What was changed where ngspice found no way on, and from when to when, in words.
+    pub repeated: Vec<String>,
+    /// Why it ends before the table does.
+    pub stop: Option<NgspiceError>,
+}
+
+impl From<Waveforms> for Outcome {
+    fn from(waveforms: Waveforms) -> Self {
+        Self { waveforms, repeated: Vec::new(), stop: None }
+    }
+}
+
+/// What ngspice runs in one go: the rows `from` to `to` of a table.
+struct Piece<'a> {
+    elements: &'a Elements,
+    table: &'a CapacitanceTable,
+    from: usize,
+    to: usize,
 }
 
 impl Ngspice {
@@ -89,12 +115,74 @@ impl Ngspice {
         table: &CapacitanceTable,
         run: &Run,
     ) -> Result<Waveforms, NgspiceError> {
-        let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), run)?;
-        let finished = self.run(&netlist, table)?;
-        let stopped = || NgspiceError::Stopped { reached: 0.0, until: run.until, said: finished.said.clone() };
-        let raw = finished.raw()?.ok_or_else(stopped)?;
-        let waveforms = Waveforms::from_raw(raw, elements, table, &finished.said)?;
-        if finished.said.gave_up() { Err(stopped()) } else { Ok(waveforms) }
+        let outcome = self.follow(elements, table, run, &|_| ())?;
+        outcome.stop.map_or(Ok(outcome.waveforms), Err)
+    }
+
+    /// Runs `elements` over `table`, in pieces, as far as ngspice gets; `progress` hears which part is done.
+    ///
+    /// # Errors
+    /// Anything but that ngspice stops.
+    pub fn follow(
+        &self,
+        elements: &Elements,
+        table: &CapacitanceTable,
+        run: &Run,
+        progress: &dyn Fn(f64),
+    ) -> Result<Outcome, NgspiceError> {
+        let mut reading = Reading::new(elements, table);
+        let (mut from, mut repeated, mut stop) = (0, Vec::new(), None);
+        for to in table.pieces(run.piece) {
+            let piece = Piece { elements, table, from, to };
+            match self.piece(&piece, &mut reading, run, &mut repeated) {
+                Ok(()) => progress(table.times()[to] / table.until()),
+                Err(error) if error.is_stop() => {
+                    stop = Some(error);
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+            from = to;
+        }
+        Ok(Outcome { waveforms: reading.finish(), repeated, stop })
+    }
+
+    /// Runs a piece, again with changes where ngspice finds no way on.
+    fn piece(
+        &self,
+        piece: &Piece<'_>,
+        reading: &mut Reading<'_>,
+        run: &Run,
+        repeated: &mut Vec<String>,
+    ) -> Result<(), NgspiceError> {
+        let mark = reading.mark();
+        let mut result = self.attempt(piece, reading, run);
+        for (change, changed) in run.changed() {
+            if !result.as_ref().is_err_and(NgspiceError::is_lost) {
+                break;
+            }
+            let [from, to] = [piece.from, piece.to].map(|row| piece.table.times()[row]);
+            repeated.push(format!("{change} from {from} s to {to} s"));
+            reading.return_to(&mark);
+            result = self.attempt(piece, reading, &changed);
+        }
+        result
+    }
+
+    fn attempt(&self, piece: &Piece<'_>, reading: &mut Reading<'_>, run: &Run) -> Result<(), NgspiceError> {
+        let part = piece.table.part(piece.from, piece.to);
+        let (source, until) = (CapacitanceSource::Table, part.until());
+        let (_, start) = reading.end();
+        let netlist = piece.elements.netlist_from(&start, source, part.initial(), &Run { until, ..*run })?;
+        let finished = self.run(&netlist, &part)?;
+        if let Some(raw) = finished.raw()? {
+            reading.take(raw, piece.from)?;
+        }
+        if reading.has(piece.to) && !finished.said.gave_up() {
+            return Ok(());
+        }
+        let (reached, _) = reading.end();
+        Err(NgspiceError::Stopped { reached, until: piece.table.until(), said: finished.said })
     }
 
     /// Writes netlist and table into `folder`, where `ngspice -b harvesting.cir` runs them by hand.

@@ -1,14 +1,9 @@
 //! Results: the circuit at the times of a table, from ngspice or from the embedded solver.
 
-use std::io::BufRead;
-
 use videg_circuit::{Circuit, Ledger, Parameters};
 
-use super::books::Books;
+use super::NgspiceError;
 use super::capacitance::CapacitanceTable;
-use super::circuit::Elements;
-use super::raw::RawReader;
-use super::{NgspiceError, Said};
 use crate::circuit_sample::CircuitSample;
 
 /// A circuit over a run.
@@ -44,49 +39,19 @@ impl Waveforms {
         Ok(found)
     }
 
-    /// The result of ngspice for `elements`, at the times of `table`. It is read point by point; what is kept is as
-    /// large as the table.
-    ///
-    /// # Errors
-    /// A result that is none, or ends before the table does; `said` is why, then.
-    pub fn from_raw(
-        raw: impl BufRead,
-        elements: &Elements,
-        table: &CapacitanceTable,
-        said: &Said,
-    ) -> Result<Self, NgspiceError> {
-        let mut reader = RawReader::new(raw)?;
-        let columns = elements.vectors().iter().map(|name| reader.index(name)).collect::<Result<Vec<_>, _>>()?;
-        let mut books = Books::new(elements, table.initial());
-        let mut found = Self::with_capacity(table.len());
-        let mut due = table.times().iter().copied().peekable();
-        let (mut point, mut values) = (Vec::new(), Vec::new());
-        while reader.next_point(&mut point)? {
-            values.clear();
-            values.extend(columns.iter().map(|&column| point[column]));
-            let Some(now) = Books::instant(elements, point[0], &values) else { break };
-            let before = (books.time(), books.sample());
-            books.take(&now);
-            let after = (now.time, books.sample());
-            let last = table.until();
-            while let Some(time) = due.next_if(|&time| time <= now.time + 1e-12 * last) {
-                found.push(time, interpolated(&before, &after, time));
-            }
-        }
-        if due.peek().is_some() {
-            return Err(NgspiceError::Stopped { reached: books.time(), until: table.until(), said: said.clone() });
-        }
-        found.points = Some(reader.points());
-        Ok(found)
-    }
-
-    fn with_capacity(rows: usize) -> Self {
+    pub(super) fn with_capacity(rows: usize) -> Self {
         Self { time: Vec::with_capacity(rows), samples: Vec::with_capacity(rows), points: None }
     }
 
-    fn push(&mut self, time: f64, sample: CircuitSample) {
+    pub(super) fn push(&mut self, time: f64, sample: CircuitSample) {
         self.time.push(time);
         self.samples.push(sample);
+    }
+
+    /// The first `rows` rows.
+    pub fn truncate(&mut self, rows: usize) {
+        self.time.truncate(rows);
+        self.samples.truncate(rows);
     }
 
     /// The circuit at the end.
@@ -119,12 +84,4 @@ impl Waveforms {
         };
         Some([0, 1].map(|j| mean_square(j).sqrt()))
     }
-}
-
-/// The sample at `time` between two others.
-fn interpolated(before: &(f64, CircuitSample), after: &(f64, CircuitSample), time: f64) -> CircuitSample {
-    let span = after.0 - before.0;
-    let part = if span > 0.0 { ((time - before.0) / span).clamp(0.0, 1.0) } else { 1.0 };
-    let (a, b) = (before.1.columns(), after.1.columns());
-    CircuitSample::from_columns(std::array::from_fn(|k| a[k] + part * (b[k] - a[k])))
 }
