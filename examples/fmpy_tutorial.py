@@ -182,8 +182,9 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
     print(f"{name:19} {slave.get(name)[0]:.6f}")
 
 # %% [markdown]
-# `impact.nextTime` and `pulse.nextKnot` say where C(t) will have its next kink. A master that steps to them sees every impact and
-# every peak, however large its steps are otherwise.
+# `impact.nextTime` and `pulse.nextKnot` say where C(t) will have its next kink, and when a resting ball will be released. They look one
+# period of the excitation ahead and follow the inputs as soon as these are set: a master that sets its inputs, steps to them, and goes no
+# farther than a period at once, sees every impact, peak and release at the end of a step.
 #
 # ## Go back in time
 #
