@@ -36,10 +36,10 @@ impl Drive {
         TAU * cycle_fraction(self.frequency, time) + self.phase
     }
 
-    /// The same angle in turns.
-    fn turns(&self, time: f64) -> f64 {
+    /// The phase in turns, but for whole ones.
+    fn own_turns(&self) -> f64 {
         let own = self.phase / TAU;
-        cycle_fraction(self.frequency, time) + (own - round(own))
+        own - round(own)
     }
 }
 
@@ -73,7 +73,9 @@ pub struct CylinderMotion {
     pub velocity: f64,
     /// Force over mass.
     pub drive: Drive,
-    /// Sine and cosine of the angle of the harmonic force at the start.
+    /// The phase of the harmonic force, in turns.
+    own_turns: f64,
+    /// Sine and cosine of its angle at the start.
     sin_start: f64,
     cos_start: f64,
     /// A / M over omega, m/s, and over omega^2, m.
@@ -103,10 +105,11 @@ pub struct CylinderState {
 impl CylinderMotion {
     /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
     pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
-        let [sin_start, cos_start] = sin_cos(4.0 * drive.turns(start));
+        let own_turns = drive.own_turns();
+        let [sin_start, cos_start] = sin_cos(4.0 * (cycle_fraction(drive.frequency, start) + own_turns));
         let speed = drive.amplitude / drive.omega();
         let swing = speed / drive.omega();
-        Self { start, position, velocity, drive, sin_start, cos_start, speed, swing }
+        Self { start, position, velocity, drive, own_turns, sin_start, cos_start, speed, swing }
     }
 
     /// Amplitude of the oscillation under the harmonic force alone, m.
@@ -114,11 +117,17 @@ impl CylinderMotion {
         self.swing
     }
 
+    /// The angle of the harmonic force at `time`, s, in turns.
+    #[inline]
+    fn turns(&self, time: f64) -> f64 {
+        cycle_fraction(self.drive.frequency, time) + self.own_turns
+    }
+
     /// All of the motion at `time`, s.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
         let Drive { amplitude, external, external_rate, .. } = self.drive;
-        let turns = self.drive.turns(time);
+        let turns = self.turns(time);
         let sine = sin_cos(4.0 * turns);
         let ([sin, cos], elapsed) = (sine, time - self.start);
         let drift = self.velocity - self.speed * self.sin_start;
@@ -164,7 +173,7 @@ impl CylinderMotion {
         let speed = self.drive.amplitude / omega;
         let speed_change = drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
-        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
+        let [sin, cos] = sin_cos(4.0 * self.turns(time));
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
         let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
         let drift = speed_change * self.sin_start + speed * self.cos_start * from;
@@ -174,7 +183,7 @@ impl CylinderMotion {
 
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
-        let [sin, cos] = sin_cos(4.0 * self.drive.turns(time));
+        let [sin, cos] = sin_cos(4.0 * self.turns(time));
         drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
     }
 

@@ -129,9 +129,9 @@ impl Flight {
         Angle::new(self.sine, self.omega() * tau, self.turns_since_start(tau))
     }
 
-    /// The angle at the start.
-    fn first_angle(&self) -> Angle {
-        Angle { sine: self.sine, swept: Swept::default() }
+    /// The start.
+    fn first_knot(&self) -> Knot {
+        Knot { tau: 0.0, value: 0.0, angle: Angle { sine: self.sine, swept: Swept::default() } }
     }
 
     /// What `tau`, s, in which the force passes through this angle, add to dz, m.
@@ -215,11 +215,12 @@ impl Flight {
     /// The first contact inside window number `window`, which ends at `limit`, s since the start, at the latest.
     pub fn contact_in_window(&self, window: u64, limit: f64) -> Option<Contact> {
         let (begin, end) = self.window_bounds(window, limit);
-        let mut from = self.knot(0, begin, if begin == 0.0 { self.first_angle() } else { self.angle(begin) });
+        let mut from = if begin == 0.0 { self.first_knot() } else { self.knot(0, begin, self.angle(begin)) };
         if end == limit && !self.within_reach(&from, end) {
             return None;
         }
-        for to in self.zeros(1, begin, end).iter() {
+        for zero in self.zeros(1, begin, end).iter() {
+            let to = self.knot_at(0, zero);
             let contact = self.contact_in_piece(&from, &to);
             if contact.is_some() {
                 return contact;
@@ -228,7 +229,7 @@ impl Flight {
         }
         // After one period the angle is what it was; of many periods the end is not that exact.
         let is_first_period = begin == 0.0 && end == self.period;
-        let last = if is_first_period { self.first_angle().after_a_turn() } else { self.angle(end) };
+        let last = if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
         let last = self.knot(0, end, last);
         self.contact_in_piece(&from, &last)
     }
@@ -282,8 +283,8 @@ impl Flight {
     pub fn release_in_window(&self, side: Side, window: u64, limit: f64) -> Option<f64> {
         let (begin, end) = self.window_bounds(window, limit);
         let zeros = self.zeros(2, begin, end);
-        let begins = core::iter::once(begin).chain(zeros.iter().map(|knot| knot.tau));
-        let ends = zeros.iter().map(|knot| knot.tau).chain(core::iter::once(end));
+        let begins = core::iter::once(begin).chain(zeros.iter().map(|zero| zero.tau));
+        let ends = zeros.iter().map(|zero| zero.tau).chain(core::iter::once(end));
         let receding = |&(from, to): &(f64, f64)| side.sign() * self.acceleration(0.5 * (from + to)) < 0.0;
         begins.zip(ends).find(receding).map(|(from, _)| from)
     }

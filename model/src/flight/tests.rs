@@ -72,6 +72,7 @@ proptest! {
     ) {
         let end = flight.window_length();
         let Some(turn) = flight.zeros(1, 0.0, end).iter().next() else { return Ok(()) };
+        let turn = flight.knot_at(0, turn);
         let depth = 10.0_f64.powi(depth);
         let flight = Flight { half_travel: (flight.dz + turn.value).abs() - depth, ..flight };
         if flight.dz.abs() >= flight.half_travel {
@@ -91,7 +92,8 @@ proptest! {
     fn zeros_are_zeros_and_carry_the_lower_derivative(flight in any_flight(), order in 1..3_usize) {
         let (begin, end) = flight.window_bounds(0, f64::INFINITY);
         let omega = flight.omega();
-        for knot in flight.zeros(order, begin, end).iter() {
+        for zero in flight.zeros(order, begin, end).iter() {
+            let knot = flight.knot_at(order - 1, zero);
             let [lower, value, curvature] = [order - 1, order, order + 1].map(|order| flight.derivative(order, knot.tau));
             let size = |order: i32| flight.size(order);
             let here = i32::try_from(order).unwrap();
