@@ -82,12 +82,13 @@ fn an_integrator_finds_chattering_rest_and_release() {
 #[test]
 fn events_are_handled_once_and_leave_the_indicator_positive() {
     let mut harvester = Harvester::new(&case("fig14"), 0.0).expect("parameters");
+    let before = harvester.totals().impacts;
     harvester.place(0.1, [0.022, 0.3, 0.0, -0.1], 0.0).expect("finite states");
     assert!(harvester.handle_events().expect("an impact"));
     let after = harvester.clone();
     assert!(harvester.event_indicators()[0] > 0.0);
     assert!(harvester.event_indicators()[0] < 1e-14);
-    assert_eq!(harvester.totals().impacts, 1);
+    assert_eq!(harvester.totals().impacts, before + 1);
     assert!(!harvester.handle_events().expect("nothing"));
     assert_eq!(harvester, after);
     assert!((harvester.ball_velocity() - (0.3 + 0.6 * 0.4)).abs() < 1e-15, "Eq. (11)");

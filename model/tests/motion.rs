@@ -11,13 +11,13 @@ use videg_model::{Case, Harvester, ModelError, NoiseModel, Occurrence, Parameter
 
 /// Impacts up to `until`, found by going from one predicted impact to the next.
 fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
-    let mut list = Vec::new();
+    let at_start = harvester.impact_at_start().map(|impact| Impact { time: impact.time, speed: impact.speed });
+    let mut list = Vec::from_iter(at_start);
     while harvester.time() < until {
         let target = harvester.next_impact().unwrap_or(until).min(harvester.time() + 0.05).min(until);
-        let begin = harvester.time();
         let show = |shown: &Occurrence| {
             let Occurrence::Impact(impact) = shown else { return };
-            assert!([begin, target].contains(&impact.time), "{} s was not foreseen from {begin} s", impact.time);
+            assert_eq!(impact.time, target, "not foreseen");
             list.push(Impact { time: impact.time, speed: impact.speed });
         };
         harvester.advance_with(target, show).unwrap();

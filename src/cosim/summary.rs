@@ -47,8 +47,10 @@ pub struct Averages {
 }
 
 impl Averages {
-    /// Averages over `window`, s, from the sums at its edges.
+    /// Averages over `window`, s, of a run from 0 s on, from the sums at its edges. An impact at the start of the run lies in
+    /// a window that begins there.
     pub fn over([from, to]: [f64; 2], before: &Gains, after: &Gains) -> Self {
+        let before = if from > 0.0 { *before } else { Gains::default() };
         Self {
             voltage_gain: (after.voltage - before.voltage) / (to - from),
             power: (after.energy - before.energy) / (to - from),

@@ -79,8 +79,11 @@ pub(super) fn record(
     let mut recorder = Recorder::new(workshop, settings)?;
     if from > 0.0 {
         recorder.go_to(from)?;
+        recorder.note()?;
+    } else {
+        recorder.note()?;
+        recorder.note_impact(0.0)?; // of a ball that starts on a membrane
     }
-    recorder.note()?;
     while recorder.time < to {
         let target = (((recorder.time + BEFORE) / step).floor() + 1.0) * step;
         recorder.follow(target.min(to))?;

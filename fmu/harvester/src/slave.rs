@@ -192,7 +192,11 @@ impl Slave for Harvester {
         if let Some(neglected) = self.parameters.neglected_mass() {
             log.warning(neglected);
         }
-        running(&mut self.model).map(|_| ())
+        let model = running(&mut self.model)?;
+        if let Some(impact) = model.impact_at_start() {
+            show_impact(model, &impact, self.voltages, log);
+        }
+        Ok(())
     }
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
@@ -249,11 +253,8 @@ impl Slave for Harvester {
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if model.totals().impacts > impacts {
             let side = if model.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
-            let (time, totals, rests) = (model.time(), model.totals(), model.resting().is_some());
-            let speed = totals.last_speed;
-            log.event(describe(totals.impacts, &Impact { time, side, speed, rests }));
-            let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
-            limits::check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
+            let (time, speed, rests) = (model.time(), model.totals().last_speed, model.resting().is_some());
+            show_impact(model, &Impact { time, side, speed, rests }, voltages, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }
@@ -299,6 +300,16 @@ fn most_holds(parameters: &Parameters) -> f64 {
 #[cold]
 fn elsewhere(t: f64, there: f64) -> SlaveError {
     SlaveError::error(format!("the step begins at t = {t} s, but the state is of t = {there} s"))
+}
+
+/// Logs the last impact of the model, at the present time, and warns of limits that it exceeds under these voltages, V.
+fn show_impact(model: &Model, impact: &Impact, voltages: [f64; 2], log: &Logger) {
+    let Impact { time, side, speed, .. } = *impact;
+    log.event(describe(model.totals().impacts, impact));
+    if model.parameters().contact_law == ContactLaw::Impulsive {
+        let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
+        limits::check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
+    }
 }
 
 /// An impact as the log shows it.

@@ -123,17 +123,11 @@ impl Harvester {
         is_touching.then_some((side, side.sign() * rate))
     }
 
-    /// A ball whose flight begins on a membrane that it approaches meets it at once.
-    pub(super) fn meet_touched_membrane(&mut self) {
-        let time = self.search.flight.start;
-        if let Some((side, speed)) = self.touched().filter(|(_, speed)| *speed > 0.0) {
-            (self.search.found, self.search.speed) = (Some(Event::Impact { time, side }), speed);
-        }
-    }
-
     /// A ball that starts on a membrane meets it if it approaches, and if it is pushed against it, without a speed, it rests.
     pub(super) fn begin_on_membrane(&mut self) {
-        self.meet_touched_membrane();
+        if let Some((side, speed)) = self.touched().filter(|(_, speed)| *speed > 0.0) {
+            (self.search.found, self.search.speed) = (Some(Event::Impact { time: self.time, side }), speed);
+        }
         let resting = self.touched().filter(|(_, speed)| *speed == 0.0);
         // Under the compliant law the search finds the instant from which on it is pressed in.
         let resting = resting.filter(|_| self.parameters.contact_law == ContactLaw::Impulsive);
@@ -142,7 +136,6 @@ impl Harvester {
             let [_, wall_change] = self.cylinder_change(self.time);
             self.rest(side, &wall, wall_change);
         }
-        self.look_ahead();
     }
 
     /// Takes cylinder and ball at `time` as the start of a new motion under `drive`.
@@ -153,7 +146,6 @@ impl Harvester {
         let motion = self.relative_motion_at(time);
         self.cylinder = self.cylinder.continued(time, drive);
         self.new_flight(&self.cylinder.at(time), motion);
-        self.meet_touched_membrane();
     }
 
     /// Searches from where the cylinder is `here` and `z_M` - `z_m` and its rate are `motion`, m and m/s. These are handed on

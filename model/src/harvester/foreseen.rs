@@ -40,7 +40,7 @@ impl Harvester {
         Some(time)
     }
 
-    /// Whether something happens at the present time: to a ball that starts on a membrane, or under a force just set.
+    /// Whether something happens at the present time, under a force or a voltage just set.
     pub(super) fn is_due(&self) -> bool {
         let contact = self.touch.as_ref().map(Touch::end);
         contact.or(self.search.found.map(Event::time)).is_some_and(|time| time <= self.time)

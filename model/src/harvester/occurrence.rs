@@ -44,6 +44,13 @@ pub enum Occurrence {
 }
 
 impl Harvester {
+    /// The impact with which a harvester that is just made has begun, if its ball started on a membrane and approached it.
+    pub fn impact_at_start(&self) -> Option<Impact> {
+        let side = if self.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
+        let (time, speed, rests) = (self.time, self.totals.last_speed, self.resting().is_some());
+        (self.totals.impacts > 0).then_some(Impact { time, side, speed, rests })
+    }
+
     /// The impact that the `event`, just processed, was.
     pub(super) fn impact_of(&self, event: Event) -> Option<Impact> {
         let Event::Impact { time, side } = event else { return None };

@@ -121,11 +121,6 @@ impl Harvester {
             check("event before the present time", time, false)?;
         }
         harvester.advance(snapshot.time)?;
-        let is_at_start = harvester.search.flight.start == snapshot.time && harvester.touch.is_none();
-        if is_at_start && harvester.ball.resting.is_none() {
-            harvester.meet_touched_membrane();
-            harvester.look_ahead();
-        }
         Ok(harvester)
     }
 

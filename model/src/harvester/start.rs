@@ -16,8 +16,8 @@ use crate::parameters::{OutsideGap, Parameters};
 use crate::pulse::{PulseShape, Pulses};
 
 impl Harvester {
-    /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it meets it when
-    /// the harvester is first moved on.
+    /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it has met it:
+    /// [`Harvester::impact_at_start`].
     ///
     /// # Errors
     /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
@@ -25,6 +25,7 @@ impl Harvester {
     pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
         let mut harvester = Self::before_events(parameters, start)?;
         harvester.begin_on_membrane();
+        harvester.advance(start)?;
         Ok(harvester)
     }
 
@@ -39,6 +40,7 @@ impl Harvester {
         let xi = xi(parameters, &harvester.noise);
         harvester.tangent = Tangent::along(&harvester, force, direction, xi);
         harvester.begin_on_membrane();
+        harvester.advance(start)?;
         harvester.push(force, 0.0);
         Ok(harvester)
     }

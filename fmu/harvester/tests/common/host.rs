@@ -128,12 +128,7 @@ impl Host {
 
     /// Co-simulation, ready for the first step at 0 s.
     pub fn stepping(settings: &[(&str, f64)]) -> Self {
-        Self::stepping_from(0.0, settings)
-    }
-
-    /// Co-simulation, ready for the first step at `start`, s.
-    pub fn stepping_from(start: f64, settings: &[(&str, f64)]) -> Self {
-        let host = Self::initializing(fmi2CoSimulation, start, settings);
+        let host = Self::initializing(fmi2CoSimulation, 0.0, settings);
         host.exit_initialization();
         host
     }
