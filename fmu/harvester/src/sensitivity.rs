@@ -72,7 +72,8 @@ impl Harvester {
         let cylinder = self.read(|model| self.parameters.cylinder_mass * model.cylinder_velocity());
         let next_time = |which: usize| {
             self.read(|model| {
-                let by = model.next_times_by_displacement()[which];
+                let pending = self.pending(model);
+                let by = pending.as_ref().unwrap_or(model).next_times_by_displacement()[which];
                 by[0] * displacement[0] + by[1] * displacement[1]
             })
         };

@@ -160,7 +160,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; if it is a Wiener process or contacts last, within the present one)",
+        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a period)",
     )
     .discrete()
     .depends_on(&FORESEEN_FROM)

@@ -87,6 +87,19 @@ proptest! {
     }
 
     #[test]
+    fn under_phase_noise_neither_does_if_no_step_is_longer_than_what_is_foreseen(
+        frequency in 0.5..8.0_f64, amplitude in 0.3..5.0_f64, restitution in 0.0..0.95_f64,
+        noise in 0.1..2.0_f64, exponent in -2.5..-0.1_f64, forces in prop::collection::vec(-2.0..2.0_f64, 5),
+    ) {
+        let hold = 10.0_f64.powf(exponent) / frequency;
+        let mut settings = settings(frequency, amplitude, restitution);
+        settings.extend([("excitation.phaseNoise", noise), ("excitation.noiseHold", hold)]);
+        let host = Host::stepping(&settings);
+        let longest = longest_step(frequency).min(200.0 * hold);
+        run(&host, 4.0 / frequency, longest, |step| forces[step as usize % forces.len()])?;
+    }
+
+    #[test]
     fn contacts_that_last_begin_and_end_where_they_are_foreseen(
         frequency in 1.0..6.0_f64, amplitude in 0.3..5.0_f64, restitution in 0.0..1.0_f64,
         forces in prop::collection::vec(-2.0..2.0_f64, 5),

@@ -12,7 +12,8 @@ impl Harvester {
     /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, after its release. None
     /// during a contact under the compliant law, and if no impact is foreseen within at least one excitation period (from
     /// the release on, if the ball rests), or, with phase noise, within at least 256 hold intervals if those are shorter;
-    /// under the compliant law and with a Wiener process, within the present hold interval.
+    /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
+    /// a period.
     pub fn next_impact(&self) -> Option<f64> {
         if self.is_due() {
             return self.after_due()?.next_impact();
@@ -85,6 +86,7 @@ impl Harvester {
         impact.map_or(0.0, |(time, hit, speed)| {
             // The ball goes straight on from where, and as fast as, the wall lets it go.
             let ([from, velocity], [to, _]) = (self.cylinder_change(release), self.cylinder_change(time));
+            let velocity = velocity + self.acceleration_before(release) * self.release_change(release);
             let displacement = to - from - velocity * (time - release) + side.sign() * self.tangent.half_travel();
             self.delay_by(displacement, hit, speed)
         })
@@ -100,13 +102,31 @@ impl Harvester {
         knots.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, change)| change)
     }
 
+    fn sample_of_release(&self) -> u64 {
+        self.search.ahead.map_or(self.noise.sample, |place| place.sample())
+    }
+
+    /// Whether the release at `time`, s, is at a jump of the force, between two hold intervals of the phase noise.
+    fn is_jump(&self, time: f64) -> bool {
+        self.noise_limit().is_some() && time == self.hold_start(self.sample_of_release())
+    }
+
+    /// Acceleration of the wall, m/s^2, just before the release at `time`, s: zero but at a jump.
+    fn acceleration_before(&self, time: f64) -> f64 {
+        let Some(sample) = self.sample_of_release().checked_sub(1).filter(|_| self.is_jump(time)) else { return 0.0 };
+        let CylinderMotion { start, drive, .. } = self.foreseen_motion();
+        let phase = phase(&self.parameters, &Noise { sample, ..self.noise });
+        let external = drive.external + drive.external_rate * (time - start);
+        CylinderMotion::new(time, 0.0, 0.0, Drive { phase, external, ..drive }).acceleration(time)
+    }
+
     /// Change of the release at `time`, s: the acceleration of the wall passes zero there, or jumps at the begin of a hold
     /// interval of the phase noise.
     fn release_change(&self, time: f64) -> f64 {
         let cylinder = self.foreseen_motion();
-        let sample = self.search.ahead.map_or(self.noise.sample, |place| place.sample());
+        let sample = self.sample_of_release();
         let parameters = self.tangent.parameters.as_ref();
-        if self.noise_limit().is_some() && time == self.hold_start(sample) {
+        if self.is_jump(time) {
             return parameters.map_or(0.0, |change| sample as f64 * change.hold);
         }
         let by_drive =

@@ -64,7 +64,9 @@ impl Harvester {
             OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
         };
         let ball = Ball { since: start, position, velocity: p.ball_velocity, resting: None };
-        let motion = [p.cylinder_position - position, p.cylinder_velocity - p.ball_velocity];
+        let projected = p.projected_side().map(|side| side.sign() * half);
+        let displacement = projected.unwrap_or(p.cylinder_position - position);
+        let motion = [displacement, p.cylinder_velocity - p.ball_velocity];
         let flight = Flight::new(&cylinder, &cylinder.at(start), motion, half);
         Ok(Self {
             parameters: p,
@@ -88,11 +90,13 @@ impl Harvester {
             second_events: 0,
         })
     }
+}
 
+impl Parameters {
     /// The membrane that a ball that starts beyond it is put on.
     pub(super) fn projected_side(&self) -> Option<Side> {
-        let dz = self.parameters.cylinder_position - self.parameters.ball_position;
-        let is_put = self.parameters.outside_gap == OutsideGap::Project && dz.abs() >= self.half_travel();
+        let dz = self.cylinder_position - self.ball_position;
+        let is_put = self.outside_gap == OutsideGap::Project && dz.abs() >= self.travel() / 2.0;
         is_put.then_some(if dz > 0.0 { Side::Left } else { Side::Right })
     }
 }

@@ -4,7 +4,8 @@
 //! and that of a free ball is linear; phase-noise samples come at fixed times and leave both alone. An impact comes
 //! earlier or later by the change of the gap over the relative speed, and deflection, rebound and everything summed over
 //! the impacts change with the relative speed that it then has. A ball at rest moves with the wall. A release comes
-//! where the acceleration of both is the same, zero, or at a jump of it, so that its time does not matter to first order.
+//! where the acceleration of both is the same, zero, so that its time does not matter to first order, or at a jump of it,
+//! whose time is known.
 
 use super::energy::LedgerChange;
 use super::{Energies, Harvester, Side};
@@ -175,7 +176,7 @@ impl Tangent {
             phase: d.phase + xi * d.phase_noise,
         };
         let half_travel = d.travel() / 2.0;
-        let displacement = match harvester.projected_side() {
+        let displacement = match p.projected_side() {
             Some(side) => side.sign() * half_travel,
             None => d.cylinder_position - d.ball_position,
         };
@@ -259,8 +260,19 @@ impl Harvester {
         }
         let Tangent { since, push, motion: [displacement, rate], .. } = self.tangent;
         let (elapsed, pushed) = (time - self.ball.since, time - since.max(self.ball.since));
-        let by_drive = self.tangent.parameters.map_or([0.0; 2], |change| self.change_by_force(time, &change));
+        let by_drive = self.tangent.parameters.map_or([0.0; 2], |change| self.motion_change_by_drive(time, &change));
         [displacement + rate * elapsed + 0.5 * push * pushed * pushed + by_drive[0], rate + push * pushed + by_drive[1]]
+    }
+
+    /// What the harmonic force adds to them since the last event of the ball, which went on as fast as the cylinder then was.
+    fn motion_change_by_drive(&self, time: f64, change: &ParameterChange) -> [f64; 2] {
+        let [position, velocity] = self.change_by_force(time, change);
+        let since = self.ball.since;
+        if since <= self.cylinder.start {
+            return [position, velocity];
+        }
+        let [from, rate] = self.change_by_force(since, change);
+        [position - from - rate * (time - since), velocity - rate]
     }
 
     /// Of `z_m` and `z_m'` at `time`, s.
