@@ -184,7 +184,8 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
 # %% [markdown]
 # `impact.nextTime` and `pulse.nextKnot` say where C(t) will have its next kink, and when a resting ball will be released. They look one
 # period of the excitation ahead and follow the inputs as soon as these are set: a master that sets its inputs, steps to them, and goes no
-# farther than a period at once, sees every impact, peak and release at the end of a step.
+# farther than a period at once, sees every impact, peak and release at the end of a step. Phase noise shortens the view, to 256 of its
+# hold intervals, or to the present one: [`impact.nextTime`](../reference/variables.md) says when.
 #
 # ## Go back in time
 #
