@@ -87,7 +87,8 @@ impl Harvester {
         self.advance_with(time, |_| {})
     }
 
-    /// Moves on as [`Harvester::advance`] does, and shows each impact and each largest deflection to `show`.
+    /// Moves on as [`Harvester::advance`] does, and shows each impact and each largest deflection to `show`; not that of
+    /// [`Harvester::impact_at_start`].
     ///
     /// # Errors
     /// As [`Harvester::advance`].
