@@ -88,7 +88,7 @@ impl Harvester {
     }
 
     /// Moves on as [`Harvester::advance`] does, and shows each impact and each largest deflection to `show`; not that of
-    /// [`Harvester::impact_at_start`].
+    /// the start, [`Harvester::present_impact`].
     ///
     /// # Errors
     /// As [`Harvester::advance`].

@@ -11,7 +11,7 @@ use videg_model::{Case, Harvester, ModelError, NoiseModel, Occurrence, Parameter
 
 /// Impacts up to `until`, found by going from one predicted impact to the next.
 fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
-    let at_start = harvester.impact_at_start().map(|impact| Impact { time: impact.time, speed: impact.speed });
+    let at_start = harvester.present_impact().map(|impact| Impact { time: impact.time, speed: impact.speed });
     let mut list = Vec::from_iter(at_start);
     while harvester.time() < until {
         let target = harvester.next_impact().unwrap_or(until).min(harvester.time() + 0.05).min(until);

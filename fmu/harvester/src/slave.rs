@@ -193,7 +193,7 @@ impl Slave for Harvester {
             log.warning(neglected);
         }
         let model = running(&mut self.model)?;
-        if let Some(impact) = model.impact_at_start() {
+        if let Some(impact) = model.present_impact() {
             show_impact(model, &impact, self.voltages, log);
         }
         Ok(())
@@ -251,10 +251,8 @@ impl Slave for Harvester {
         let model = running(&mut self.model)?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
-        if model.totals().impacts > impacts {
-            let side = if model.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
-            let (time, speed, rests) = (model.time(), model.totals().last_speed, model.resting().is_some());
-            show_impact(model, &Impact { time, side, speed, rests }, voltages, log);
+        if let Some(impact) = model.present_impact().filter(|_| model.totals().impacts > impacts) {
+            show_impact(model, &impact, voltages, log);
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }

@@ -44,8 +44,9 @@ pub enum Occurrence {
 }
 
 impl Harvester {
-    /// The impact with which a harvester that is just made has begun, if its ball started on a membrane and approached it.
-    pub fn impact_at_start(&self) -> Option<Impact> {
+    /// The last impact, of a harvester whose present time is that of this impact: one that is just made, if its ball started on
+    /// a membrane and approached it, or whose [`Harvester::handle_events`] has just counted one.
+    pub fn present_impact(&self) -> Option<Impact> {
         let side = if self.relative_displacement() > 0.0 { Side::Left } else { Side::Right };
         let (time, speed, rests) = (self.time, self.totals.last_speed, self.resting().is_some());
         (self.totals.impacts > 0).then_some(Impact { time, side, speed, rests })

@@ -17,7 +17,7 @@ use crate::pulse::{PulseShape, Pulses};
 
 impl Harvester {
     /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it has met it:
-    /// [`Harvester::impact_at_start`].
+    /// [`Harvester::present_impact`].
     ///
     /// # Errors
     /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
