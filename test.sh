@@ -161,7 +161,7 @@ skip() {
     echo "skipped: $*"
 }
 
-# fmi2-export is checked with its model-description feature in calls of its own: together with the FMUs, the feature
+# fmu-export is checked with its model-description feature in calls of its own: together with the FMUs, the feature
 # would get into their shared libraries, because Cargo unifies features within a build.
 stage_lint() {
     if cargo fmt --version >/dev/null 2>&1; then
@@ -172,7 +172,7 @@ stage_lint() {
     fi
     if cargo clippy --version >/dev/null 2>&1; then
         run cargo clippy --quiet --workspace --all-targets -- -D warnings
-        run cargo clippy --quiet -p fmi2-export --all-targets --all-features -- -D warnings
+        run cargo clippy --quiet -p fmu-export --all-targets --all-features -- -D warnings
         run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     else
         skip "cargo clippy is not installed"
@@ -209,7 +209,7 @@ lint_workflows() {
 
 stage_unit() {
     run cargo test --workspace
-    run cargo test -p fmi2-export --all-features
+    run cargo test -p fmu-export --all-features
 }
 
 stage_valgrind() {

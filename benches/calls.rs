@@ -20,8 +20,8 @@ use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
 use criterion::Criterion;
+use fmu_import::{Archive, HOST_PLATFORM, LIBRARY_EXTENSION, ModelDescription};
 use libloading::Library;
-use videg::fmi::{Archive, HOST_PLATFORM, LIBRARY_EXTENSION, ModelDescription};
 use videg::package::{Options, build_all};
 use videg_model::{Case, Parameters};
 
@@ -157,7 +157,7 @@ fn harvester<'a>(
     let settings = Parameters::TABLE
         .iter()
         .map(|quantity| Ok((description.variable(quantity.name)?.value_reference, (quantity.get)(parameters))))
-        .collect::<videg::fmi::Result<Vec<_>>>()?;
+        .collect::<fmu_import::Result<Vec<_>>>()?;
     // The library stays loaded, so its folder may stay, too.
     let unpacked = archive.unpack()?.keep();
     Ok((calls.open(&unpacked.join(library), &description.guid, &settings)?, description))

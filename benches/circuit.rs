@@ -7,8 +7,8 @@ use std::hint::black_box;
 
 use anyhow::Context as _;
 use criterion::{Criterion, SamplingMode};
+use fmu_import::Fmu;
 use videg::cosim::HarvesterFmu;
-use videg::fmi::Fmu;
 use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
 use videg::package::{Options, build_all};
 use videg::scenario::Request;

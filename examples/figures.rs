@@ -1,6 +1,6 @@
 //! A report with every kind of figure, for `tests/browser`: `cargo run --example figures -- report.html`.
 
-use videg::report::{
+use videg_report::{
     Cell, Column, Drawing, Figure, HeatMap, Panel, Report, ReportError, Scale, Section, Series, Style, Table, Tone,
     render_html, render_png,
 };

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use videg::fmi::{Bounds, Fmu, Instance, Isolation, Kind, Logging};
+use fmu_import::{Bounds, Fmu, Instance, Isolation, Kind, Logging};
 use videg::package::{Options, build_all};
 
 /// Runs of each measurement, of which the shortest counts.

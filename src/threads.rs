@@ -5,7 +5,7 @@ use std::panic::resume_unwind;
 use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 /// Starts up to `count` threads for `work`; those that there are, and why there are no more.
-pub(crate) fn start<'scope>(
+pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     count: usize,
     work: impl Fn() + Send + Copy + 'scope,
@@ -21,15 +21,14 @@ pub(crate) fn start<'scope>(
 }
 
 /// Waits until threads are gone, with what belonged to each: the end of their scope waits for their work alone.
-pub(crate) fn join(threads: Vec<ScopedJoinHandle<'_, ()>>) {
+pub fn join(threads: Vec<ScopedJoinHandle<'_, ()>>) {
     for thread in threads {
         thread.join().unwrap_or_else(|panic| resume_unwind(panic));
     }
 }
 
 /// Has up to `count` threads do `work` at once, this one among them.
-#[cfg(feature = "tool")]
-pub(crate) fn share(count: usize, work: impl Fn() + Send + Copy) {
+pub fn share(count: usize, work: impl Fn() + Send + Copy) {
     std::thread::scope(|scope| {
         // With none but this one it takes longer.
         let (threads, _) = start(scope, count.saturating_sub(1), work);

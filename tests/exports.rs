@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::io::Read;
 
-use fmi2_host::{Function, Functions, Interface};
+use fmu_host::{Function, Functions, Interface};
 use object::{Object, ObjectSymbol};
 use videg::package::{Options, build_all};
 

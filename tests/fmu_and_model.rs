@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+use fmu_import::{Fmu, Logging};
 use std::sync::{Arc, Mutex};
 use videg::cosim::{CircuitSlave, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
-use videg::fmi::{Fmu, Logging};
 use videg::package::{Options, build_all};
 use videg::scenario::{Request, Scenario};
 

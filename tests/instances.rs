@@ -4,7 +4,7 @@
 
 use std::thread;
 
-use videg::fmi::{Fmu, Instance, Logging};
+use fmu_import::{Fmu, Instance, Logging};
 use videg::package::{Options, build_all};
 
 fn harvester(folder: &std::path::Path) -> std::path::PathBuf {

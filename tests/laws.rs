@@ -99,8 +99,8 @@ fn the_largest_values_are_those_of_the_time_series() {
 fn time_in_contact_is_what_the_fmu_sums_up() {
     let (both, _) = run(&["--law", "both"]);
     let path = videg::package::build_all(&videg::package::Options::default()).unwrap().remove(0);
-    let fmu = videg::fmi::Fmu::open(&path).unwrap();
-    let mut harvester = fmu.instantiate("harvester", videg::fmi::Logging::default()).unwrap();
+    let fmu = fmu_import::Fmu::open(&path).unwrap();
+    let mut harvester = fmu.instantiate("harvester", fmu_import::Logging::default()).unwrap();
     for setting in both["settings"].as_array().unwrap() {
         harvester.set_by_name(setting["name"].as_str().unwrap(), setting["value"].as_str().unwrap()).unwrap();
     }

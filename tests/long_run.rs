@@ -7,8 +7,8 @@
 
 use std::time::Instant;
 
+use fmu_import::Fmu;
 use videg::cosim::{CosimError, Coupling, CsvRecorder, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row, Trace};
-use videg::fmi::Fmu;
 use videg::package::{Options, build_all};
 use videg::scenario::{Request, Scenario};
 use videg_circuit::Settings;

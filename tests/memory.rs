@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fmi2_host::{Fmu, Functions, Instance, abi};
+use fmu_host::{Fmu, Functions, Instance, abi};
 use videg::package::{Options, build_all};
 
 /// The libraries of both FMUs with their model descriptions, unpacked into `folder`.
@@ -30,7 +30,7 @@ fn cycle(library: &Path, description: &str) {
         let library = libloading::Library::new(library).unwrap();
         let fmu = Fmu::new(Functions::load(&library).unwrap(), description).unwrap();
         let f = &fmu.functions;
-        let mut instance = Instance::new(&fmu, fmi2_host::Interface::CoSimulation).unwrap();
+        let mut instance = Instance::new(&fmu, fmu_host::Interface::CoSimulation).unwrap();
         let (c, mut state) = (instance.component, std::ptr::null_mut());
         assert_eq!((f.fmi2SetupExperiment)(c, 0, 0.0, 0.0, 0, 0.0), abi::fmi2OK);
         assert_eq!((f.fmi2EnterInitializationMode)(c), abi::fmi2OK);

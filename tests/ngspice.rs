@@ -6,8 +6,8 @@
 
 use std::fmt::Debug;
 
+use fmu_import::Fmu;
 use videg::cosim::HarvesterFmu;
-use videg::fmi::Fmu;
 use videg::ngspice::{Branch, CapacitanceSource, CapacitanceTable, Check, Elements, Ngspice, Run, Waveforms};
 use videg::package::{Options, build_all};
 use videg::scenario::{CaseFile, Request, Scenario};

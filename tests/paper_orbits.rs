@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
-use videg::fmi::Fmu;
+use fmu_import::Fmu;
 use videg::package::{Options, build_all};
 use videg::paper::{Artefact, Effort, Finding, ITEMS, Sheet, Verdict, Workshop};
 

@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use videg::fmi::Fmu;
+use fmu_import::Fmu;
 use videg::package::{Options, build_all};
 use videg::paper::{Artefact, Effort, Finding, ITEMS, Run, Sheet, Verdict, Workshop};
 use videg::scenario::Setting;

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 
+use fmu_import::Archive;
 use tempfile::TempDir;
-use videg::fmi::Archive;
 
 const NAMES: [&str; 2] = ["VibroImpactHarvester", "HarvestingCircuit"];
 

@@ -16,11 +16,11 @@ use crate::cosim::{
     CircuitSlave, CircuitSummary, Coupling, CouplingSummary, CsvRecorder, EmbeddedCircuit, EnergyBalance, FmuCircuit,
     HarvesterFmu, Master, MechanicsSummary, Method, NgspiceCircuit, Outcome, Trace,
 };
-use crate::fmi::Fmu;
 use crate::ngspice::{self, Elements};
-use crate::report::Drawing;
 use crate::scenario::Scenario;
-use crate::whole;
+use fmu_import::Fmu;
+use videg_report::Drawing;
+use videg_system::atomic_file;
 
 /// What the circuit is at where nothing is set: not the start values of its FMU.
 const DEFAULTS: &str = "Unless set: supply.voltage is biasVoltage, zener.voltage is supply.voltage (both as in the paper), \
@@ -187,7 +187,7 @@ pub fn couple(
         }
         Err(error) => {
             recorder.leave()?;
-            return Err(anyhow!("{error}; the time series up to there is in {}", whole::partial(csv).display()));
+            return Err(anyhow!("{error}; the time series up to there is in {}", atomic_file::partial(csv).display()));
         }
     };
     recorder.finish()?;

@@ -3,7 +3,7 @@
 use super::cosim::{Compared, Finished};
 use super::{format, output, simulate};
 use crate::cosim::{CouplingSummary, EnergyBalance};
-use crate::report::{self, Column, Report, ReportError, Section, Table};
+use videg_report::{self, Column, Report, ReportError, Section, Table};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
 pub const EXPLANATION: [&str; 10] = [
@@ -133,5 +133,5 @@ pub fn html(finished: &Finished) -> Result<String, ReportError> {
         Section::new("Motion, capacitances, voltages and energies")
             .figure(finished.drawing.svg.clone(), FIGURE_CAPTION),
     );
-    report::render_html(&report)
+    videg_report::render_html(&report)
 }

@@ -10,7 +10,7 @@ use super::{crosscheck_picture as picture, crosscheck_report as page, output};
 use crate::cosim::CircuitSample;
 use crate::crosscheck::export::{Expected, Item};
 use crate::crosscheck::{Compared, Curve, Solver, export as folder_for_ngspice};
-use crate::whole;
+use videg_system::atomic_file;
 
 /// Writes everything into `folder`; the list has a place for `result.json`, which is written last.
 pub fn write(folder: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {
@@ -42,7 +42,7 @@ pub fn write_data(folder: &Path, finished: &Finished) -> anyhow::Result<(Vec<Pat
 
 /// Writes rows into a file that appears when it is whole.
 fn csv(path: &Path, heading: &[String], rows: impl Iterator<Item = Vec<String>>) -> anyhow::Result<()> {
-    let written = whole::fill(path, |file| -> anyhow::Result<()> {
+    let written = atomic_file::fill(path, |file| -> anyhow::Result<()> {
         let mut writer = csv::Writer::from_writer(file);
         writer.write_record(heading)?;
         for row in rows {

@@ -4,7 +4,7 @@ use super::crosscheck::Finished;
 use crate::cosim::CircuitSample;
 use crate::crosscheck::{Curve, Point, Solver, Sweep};
 use crate::ngspice::Waveforms;
-use crate::report::{Figure, Panel, ReportError, Series, Style, render_svg};
+use videg_report::{Figure, Panel, ReportError, Series, Style, render_svg};
 
 type Points = Vec<(f64, f64)>;
 

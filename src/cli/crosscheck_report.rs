@@ -5,7 +5,7 @@ use super::crosscheck_picture::{OVERLAY_CAPTION, SWEEP_CAPTION};
 use super::{format, output, simulate};
 use crate::cosim::Energies;
 use crate::crosscheck::{Agreement, Check, Claim, Compared, Solver};
-use crate::report::{self, Column, Report, ReportError, Section, Table};
+use videg_report::{self, Column, Report, ReportError, Section, Table};
 
 /// Significant digits of values.
 const DIGITS: usize = 5;
@@ -201,7 +201,7 @@ pub fn html(finished: &Finished, figures: Vec<String>) -> Result<String, ReportE
     )
     .command(output::command_line())
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")));
-    report::render_html(&sections(finished, figures).into_iter().fold(report, Report::section))
+    videg_report::render_html(&sections(finished, figures).into_iter().fold(report, Report::section))
 }
 
 /// The sections of the report.

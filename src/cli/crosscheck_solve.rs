@@ -12,9 +12,9 @@ use crate::crosscheck::{
     Agreement, Bench, Case, Check, Compared, Findings, Pulses, Repeat, Solver, Stop, Sweep, Task, Values, checks,
     common, comparison_checks, conclusion, export, in_parallel, limited, pulse_checks,
 };
-use crate::fmi::Fmu;
 use crate::ngspice::{Elements, Ngspice, NgspiceError, Outcome, Waveforms};
 use crate::scenario::Scenario;
+use fmu_import::Fmu;
 
 /// Runs the mechanics of `scenario`, and its circuit in every solver.
 pub fn follow(fmu: &Fmu, scenario: Scenario, ngspice: &Ngspice, sweep: bool) -> anyhow::Result<Finished> {

@@ -3,8 +3,8 @@
 use videg_circuit::{Settings, Topology, formulas, names};
 
 use crate::cosim::{EmbeddedCircuit, HarvesterFmu, Schedule};
-use crate::fmi::Fmu;
 use crate::scenario::{Scenario, Setting};
+use fmu_import::Fmu;
 
 /// The circuit's parameters: supplied at the bias voltage of the harvester and released at the supply voltage, as in
 /// Section 4.1, or into a storage at the voltage that gains most, unless the settings say otherwise.

@@ -11,8 +11,8 @@ use serde::Serialize;
 use super::isolation::IsolationOptions;
 use super::progress::spinner;
 use super::{Verdict, fmu_check, format, output, packaging};
-use crate::fmi::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 use crate::package::{self, AddedBinary, Options};
+use fmu_import::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 
 /// Columns of a terminal within which descriptions of variables are wrapped.
 const WIDTH: u16 = 120;
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn start_values_of_enumerations_are_shown_by_names_that_are_not_copied() {
-        let document = include_bytes!("../fmi/testdata/good.xml");
+        let document = include_bytes!("../../fmu/import/src/testdata/good.xml");
         let description = ModelDescription::parse(document, "test").unwrap();
         let items = Items::of(&description);
         let shown = row(&items, description.variable("law").unwrap());

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::isolation::IsolationOptions;
 use super::message::one_line;
 use super::{Verdict, output};
-use crate::fmi::{FmiError, Fmu, Instance, Kind, Logging};
+use fmu_import::{FmiError, Fmu, Instance, Kind, Logging};
 
 /// Step of the trial run if the FMU proposes none, s.
 const STEP: f64 = 1e-3;

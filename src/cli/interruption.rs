@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag::{register, register_conditional_shutdown, register_usize};
 
 use super::message::say;
-use crate::{children, temporary, whole};
+use videg_system::{atomic_file, processes, temporary};
 
 /// Signals that end the program, but for those that it was started to ignore, as `nohup` and a shell's `&` do.
 #[cfg(unix)]
@@ -104,8 +104,8 @@ impl Interruption {
         if self.is_deferred.load(Ordering::Relaxed) {
             return;
         }
-        let _closed = (children::end_all(), temporary::remove_all());
-        let (removed, _closed_too) = whole::remove_all();
+        let _closed = (processes::end_all(), temporary::remove_all());
+        let (removed, _closed_too) = atomic_file::remove_all();
         let removed: Vec<_> = removed.iter().map(|part| format!("removed {}", part.display())).collect();
         let told: Vec<_> = removed.into_iter().chain(self.notice.get().cloned()).collect();
         if !told.is_empty() {

@@ -7,8 +7,8 @@ use anyhow::{Context as _, ensure};
 use clap::Args;
 
 use super::{output, packaging};
-use crate::fmi::{Bounds, Fmu, Isolation};
 use crate::package;
+use fmu_import::{Bounds, Fmu, Isolation};
 
 /// Shortest and longest time limit, s.
 const SHORTEST: f64 = 1e-3;

@@ -78,7 +78,7 @@ enum Verb {
     #[command(name = crate::ngspice::live::WORKER_VERB, hide = true)]
     NgspiceWorker,
     /// Run an instance of an FMU for another process
-    #[command(name = crate::fmi::isolated::WORKER_VERB, hide = true)]
+    #[command(name = fmu_import::isolated::WORKER_VERB, hide = true)]
     FmuWorker,
 }
 

@@ -8,7 +8,7 @@ use anyhow::Context as _;
 
 use super::message::{plain, plain_json, say};
 use crate::scenario::Scenario;
-use crate::whole;
+use videg_system::atomic_file;
 
 /// The folder for the results of `verb`, made if it is not there.
 pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::Result<PathBuf> {
@@ -22,7 +22,7 @@ pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::
 
 /// Writes a file that appears whole or not at all.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
-    whole::write(path, content).with_context(|| format!("cannot write {}", path.display()))
+    atomic_file::write(path, content).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Prints `text` and an end of line on stdout, with control characters spelled out, whoever has put them there.

@@ -8,8 +8,8 @@ use anyhow::Context as _;
 
 use super::message::{say, show};
 use super::progress::spinner;
-use crate::fmi::Fmu;
 use crate::package::{self, FMUS, Options, Placed};
+use fmu_import::Fmu;
 
 /// Shows what Cargo is at, where somebody may be looking.
 pub fn follow(line: &str) {

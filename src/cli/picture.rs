@@ -1,8 +1,8 @@
 //! The figure of a run: the last cycles in detail, energies over the whole run.
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
-use crate::report::{Drawing, Figure, Panel, ReportError, Series, Style, render_svg};
 use crate::scenario::Scenario;
+use videg_report::{Drawing, Figure, Panel, ReportError, Series, Style, render_svg};
 
 /// Points of one curve: time and value.
 pub type Points = Vec<(f64, f64)>;

@@ -14,10 +14,10 @@ use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
 use super::{Verdict, cosim, crosscheck_files, crosscheck_solve, format, output, packaging, reproduce_files as files};
 use crate::cosim::Coupling;
-use crate::fmi::{Fmu, nearest_name};
 use crate::ngspice::Ngspice;
 use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Verdict as Of, Workshop};
 use crate::scenario::Request;
+use fmu_import::{Fmu, nearest_name};
 
 /// Arguments of the verb.
 #[derive(Args)]

@@ -6,7 +6,7 @@ use anyhow::Context as _;
 
 use super::{output, reproduce_report as page};
 use crate::paper::{Artefact, Finding, Sheet};
-use crate::report::render_png;
+use videg_report::render_png;
 
 /// Pixels of a PNG for each px of the figure.
 const DENSITY: f64 = 2.0;

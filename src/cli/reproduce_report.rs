@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::{cosim, cosim_report, crosscheck, crosscheck_report, format, output};
-use crate::fmi::Fmu;
 use crate::paper::{Artefact, Finding, Verdict};
-use crate::report::{self, Cell, Column, Report, Section, Table, Tone};
+use fmu_import::Fmu;
+use videg_report::{self, Cell, Column, Report, Section, Table, Tone};
 
 /// One table or figure in the report.
 pub struct Chapter {
@@ -98,7 +98,7 @@ pub fn write(
         report = report.section(section.clone());
     }
     let path = folder.join("report.html");
-    output::write(&path, &report::render_html(&report.section(versions(fmu)))?)?;
+    output::write(&path, &videg_report::render_html(&report.section(versions(fmu)))?)?;
     Ok(path)
 }
 

@@ -4,8 +4,8 @@ use anyhow::anyhow;
 use videg_circuit::Settings;
 
 use crate::cosim::EmbeddedCircuit;
-use crate::fmi::{ModelDescription, nearest_name};
 use crate::scenario::{Origin, Scenario, Setting};
+use fmu_import::{ModelDescription, nearest_name};
 
 /// Settings of the harvester, and those of the circuit. A name that both have is the harvester's.
 pub fn split(harvester: &ModelDescription, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {

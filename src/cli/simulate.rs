@@ -12,9 +12,9 @@ use super::simulate_contacts::Contacts;
 use super::simulate_law::{self, Law};
 use super::{Verdict, format, output, picture, settings, simulate_both, time_series};
 use crate::cosim::{Coupling, CsvRecorder, HarvesterFmu, Master, MechanicsSummary, Outcome, Trace};
-use crate::fmi::Fmu;
-use crate::report::{self, Column, Report, Section};
 use crate::scenario::{Scenario, Setting};
+use fmu_import::Fmu;
+use videg_report::{self, Column, Report, Section};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -159,7 +159,7 @@ fn write_files(
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(result)
     .section(Section::new("Motion, capacitances and gains").figure(svg, figure_caption()));
-    output::write(&html, &report::render_html(&page)?)?;
+    output::write(&html, &videg_report::render_html(&page)?)?;
     Ok(vec![csv.to_owned(), figure, html, folder.join("result.json")])
 }
 
@@ -200,15 +200,15 @@ pub fn text_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> String {
 }
 
 /// The result table of the mechanics in the HTML report.
-pub fn report_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> report::Table {
-    let table = report::Table::new([
+pub fn report_table(scenario: &Scenario, mechanics: &MechanicsSummary) -> videg_report::Table {
+    let table = videg_report::Table::new([
         Column::words("quantity"),
         Column::words("unit"),
         Column::numbers("paper"),
         Column::numbers("videg"),
         Column::numbers("deviation"),
     ]);
-    rows(scenario, mechanics).into_iter().fold(table, report::Table::row)
+    rows(scenario, mechanics).into_iter().fold(table, videg_report::Table::row)
 }
 
 /// The line above the tables.

@@ -11,8 +11,8 @@ use super::simulate_contacts::ContactSummary;
 use super::simulate_law::Law;
 use super::{Verdict, output, simulate_both_report};
 use crate::cosim::MechanicsSummary;
-use crate::fmi::Fmu;
 use crate::scenario::Scenario;
+use fmu_import::Fmu;
 
 /// What a law comes to.
 #[derive(Debug, Clone, Copy, Serialize)]

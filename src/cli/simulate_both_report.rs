@@ -4,8 +4,8 @@ use super::picture::{self, Points};
 use super::simulate::Mechanics;
 use super::simulate_both::{LawResult, Laws};
 use super::{format, output};
-use crate::report::{self, Column, Figure, Panel, Report, ReportError, Section, Series, render_svg};
 use crate::scenario::Scenario;
+use videg_report::{self, Column, Figure, Panel, Report, ReportError, Section, Series, render_svg};
 
 /// A row of the table: quantity, unit, units in one SI unit, and how to read it.
 type Quantity = (&'static str, &'static str, f64, fn(&LawResult) -> Option<f64>);
@@ -68,9 +68,11 @@ pub fn text_table(laws: &Laws) -> String {
     table.to_string()
 }
 
-fn report_table(laws: &Laws) -> report::Table {
+fn report_table(laws: &Laws) -> videg_report::Table {
     let column = |(k, heading)| if k < 2 { Column::words(heading) } else { Column::numbers(heading) };
-    rows(laws).into_iter().fold(report::Table::new(HEADINGS.into_iter().enumerate().map(column)), report::Table::row)
+    rows(laws)
+        .into_iter()
+        .fold(videg_report::Table::new(HEADINGS.into_iter().enumerate().map(column)), videg_report::Table::row)
 }
 
 /// By how much the laws differ, a sentence each, and what is measured.
@@ -160,5 +162,5 @@ pub fn html(scenario: &Scenario, laws: &Laws, warnings: &[String], svg: String) 
     .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(result)
     .section(Section::new("Motion and capacitance").figure(svg, CAPTION));
-    report::render_html(&page)
+    videg_report::render_html(&page)
 }

@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::options::CaseOptions;
 use super::{Verdict, electrical, output, packaging, settings};
 use crate::cosim::{EmbeddedCircuit, HarvesterFmu};
-use crate::fmi::{Fmu, Kind};
 use crate::package::{Part, SystemPackage};
 use crate::scenario::{Scenario, Setting};
+use fmu_import::{Fmu, Kind};
 
 /// Name of the package.
 const FILE: &str = "Harvester.ssp";

@@ -14,8 +14,8 @@ use super::progress::RunBar;
 use super::simulate::file_list;
 use super::sweep_options::What;
 use super::{Verdict, format, output};
-use crate::fmi::Fmu;
 use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
+use fmu_import::Fmu;
 
 /// Arguments of the verb.
 #[derive(Args)]

@@ -7,9 +7,9 @@ use clap::Args;
 
 use super::options::{Window, parse_window};
 use super::{output, settings};
-use crate::fmi::{Bounds, ModelDescription};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Design, Request, SweepFile, Times, Vary};
+use fmu_import::{Bounds, ModelDescription};
 
 /// What is swept. An option wins over the same key of the file.
 #[derive(Args, Default)]
@@ -157,7 +157,7 @@ mod tests {
     /// What a sweep without options says of an FMU whose default experiment has these attributes.
     fn request(experiment: &str) -> Result<Times, String> {
         let attributes = "startTime=\"0\" stopTime=\"1e1\"";
-        let text = include_str!("../fmi/testdata/good.xml").replace(attributes, experiment);
+        let text = include_str!("../../fmu/import/src/testdata/good.xml").replace(attributes, experiment);
         let description = ModelDescription::parse(text.as_bytes(), "good.xml").unwrap();
         let made = What::default().request(SweepFile::default(), &description, None, None);
         made.map(|request| request.times).map_err(|error| error.to_string())

@@ -7,8 +7,8 @@ use anyhow::Context as _;
 
 use super::Verdict;
 use super::streams::{take_stdin, take_stdout};
-use crate::fmi::isolated;
 use crate::ngspice::live;
+use fmu_import::isolated;
 
 /// Serves one instance of an FMU on stdin and stdout.
 pub fn run_fmu() -> anyhow::Result<Verdict> {

@@ -2,8 +2,8 @@
 
 use super::rollback::Kept;
 use super::{CircuitSample, CircuitSlave, CosimError};
-use crate::fmi::{Fmu, Instance, Logging};
 use crate::scenario::Setting;
+use fmu_import::{Fmu, Instance, Logging};
 
 /// The FMU `HarvestingCircuit`. The capacitances go in with their first derivative, so that they run linearly over each
 /// step as they do for the embedded solver.

@@ -11,7 +11,7 @@ use crate::ngspice::NgspiceError;
 pub enum CosimError {
     /// An FMU refused something.
     #[error(transparent)]
-    Fmi(#[from] crate::fmi::FmiError),
+    Fmi(#[from] fmu_import::FmiError),
     /// The embedded circuit refused something.
     #[error("circuit \"{label}\": {cause}")]
     Circuit {
@@ -56,7 +56,7 @@ pub enum CosimError {
         /// Where the setting was said.
         place: String,
         /// Its error.
-        cause: Box<crate::fmi::FmiError>,
+        cause: Box<fmu_import::FmiError>,
     },
     /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
     #[error("{name} = {value}: {bound}")]

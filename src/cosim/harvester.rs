@@ -3,8 +3,8 @@
 use super::CosimError;
 use super::balance::MechanicalEnergies;
 use super::rollback::Kept;
-use crate::fmi::{Fmu, Instance, Logging, Status};
 use crate::scenario::{Scenario, Setting};
+use fmu_import::{Fmu, Instance, Logging, Status};
 
 /// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
 const REALS: [&str; 16] = [

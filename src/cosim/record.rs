@@ -4,14 +4,14 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
-use crate::whole::{WholeFile, partial};
+use videg_system::atomic_file::{AtomicFile, partial};
 
 /// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
 /// are called as the FMU variables are, units are SI. The file gets its name when it is finished; of a run that ends early,
-/// what is there stays under another one ([`crate::whole::partial`]).
+/// what is there stays under another one ([`videg_system::atomic_file::partial`]).
 pub struct CsvRecorder {
     path: PathBuf,
-    writer: csv::Writer<BufWriter<WholeFile>>,
+    writer: csv::Writer<BufWriter<AtomicFile>>,
     circuit: bool,
     row: Vec<f64>,
 }
@@ -23,7 +23,7 @@ impl CsvRecorder {
     /// If the file cannot be written.
     pub fn create(path: &Path, circuit: bool) -> Result<Self, CosimError> {
         let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
-        let file = WholeFile::create(path).map_err(fail)?;
+        let file = AtomicFile::create(path).map_err(fail)?;
         let mut writer = csv::Writer::from_writer(BufWriter::new(file));
         let names = ["time"].into_iter().chain(HarvesterSample::names().iter().copied());
         let circuit_names = CircuitSample::NAMES.into_iter().take(if circuit { usize::MAX } else { 0 });
@@ -40,7 +40,7 @@ impl CsvRecorder {
         let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
         let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
         // Of what could not be written nothing stays.
-        let finished = file.and_then(WholeFile::finish).inspect_err(|_| drop(std::fs::remove_file(partial(&path))));
+        let finished = file.and_then(AtomicFile::finish).inspect_err(|_| drop(std::fs::remove_file(partial(&path))));
         finished.map_err(|cause| CosimError::Write { path, cause })
     }
 

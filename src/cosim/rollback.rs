@@ -1,7 +1,7 @@
 //! The state of an FMU to which the master may go back.
 
 use super::CosimError;
-use crate::fmi::{FmuState, Instance};
+use fmu_import::{FmuState, Instance};
 
 /// Keeps one state of an instance; its memory is used again.
 #[derive(Debug, Default)]

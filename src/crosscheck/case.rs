@@ -3,9 +3,9 @@
 use videg_circuit::{Settings, formulas};
 
 use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome, Row};
-use crate::fmi::Fmu;
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 use crate::scenario::{Scenario, Setting};
+use fmu_import::Fmu;
 
 /// An impact of the ball on a membrane.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,7 @@ use videg_circuit::{Release, Settings, Topology};
 use crate::ngspice::{
     CapacitanceSource, CapacitanceTable, Check, Elements, FileName, Netlist, Ngspice, NgspiceError, Run,
 };
-use crate::whole;
+use videg_system::atomic_file;
 
 /// First line of the page that tells a folder made here from any other.
 const MARK: &str = "Made by: videg crosscheck --export";
@@ -216,9 +216,9 @@ pub fn write(folder: &Path, title: &str, items: &[Item]) -> Result<Vec<PathBuf>,
         std::fs::create_dir_all(&own).map_err(fail(&own))?;
         Ngspice::export(&own, &item.netlist, &item.table)?;
         let path = own.join(EVALUATION);
-        whole::write(&path, &item.script).map_err(fail(&path))?;
+        atomic_file::write(&path, &item.script).map_err(fail(&path))?;
     }
-    whole::write(&page, page_text(title, items)).map_err(fail(&page))?;
+    atomic_file::write(&page, page_text(title, items)).map_err(fail(&page))?;
     Ok(files)
 }
 
@@ -244,7 +244,7 @@ fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), ExportError> {
             return Err(ExportError::Foreign(parent.to_owned()));
         }
     }
-    for file in files.iter().flat_map(|file| [file.clone(), whole::partial(file)]) {
+    for file in files.iter().flat_map(|file| [file.clone(), atomic_file::partial(file)]) {
         let free = kind(&file).is_err();
         if !(free || ours && regular(&file)) {
             return Err(ExportError::Foreign(file));

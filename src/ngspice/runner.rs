@@ -12,9 +12,9 @@ use super::drain::Drain;
 use super::reading::Reading;
 use super::template::{FileName, Netlist};
 use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
-use crate::children::Group;
-use crate::temporary::TemporaryFolder;
-use crate::{input, whole};
+use videg_system::processes::ProcessGroup;
+use videg_system::temporary::TemporaryFolder;
+use videg_system::{atomic_file, input};
 
 /// The program.
 #[derive(Debug, Clone)]
@@ -191,9 +191,9 @@ impl Ngspice {
     /// If a file cannot be written.
     pub fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
         let path = folder.join(FileName::Netlist.name());
-        whole::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
+        atomic_file::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
         let path = folder.join(FileName::Table.name());
-        let written = whole::fill(&path, |file| table.write(BufWriter::new(file)));
+        let written = atomic_file::fill(&path, |file| table.write(BufWriter::new(file)));
         written.map_err(|cause| NgspiceError::File { path, cause })
     }
 
@@ -206,7 +206,7 @@ impl Ngspice {
         let folder = TemporaryFolder::new("videg-ngspice-").map_err(file)?;
         Self::export(folder.path(), netlist, table)?;
         let failed = |cause| NgspiceError::Start { program: self.program.clone(), cause };
-        let mut group = Group::start(&mut self.command(folder.path())).map_err(failed)?;
+        let mut group = ProcessGroup::start(&mut self.command(folder.path())).map_err(failed)?;
         let (stdout, stderr) = (group.child.stdout.take(), group.child.stderr.take());
         let stdout = stdout.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
         let stderr = stderr.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;

@@ -9,7 +9,7 @@ use object::{Architecture, BinaryFormat};
 use super::FMUS;
 use super::error::{PackageError, Result};
 use super::platform::Platform;
-use crate::input;
+use videg_system::input;
 
 /// The function that makes a library an FMU's.
 const ENTRY_POINT: &str = "fmi2Instantiate";

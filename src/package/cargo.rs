@@ -14,8 +14,8 @@ use super::error::{PackageError, Result};
 use super::platform::Platform;
 use super::target::Target;
 use super::tools;
-use crate::children::Group;
-use crate::fmi::library_extension;
+use fmu_import::library_extension;
+use videg_system::processes::ProcessGroup;
 
 /// How many lines of Cargo's output an error shows.
 const TAIL: usize = 40;
@@ -45,7 +45,7 @@ pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str
     let program = PathBuf::from(command.get_program());
     let shown = shown(target);
     let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
-    let mut cargo = Group::start(&mut command).map_err(failed)?;
+    let mut cargo = ProcessGroup::start(&mut command).map_err(failed)?;
     let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
     let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
     let messages = Builder::new().spawn(messages).map_err(failed)?;

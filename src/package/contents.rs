@@ -6,7 +6,7 @@ use std::path::Path;
 use super::entries::Entries;
 use super::error::{PackageError, Result};
 use super::platform::Platform;
-use crate::fmi::ModelDescription;
+use fmu_import::ModelDescription;
 
 /// What goes into an FMU.
 #[derive(Debug, Clone)]

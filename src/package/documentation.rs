@@ -5,7 +5,7 @@ use askama::Template;
 use super::contents::Contents;
 use super::error::{PackageError, Result};
 use super::picture;
-use crate::fmi::{Causality, EnumerationItem, Kind, ModelDescription, Variable};
+use fmu_import::{Causality, EnumerationItem, Kind, ModelDescription, Variable};
 
 /// The licenses, wherever this program runs.
 const LICENSES: [(&str, &str); 4] = [

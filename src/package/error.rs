@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::FMUS;
 use super::platform::Platform;
-use crate::fmi::FmiError;
+use fmu_import::FmiError;
 
 /// Result of the packager.
 pub type Result<T> = std::result::Result<T, PackageError>;

@@ -1,7 +1,7 @@
 //! Platforms: from Rust's target triples to the folder names of FMI 2.0.
 
 use super::error::{PackageError, Result};
-use crate::fmi::{HOST_PLATFORM, library_extension};
+use fmu_import::{HOST_PLATFORM, library_extension};
 
 /// A folder of `binaries/`. FMI 2.0 tells platforms by system and pointer size only, so an archive holds either the
 /// x86-64 or the `AArch64` library of a system.

@@ -8,7 +8,7 @@ use std::path::Path;
 use tempfile::NamedTempFile;
 
 use super::error::{PackageError, Result};
-use crate::whole::{self, LockError, Part};
+use videg_system::atomic_file::{self, LockError, Part};
 
 /// How an archive that is not complete is called: these, its name, and letters that no other process has.
 const PREFIX: &str = ".videg-";
@@ -42,7 +42,7 @@ pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
 fn remove_rests(folder: &Path, prefix: &str) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten().filter(|entry| is_rest(&entry.file_name(), prefix)) {
-        let _ = whole::remove_abandoned(&entry.path());
+        let _ = atomic_file::remove_abandoned(&entry.path());
     }
 }
 
@@ -60,7 +60,7 @@ fn new_file(folder: &Path, prefix: &str) -> io::Result<NamedTempFile> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let file = builder.tempfile_in(folder)?;
-        match whole::own(file.as_file(), file.path()) {
+        match atomic_file::own(file.as_file(), file.path()) {
             Ok(true) => return Ok(file),
             // Before it was locked, another process took it for a rest.
             Ok(false) | Err(LockError::Busy) => {}
@@ -86,7 +86,7 @@ mod tests {
         };
         let rests = [".videg-Toy.fmu-abc123.part", ".videg-Toy.fmu-XYZ789.part"].map(file);
         let at_work = file(".videg-Toy.fmu-def456.part");
-        let held = whole::lock(&at_work).unwrap();
+        let held = atomic_file::lock(&at_work).unwrap();
         let others = [
             ".videg-Toys.fmu-abc123.part",
             ".videg-Toy.fmu-2-abc123.part",

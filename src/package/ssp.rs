@@ -12,8 +12,8 @@ use self::document::{
 };
 use super::entries::Entries;
 use super::error::{PackageError, Result};
-use crate::fmi::{Causality, Kind, ModelDescription, Value, Variable};
 use crate::scenario::Setting;
+use fmu_import::{Causality, Kind, ModelDescription, Value, Variable};
 
 /// Names of the components.
 const HARVESTER: &str = "harvester";
@@ -111,7 +111,7 @@ impl Part<'_> {
         let mut parameters = Vec::new();
         for variable in &self.description.variables {
             let Some(setting) = self.settings.iter().rfind(|setting| setting.name == variable.name) else { continue };
-            let value = Value::parse(self.description, variable, &setting.value).map_err(crate::fmi::FmiError::from)?;
+            let value = Value::parse(self.description, variable, &setting.value).map_err(fmu_import::FmiError::from)?;
             if !is_start(variable, &value) {
                 parameters.push(Parameter { name: variable.name.clone(), value: document::Value::new(&value) });
             }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::{Contents, FMUS, Options, PackageError, Platform, build_all, documentation, locate};
-use crate::fmi::{Archive, Fmu};
+use fmu_import::{Archive, Fmu};
 
-const DESCRIPTION: &str = include_str!("../fmi/testdata/good.xml");
+const DESCRIPTION: &str = include_str!("../../fmu/import/src/testdata/good.xml");
 
 /// A tree with the files that packaging reads, but nothing to build.
 fn tree() -> TempDir {

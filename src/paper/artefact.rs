@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::report::{Drawing, Figure, ReportError, Table};
+use videg_report::{Drawing, Figure, ReportError, Table};
 
 /// A table or figure, reproduced.
 #[derive(Debug, Clone, Default)]

@@ -3,7 +3,7 @@
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
 use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
-use crate::report::{Column, Figure, HeatMap, Panel, Scale, Table};
+use videg_report::{Column, Figure, HeatMap, Panel, Scale, Table};
 
 /// `f_0`, Hz, and A, N, of Figures 11 to 15.
 const FREQUENCY: f64 = 2.0;

@@ -3,7 +3,7 @@
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
 use super::{Effort, PaperError, Picture, Sheet, Workshop};
-use crate::report::{Column, Figure, Panel, Series, Style, Table};
+use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
 const TRANSIENT: u32 = 200;

@@ -1,9 +1,9 @@
 //! What keeps an item from being made.
 
 use crate::cosim::CosimError;
-use crate::fmi::FmiError;
-use crate::report::ReportError;
 use crate::scenario::ScenarioError;
+use fmu_import::FmiError;
+use videg_report::ReportError;
 
 /// Why an item could not be made.
 #[derive(Debug, thiserror::Error)]

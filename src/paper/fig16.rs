@@ -3,7 +3,7 @@
 use super::excitation::{Cylinder, nudge};
 use super::statistics::{Summary, rank_correlation};
 use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
-use crate::report::{Figure, Panel, Series, Style};
+use videg_report::{Figure, Panel, Series, Style};
 
 /// Nearby starts that are averaged.
 fn starts(effort: Effort) -> usize {

@@ -4,8 +4,8 @@ use super::excitation::{Cylinder, nudge, set};
 use super::statistics::{Summary, TWO_SIDED, mean, slope};
 use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
 use crate::cosim::Averages;
-use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
+use videg_report::{Figure, Panel, Series, Style};
 
 /// gamma and `f_0`, Hz, of the figure.
 const GAMMA: f64 = 5.0;

@@ -3,8 +3,8 @@
 use super::excitation::set;
 use super::statistics::{mean, slope};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
-use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
+use videg_report::{Figure, Panel, Series, Style};
 
 /// Speed of the ball when it meets the membrane, m/s: it presses it in by some 7 mm.
 const SPEED: f64 = 1.0;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop, peak};
-use crate::report::{Figure, Panel, Series, Style};
+use videg_report::{Figure, Panel, Series, Style};
 
 const CASE: &str = "fig14";
 const WHEN: [f64; 2] = [50.0, 60.0];

@@ -6,8 +6,8 @@ use super::coupled::{Coupled, circuit};
 use super::peak::{self, Peak};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
 use crate::cosim::{CosimError, Observer, Row};
-use crate::report::{Column, Figure, Panel, Series, Style, Table};
 use crate::scenario::Request;
+use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Largest error of C(t) within a communication step, relative to its value.
 const TOLERANCE: f64 = 1e-4;

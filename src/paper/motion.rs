@@ -6,7 +6,7 @@ use super::recording::{
     BALL, BALL_VELOCITY, CYLINDER, CYLINDER_VELOCITY, DISPLACEMENT, Impact, OUTPUTS, Recording, Sample, record,
 };
 use super::{Artefact, PaperError, Picture, Sheet, Workshop};
-use crate::report::{Figure, Panel, Series, Style};
+use videg_report::{Figure, Panel, Series, Style};
 
 /// Distance of samples between corners, s.
 const STEP: f64 = 2e-3;

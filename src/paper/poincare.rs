@@ -3,7 +3,7 @@
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
 use super::{Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop, lyapunov};
-use crate::report::{Figure, Panel, Series, Style};
+use videg_report::{Figure, Panel, Series, Style};
 
 /// `f_0`, Hz, and A, N, of the cases.
 const FREQUENCY: f64 = 2.0;

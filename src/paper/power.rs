@@ -6,7 +6,7 @@ use videg_model::{Case, Limit, Membrane};
 
 use super::coupled::{Drive, circuit};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, VOLUME, Verdict, WINDOW, Workshop};
-use crate::report::{Column, Figure, Panel, Series, Table};
+use videg_report::{Column, Figure, Panel, Series, Table};
 
 /// Cases of Table 3, and what the paper calls them.
 const CASES: [(&str, &str); 2] = [("table3-2hz", "2 Hz"), ("table3-5hz", "5 Hz")];

@@ -1,8 +1,8 @@
 //! A run of the harvester FMU in detail: samples that show every corner of the motion, and its impacts.
 
 use super::{PaperError, Workshop};
-use crate::fmi::Instance;
 use crate::scenario::Setting;
+use fmu_import::Instance;
 
 /// Outputs of a sample, in the order of its values: name, heading and factor in a data sheet.
 pub(super) const OUTPUTS: [(&str, &str, f64); 10] = [

@@ -10,8 +10,8 @@ use super::motion_findings::Fact;
 use super::orbit::{Multipliers, Orbit, Phase};
 use super::statistics::slope;
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Workshop};
-use crate::report::{Figure, Panel, Series, Style};
 use crate::scenario::Setting;
+use videg_report::{Figure, Panel, Series, Style};
 
 const CASE: &str = "fig10";
 

@@ -2,8 +2,8 @@
 
 use super::excitation::{Cylinder, set};
 use super::{PaperError, Workshop};
-use crate::fmi::Instance;
 use crate::scenario::Setting;
+use fmu_import::Instance;
 
 /// The relative motion at the start of a period, when the cylinder is at the end of its swing.
 #[derive(Debug, Clone, Copy, PartialEq)]

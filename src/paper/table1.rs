@@ -6,7 +6,7 @@ use videg_model::VACUUM_PERMITTIVITY;
 
 use super::peak::{self, CASE, WHEN};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
-use crate::report::{Column, Figure, Panel, Series, Style, Table};
+use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// A stage in numbers, SI.
 struct Stage {

@@ -3,7 +3,7 @@
 use super::ensemble::{Ensemble, NUDGE};
 use super::table2::{Computation, Computed, STEPPED_NUDGE};
 use super::{PaperError, Picture, Sheet};
-use crate::report::{Column, Figure, Panel, Series, Style, Table};
+use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Where the free start of Figure 12 stands on the axis of figures.
 const FREE: f64 = 12.5;

@@ -4,7 +4,7 @@ use videg_model::Case;
 
 use super::fixed_step::{FixedStep, STEP, Stepped};
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, VOLUME, Verdict, WINDOW, Workshop};
-use crate::report::{Column, Figure, Panel, Series, Style, Table};
+use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Steps of the paper's method to show, s.
 const STEPS: [f64; 10] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6];

@@ -4,7 +4,7 @@ use videg_circuit::{Release, Settings, Topology};
 
 use super::coupled::{Drive, Driven, circuit};
 use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
-use crate::report::{Figure, HeatMap, Panel, Scale, Series, Style};
+use videg_report::{Figure, HeatMap, Panel, Scale, Series, Style};
 
 /// Window of the averages, s: Figure 14 is periodic by then.
 const WINDOW: [f64; 2] = [20.0, 60.0];

@@ -5,9 +5,9 @@ use std::sync::{Mutex, PoisonError};
 
 use super::PaperError;
 use crate::cosim::{Averages, Gains};
-use crate::fmi::{Fmu, Instance, Logging};
 use crate::scenario::{Request, Setting};
 use crate::threads;
+use fmu_import::{Fmu, Instance, Logging};
 
 /// How much work the large ensembles may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

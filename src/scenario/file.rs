@@ -21,7 +21,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{Origin, ScenarioError, Setting, characters};
-use crate::input;
+use videg_system::input;
 
 /// What a case file says.
 #[derive(Debug, Clone, Default)]

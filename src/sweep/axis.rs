@@ -3,7 +3,7 @@
 use super::random::Stream;
 use super::vary::{Range, Scale, Spread, Vary};
 use super::{Design, SweepError, column};
-use crate::fmi::{Kind, ModelDescription, Value, Variable};
+use fmu_import::{Kind, ModelDescription, Value, Variable};
 
 /// A varied variable.
 pub(super) struct Axis {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SweepError;
 use super::axis::Axis;
-use crate::fmi::Value;
+use fmu_import::Value;
 
 /// How points are chosen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]

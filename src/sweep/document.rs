@@ -7,8 +7,8 @@ use sha2::{Digest as _, Sha256};
 use super::column::Column;
 use super::times::Times;
 use super::{Design, Vary};
-use crate::fmi::Bounds;
 use crate::scenario::Setting;
+use fmu_import::Bounds;
 
 /// The document `sweep.json`: the same bytes for the same sweep.
 #[derive(Serialize)]

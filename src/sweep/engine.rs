@@ -6,7 +6,7 @@ use super::plan::{GAINS, Results, Run};
 use super::times::Driven;
 use super::{Sweep, SweepError};
 use crate::cosim::Gains;
-use crate::fmi::{FmiError, Fmu, Instance, Logging, Status, Value, Variable};
+use fmu_import::{FmiError, Fmu, Instance, Logging, Status, Value, Variable};
 
 /// What runs the runs.
 pub enum Engine {

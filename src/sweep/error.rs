@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::fmi::FmiError;
 use crate::scenario::{Origin, ScenarioError};
+use fmu_import::FmiError;
 
 /// Why a sweep could not be run, resumed or merged. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::differences::{Difference, told};
 use super::unfinished::{Unfinished, complete_name, unfinished};
 use super::{Shard, SweepError, sums, table};
-use crate::input;
-use crate::whole::{self, LockError, Part, partial};
+use videg_system::atomic_file::{self, LockError, Part, partial};
+use videg_system::input;
 
 /// Name of the document in a folder of results.
 pub(super) const DOCUMENT: &str = "sweep.json";
@@ -144,7 +144,7 @@ pub(super) fn rename(part: &Path, path: &Path) -> Result<(), SweepError> {
 
 /// Opens `part`, which no other process has open to write.
 pub(super) fn lock(part: &Path) -> Result<File, SweepError> {
-    whole::lock(part).map_err(|error| match error {
+    atomic_file::lock(part).map_err(|error| match error {
         LockError::Open(cause) => SweepError::file("open", part)(cause),
         LockError::Busy => SweepError::Locked { path: part.to_owned() },
         LockError::Lock(cause) => SweepError::file("lock", part)(cause),

@@ -10,7 +10,7 @@ use super::lines::LONGEST;
 use super::plan::Results;
 use super::record::{Found, Record};
 use super::{Design, Request, Sweep, SweepError, Times, Vary, merge};
-use crate::fmi::{ModelDescription, Value};
+use fmu_import::{ModelDescription, Value};
 
 /// An FMU with a text, an enumeration, and as many outputs as asked for with names of as many letters.
 fn description(outputs: usize, letters: usize) -> ModelDescription {

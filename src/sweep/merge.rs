@@ -10,8 +10,8 @@ use super::folder::{self, DOCUMENT, RESULTS};
 use super::run::Report;
 use super::unfinished::Unfinished;
 use super::{Shard, SweepError, column, lines, sums, table};
-use crate::input;
-use crate::whole::{self, Part};
+use videg_system::atomic_file::{self, Part};
+use videg_system::input;
 
 /// Version of this program: tables that another one writes may have other bytes.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -32,7 +32,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     folder::check_document(output, &document)?;
     let path = output.join(RESULTS);
     let (mut results, _begun) =
-        Part::begin(|| Unfinished::take(&path).map(|results| (results, whole::partial(&path))))?;
+        Part::begin(|| Unfinished::take(&path).map(|results| (results, atomic_file::partial(&path))))?;
     let is_new = !output.join(DOCUMENT).exists();
     folder::write_document(output, &document, &path)?;
     let joined = join(&shards, &kept, &results).and_then(|failed| {

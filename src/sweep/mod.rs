@@ -46,7 +46,7 @@ pub use vary::{Range, Scale, Spread, Vary};
 
 use std::path::Path;
 
-use crate::fmi::{FmiError, ModelDescription};
+use fmu_import::{FmiError, ModelDescription};
 
 /// What the harvester FMU says of itself; the model behind it has the same parameters.
 ///

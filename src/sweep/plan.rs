@@ -12,8 +12,8 @@ use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};
 use crate::cosim::Averages;
-use crate::fmi::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
 use crate::scenario::{Origin, Setting};
+use fmu_import::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
 
 /// Variables from which averages follow, and their types.
 pub(super) const GAINS: [&str; 3] = ["gain.voltage", "gain.energyEq13", "impact.count"];

@@ -10,7 +10,7 @@ use super::folder::{self, RESULTS};
 use super::lines::{self, Extent, Rest};
 use super::unfinished::Unfinished;
 use super::{Column, Shard, Sweep, SweepError, column, sums, table};
-use crate::input;
+use videg_system::input;
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);

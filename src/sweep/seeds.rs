@@ -1,7 +1,7 @@
 //! Seeds of the samples: other noise in each run, the same on any core, shard or machine.
 
 use super::SweepError;
-use crate::fmi::{Kind, ModelDescription, Value, Variable};
+use fmu_import::{Kind, ModelDescription, Value, Variable};
 
 /// The variable that takes the seed of the harvester's phase noise, and its intensity.
 pub const SEED_VARIABLE: &str = "excitation.seed";

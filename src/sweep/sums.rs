@@ -13,7 +13,7 @@ use sha2::{Digest as _, Sha256};
 use super::SweepError;
 use super::document::hexadecimal;
 use super::folder::{self, DOCUMENT};
-use crate::whole::{self, Part};
+use videg_system::atomic_file::{self, Part};
 
 /// What stands before the checksums. Nothing else in the document does: a text has no line breaks, and other keys are
 /// indented further or have other names.
@@ -83,7 +83,7 @@ pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result
 /// Removes what a process that was killed left of [`record`].
 pub(super) fn clear(folder: &Path) {
     // It keeps nobody from anything.
-    let _ = whole::remove_abandoned(&folder.join(LOCK));
+    let _ = atomic_file::remove_abandoned(&folder.join(LOCK));
 }
 
 /// Takes out the checksums of `results`, which are about to be replaced.

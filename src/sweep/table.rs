@@ -15,7 +15,7 @@ use parquet::schema::types::Type as Schema;
 
 use super::SweepError;
 use super::column::{Column, Type};
-use crate::whole::{self, WholeFile};
+use videg_system::atomic_file::{self, AtomicFile};
 
 /// Rows of a group.
 const GROUP: usize = 8_192;
@@ -36,13 +36,13 @@ pub(super) fn write(
 ) -> std::result::Result<PathBuf, SweepError> {
     let path = path(csv);
     if anew || !path.exists() {
-        let filled = whole::fill(&path, |file| fill(csv, columns, document, file));
+        let filled = atomic_file::fill(&path, |file| fill(csv, columns, document, file));
         filled.map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;
     }
     Ok(path)
 }
 
-fn fill(csv: &Path, columns: &[Column], document: &str, file: &mut WholeFile) -> Result<()> {
+fn fill(csv: &Path, columns: &[Column], document: &str, file: &mut AtomicFile) -> Result<()> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_created_by(concat!("videg ", env!("CARGO_PKG_VERSION")).to_owned())

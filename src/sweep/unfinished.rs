@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::SweepError;
 use super::folder::{lock, remove};
-use crate::whole::partial;
+use videg_system::atomic_file::partial;
 
 /// Name of the results for `path` that are not complete and that nobody is writing.
 pub(super) fn unfinished(path: &Path) -> PathBuf {

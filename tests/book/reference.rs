@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use videg::fmi::{Causality, Kind, ModelDescription, Variable};
+use fmu_import::{Causality, Kind, ModelDescription, Variable};
 use videg::package::FMUS;
 use videg_model::{Case, Parameters};
 

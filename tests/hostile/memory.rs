@@ -1,6 +1,6 @@
 //! What comes in through the library, not the command line: serialised states, and raw files that ngspice should have left.
 
-use videg::fmi::{Fmu, FmuState, Instance, Logging};
+use fmu_import::{Fmu, FmuState, Instance, Logging};
 use videg::ngspice::RawReader;
 use videg::package::{Options, build_all};
 

@@ -4,7 +4,7 @@ use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use videg::fmi::{HOST_PLATFORM, LIBRARY_EXTENSION};
+use fmu_import::{HOST_PLATFORM, LIBRARY_EXTENSION};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 

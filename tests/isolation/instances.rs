@@ -5,8 +5,8 @@ use std::process::Command;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use fmu_import::{Bounds, FmiError, Fmu, Instance, Isolation, Logging, Status};
 use tempfile::TempDir;
-use videg::fmi::{Bounds, FmiError, Fmu, Instance, Isolation, Logging, Status};
 
 use super::toy;
 

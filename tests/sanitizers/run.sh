@@ -15,13 +15,13 @@ names=(VibroImpactHarvester HarvestingCircuit)
 build() {
     RUSTFLAGS="-Zsanitizer=$1 -Cunsafe-allow-abi-mismatch=sanitizer -Clink-arg=-Wl,--export-dynamic" \
         cargo +nightly build --quiet --locked \
-        --target "$platform" --target-dir "target/sanitizers/$1" -p fmi2-host -p videg-fmu-harvester -p videg-fmu-circuit
+        --target "$platform" --target-dir "target/sanitizers/$1" -p fmu-host -p videg-fmu-harvester -p videg-fmu-circuit
 }
 
 # host SANITIZER FMU SEQUENCES [WORD]
 host() {
     local built="target/sanitizers/$1/$platform/debug"
-    "$built/fmi2-host" "$built/lib$2.so" "modelDescription/$2.xml" 0 "${@:3}"
+    "$built/fmu-host" "$built/lib$2.so" "modelDescription/$2.xml" 0 "${@:3}"
 }
 
 # That a fault on purpose is reported: seen SANITIZER WORD REPORT

@@ -9,13 +9,13 @@ sequences=${SEQUENCES:-5000}
 profile=${PROFILE:-dev}
 built=${CARGO_TARGET_DIR:-target}/$([[ $profile == dev ]] && echo debug || echo "$profile")
 
-cargo build --quiet --profile "$profile" -p fmi2-host -p videg-fmu-harvester -p videg-fmu-circuit
+cargo build --quiet --profile "$profile" -p fmu-host -p videg-fmu-harvester -p videg-fmu-circuit
 
 watched() {
     local name=$1
     shift
     valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect \
-        --show-leak-kinds=definite,indirect "$built/fmi2-host" "$built/lib$name.so" "modelDescription/$name.xml" "$@"
+        --show-leak-kinds=definite,indirect "$built/fmu-host" "$built/lib$name.so" "modelDescription/$name.xml" "$@"
 }
 
 for name in VibroImpactHarvester HarvestingCircuit; do

@@ -10,4 +10,4 @@ mod variables;
 
 pub use slave::Harvesting;
 
-fmi2_export::export_fmu!(Harvesting);
+fmu_export::export_fmu!(Harvesting);

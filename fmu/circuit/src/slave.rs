@@ -1,6 +1,6 @@
 //! The slave: what the importer sets, and the circuit that it drives.
 
-use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
+use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
 use videg_circuit::{Circuit, Error, Settings};
 
 use crate::variables::VARIABLES;

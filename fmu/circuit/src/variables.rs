@@ -1,7 +1,7 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the table of the
 //! circuit.
 
-use fmi2_export::{EnumerationItem, EnumerationType, Variable, concat};
+use fmu_export::{EnumerationItem, EnumerationType, Variable, concat};
 use videg_circuit::{Circuit, Settings, names};
 
 use crate::slave::{Harvesting, REST_CAPACITANCE};
@@ -122,7 +122,7 @@ pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUT
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fmi2_export::Kind;
+    use fmu_export::Kind;
 
     /// The compiler makes the rows of the table; here one is made again, where it can be looked at as it is made.
     #[test]

@@ -1,7 +1,7 @@
 //! The experiment that the FMU carries (FMI-LS-REF): its reference results are what the FMU gives.
 
 use HarvestingCircuit::Harvesting;
-use fmi2_host::experiment::{Inputs, reference};
+use fmu_host::experiment::{Inputs, reference};
 use videg_golden::Golden;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/extra/org.fmi-standard.fmi-ls-ref");

@@ -1,7 +1,7 @@
 //! Values and arguments that make no sense, one by one: a status and a line in the log, never a crash.
 
 use HarvestingCircuit as _; // links its C functions
-use fmi2_host::{Fmu, hostile, linked_functions};
+use fmu_host::{Fmu, hostile, linked_functions};
 
 #[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn fmu() -> Fmu {

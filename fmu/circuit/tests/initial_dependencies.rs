@@ -1,7 +1,7 @@
 //! `InitialUnknowns` of `ModelStructure`: initial values depend on what the table says.
 
 use HarvestingCircuit::Harvesting;
-use fmi2_host::initial::{found, promised};
+use fmu_host::initial::{found, promised};
 
 /// Size that a variable typically has.
 fn size(name: &str) -> f64 {

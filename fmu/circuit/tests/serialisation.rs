@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
 use HarvestingCircuit::Harvesting;
-use fmi2_export::{Causality, Kind, Logger, Slave, StateError, StateReader, StateWriter, value_reference};
+use fmu_export::{Causality, Kind, Logger, Slave, StateError, StateReader, StateWriter, value_reference};
 
 fn bytes(slave: &Harvesting) -> Vec<u8> {
     let mut out = StateWriter::new();

@@ -1,10 +1,10 @@
 //! A first-order lag as an FMU, with all that a model can offer: T y' = u - y, solved exactly for an input that is
 //! constant or linear within a step.
 //!
-//! `cargo build -p fmi2-export --example lag` makes the shared library (`binaries/linux64/Lag.so` of the FMU),
-//! `cargo run -p fmi2-export --features model-description --example lag_description` prints `modelDescription.xml`.
+//! `cargo build -p fmu-export --example lag` makes the shared library (`binaries/linux64/Lag.so` of the FMU),
+//! `cargo run -p fmu-export --features model-description --example lag_description` prints `modelDescription.xml`.
 
-use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable, export_fmu};
+use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable, export_fmu};
 
 /// The model; `rate` is the time derivative of the input.
 #[derive(Clone, Default)]

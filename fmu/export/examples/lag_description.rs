@@ -1,6 +1,6 @@
 //! Prints the `modelDescription.xml` of the FMU in `lag.rs`.
 
-use fmi2_export::{DescriptionError, model_description};
+use fmu_export::{DescriptionError, model_description};
 
 #[path = "lag.rs"]
 mod lag;

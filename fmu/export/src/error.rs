@@ -1,7 +1,7 @@
 //! What can go wrong: the errors that a model returns, and the errors of the C interface around it.
 
 use crate::call_state::CallState;
-use fmi2_abi::{fmi2Discard, fmi2Error, fmi2Fatal, fmi2Status};
+use fmu_abi::{fmi2Discard, fmi2Error, fmi2Fatal, fmi2Status};
 
 /// How far an error of a slave reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

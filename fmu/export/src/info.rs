@@ -72,7 +72,7 @@ impl ModelInfo {
             version: "",
             copyright: "",
             license: "",
-            generation_tool: concat!("fmi2-export ", env!("CARGO_PKG_VERSION")),
+            generation_tool: concat!("fmu-export ", env!("CARGO_PKG_VERSION")),
             default_experiment: None,
             can_serialize: false,
             directional_derivatives: false,

@@ -6,7 +6,7 @@
 //!
 //! # A complete FMU
 //! ```
-//! use fmi2_export::{Logger, ModelInfo, Slave, SlaveError, Variable, export_fmu};
+//! use fmu_export::{Logger, ModelInfo, Slave, SlaveError, Variable, export_fmu};
 //!
 //! /// A first-order lag.
 //! #[derive(Clone, Default)]
@@ -100,7 +100,7 @@ mod variable;
 
 pub use call_state::{CallState, Function, Interface, Legality};
 pub use error::{Severity, SlaveError};
-pub use fmi2_abi as abi;
+pub use fmu_abi as abi;
 pub use guid::Guid;
 pub use info::{DefaultExperiment, ModelInfo};
 pub use logger::{LogCategory, Logger};

@@ -3,7 +3,7 @@
 use core::cell::Cell;
 use core::ffi::CStr;
 use core::fmt::Display;
-use fmi2_abi::{
+use fmu_abi::{
     fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
     fmi2Status, fmi2Warning,
 };

@@ -7,8 +7,8 @@ use common::calls::{call, host_in};
 use common::toy::Toy;
 use common::*;
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
-use fmi2_export::{CallState, Causality, Function, Initial, Interface, Legality, Slave, Variability};
+use fmu_export::abi::*;
+use fmu_export::{CallState, Causality, Function, Initial, Interface, Legality, Slave, Variability};
 
 /// The table of FMI 2.0, section 3.2.3 (model exchange). A column is a state: i instantiated, I initializationMode, v eventMode,
 /// m continuousTimeMode, t terminated, e error, F fatal. `x` legal, a digit legal under the condition of that footnote.

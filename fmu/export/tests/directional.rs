@@ -6,7 +6,7 @@ mod common;
 use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
 use common::*;
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
+use fmu_export::abi::*;
 
 fn derivative(host: &Host, unknowns: &[u32], knowns: &[u32], seeds: &[f64]) -> Result<Vec<f64>, String> {
     let mut values = vec![-77.0; unknowns.len()];

@@ -6,8 +6,8 @@ mod common;
 use common::toy::*;
 use common::*;
 use core::ptr::{dangling_mut, null, null_mut, without_provenance_mut};
-use fmi2_export::CallState;
-use fmi2_export::abi::*;
+use fmu_export::CallState;
+use fmu_export::abi::*;
 
 /// Everything that can be read, bit for bit.
 fn fingerprint(host: &Host) -> (Vec<u64>, Vec<i32>, String) {

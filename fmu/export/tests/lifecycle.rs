@@ -7,9 +7,9 @@ use common::toy::*;
 use common::*;
 use core::ffi::CStr;
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
-use fmi2_export::ffi::{Fmu, instantiate, state};
-use fmi2_export::{Guid, Logger, ModelInfo, Slave, SlaveError, Variable};
+use fmu_export::abi::*;
+use fmu_export::ffi::{Fmu, instantiate, state};
+use fmu_export::{Guid, Logger, ModelInfo, Slave, SlaveError, Variable};
 
 #[test]
 fn version_and_platform_are_those_of_fmi_2() {

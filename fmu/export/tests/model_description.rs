@@ -8,7 +8,7 @@
 mod common;
 
 use common::toy::Toy;
-use fmi2_export::{
+use fmu_export::{
     Causality, EnumerationItem, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Variable,
     model_description,
 };
@@ -21,7 +21,7 @@ fn text() -> String {
 #[test]
 fn the_text_is_as_in_the_golden_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/Toy.xml");
-    let command = "cargo test -p fmi2-export --features model-description --test model_description";
+    let command = "cargo test -p fmu-export --features model-description --test model_description";
     Golden::new("UPDATE_GOLDEN", command).file(path, &text());
 }
 

@@ -6,7 +6,7 @@ mod common;
 use common::toy::{DERIVATIVE, GAIN, INPUT, INTEGRAL, LIMIT, SEED};
 use common::*;
 use core::ptr::null_mut;
-use fmi2_export::abi::*;
+use fmu_export::abi::*;
 
 fn derivative(host: &Host) -> f64 {
     let mut value = -77.0;

@@ -7,8 +7,8 @@ use common::calls::{call, host_in};
 use common::toy::*;
 use common::*;
 use core::ptr::null_mut;
-use fmi2_export::abi::*;
-use fmi2_export::{CallState, Function, Interface, Legality};
+use fmu_export::abi::*;
+use fmu_export::{CallState, Function, Interface, Legality};
 
 /// The call failed, the reason is logged, and a reset makes the instance usable again.
 fn assert_survives(host: &Host, status: fmi2Status, function: &str, hook: &str) {

@@ -5,8 +5,8 @@
 #[allow(dead_code, non_upper_case_globals)] // a part of it serves here
 mod toy;
 
-use fmi2_export::{CallState, Function, Guid};
-use fmi2_host::{Fmu, LOGS, linked_functions, run};
+use fmu_export::{CallState, Function, Guid};
+use fmu_host::{Fmu, LOGS, linked_functions, run};
 use std::ffi::CString;
 
 /// Sequences; few for Miri, which is a thousand times slower.

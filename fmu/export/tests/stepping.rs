@@ -6,7 +6,7 @@ mod common;
 use common::toy::*;
 use common::*;
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
+use fmu_export::abi::*;
 
 #[test]
 fn steps_advance_the_model() {

@@ -1,6 +1,6 @@
 //! What the constructors of a table and of the facts about an FMU declare. The compiler evaluates those of a `static`; here they run.
 
-use fmi2_export::{
+use fmu_export::{
     Causality, EnumerationItem, EnumerationType, Experiment, Kind, Logger, ModelInfo, Slave, SlaveError, StateError,
     StateReader, StateWriter, Variability, Variable, concat,
 };
@@ -57,7 +57,7 @@ fn set_text(sample: &mut Sample, value: &str) {
 
 /// Type, causality and variability of a row, and whether it starts with a value of its own or is calculated.
 fn words(row: &V) -> String {
-    let initial = row.initial().map_or("-", fmi2_export::Initial::as_str);
+    let initial = row.initial().map_or("-", fmu_export::Initial::as_str);
     let start = if row.kind().has_start() { "start" } else { "no start" };
     let (causality, variability) = (row.causality().as_str(), row.variability().as_str());
     format!("{}: {} {causality} {variability} {initial}, {start}", row.name(), row.kind().type_name())

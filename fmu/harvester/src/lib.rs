@@ -13,4 +13,4 @@ mod variables;
 
 pub use slave::Harvester;
 
-fmi2_export::export_fmu!(Harvester, model_exchange);
+fmu_export::export_fmu!(Harvester, model_exchange);

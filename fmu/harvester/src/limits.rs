@@ -1,6 +1,6 @@
 //! Warnings of the material's limits: each once for each membrane and run.
 
-use fmi2_export::Logger;
+use fmu_export::Logger;
 use videg_model::{Harvester as Model, Limit, Membrane, Peak, Side};
 
 /// Three limits of two membranes.

@@ -1,6 +1,6 @@
 //! The slave: what the importer sets, and the model that it drives.
 
-use fmi2_export::{
+use fmu_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };

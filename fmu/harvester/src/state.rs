@@ -1,6 +1,6 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
-use fmi2_export::{StateError, StateReader, StateWriter};
+use fmu_export::{StateError, StateReader, StateWriter};
 use videg_model::{
     ContactLaw, ContactSnapshot, Harvester as Model, NoiseModel, OutsideGap, Parameters, Phase, Pulse, PulseChange,
     Side, Snapshot, Totals,

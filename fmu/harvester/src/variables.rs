@@ -4,7 +4,7 @@
 mod initial;
 mod parameters;
 
-use fmi2_export::{Variable, concat};
+use fmu_export::{Variable, concat};
 use videg_model::{Energies, Side};
 
 use crate::slave::Harvester;

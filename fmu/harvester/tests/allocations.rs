@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use common::host::Host;
-use fmi2_export::abi::fmi2CoSimulation;
+use fmu_export::abi::fmi2CoSimulation;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };

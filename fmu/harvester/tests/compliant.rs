@@ -5,7 +5,7 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::{choose, fresh, get, outputs, row, set, step};
-use fmi2_export::{Kind, Logger, Slave, StateReader, StateWriter};
+use fmu_export::{Kind, Logger, Slave, StateReader, StateWriter};
 
 /// fig14's masses and membranes from the zero start, with the options of the compliant law that are named.
 fn compliant(options: &[&str]) -> Harvester {

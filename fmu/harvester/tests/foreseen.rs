@@ -104,7 +104,7 @@ proptest! {
         frequency in 1.0..6.0_f64, amplitude in 0.3..5.0_f64, restitution in 0.0..1.0_f64,
         forces in prop::collection::vec(-2.0..2.0_f64, 5),
     ) {
-        let host = Host::initializing(fmi2_export::abi::fmi2CoSimulation, 0.0, &settings(frequency, amplitude, restitution));
+        let host = Host::initializing(fmu_export::abi::fmi2CoSimulation, 0.0, &settings(frequency, amplitude, restitution));
         host.choose("contact.law", 2);
         host.exit_initialization();
         run(&host, 3.0 / frequency, longest_step(frequency), |step| forces[step as usize % forces.len()])?;

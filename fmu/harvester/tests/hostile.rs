@@ -2,8 +2,8 @@
 
 mod common;
 
-use fmi2_export::{Logger, Severity, Slave};
-use fmi2_host::{Fmu, hostile, linked_functions};
+use fmu_export::{Logger, Severity, Slave};
+use fmu_host::{Fmu, hostile, linked_functions};
 
 #[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn fmu() -> Fmu {

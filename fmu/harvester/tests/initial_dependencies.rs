@@ -4,7 +4,7 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::differences::natural_size;
-use fmi2_host::initial::{found, on_inputs, promised};
+use fmu_host::initial::{found, on_inputs, promised};
 
 /// Starts; enough to find each dependency on an input.
 const STARTS: usize = 10_000;

@@ -4,7 +4,7 @@
 mod common;
 
 use common::host::Host;
-use fmi2_export::abi::fmi2CoSimulation;
+use fmu_export::abi::fmi2CoSimulation;
 use videg_model::{Case, Parameters};
 
 /// The FMU with the parameters of a case, under contact law number `law`.

@@ -1,6 +1,6 @@
 //! The XML that is packaged is the one that the variable table gives.
 
-use fmi2_export::{changed_references, model_description};
+use fmu_export::{changed_references, model_description};
 
 #[test]
 fn the_packaged_model_description_is_that_of_the_variable_table() {

@@ -1,7 +1,7 @@
 //! Random call sequences with random arguments on the FMU as it is exported.
 
 use VibroImpactHarvester as _; // links its C functions
-use fmi2_host::{Fmu, linked_functions, run};
+use fmu_host::{Fmu, linked_functions, run};
 
 /// Of up to 32 calls each; some seconds without optimisation.
 const SEQUENCES: u64 = 50_000;

@@ -5,7 +5,7 @@ mod common;
 
 use common::differences::{Random, compare, natural_size};
 use common::host::{Host, continuous_unknowns, initial_knowns, initial_unknowns, unknowns};
-use fmi2_export::abi::{fmi2CoSimulation, fmi2ModelExchange};
+use fmu_export::abi::{fmi2CoSimulation, fmi2ModelExchange};
 
 type Settings = Vec<(&'static str, f64)>;
 

@@ -5,7 +5,7 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::{fresh, get, initialized, outputs, set, step};
-use fmi2_export::{Logger, Slave, StateError, StateReader, StateWriter};
+use fmu_export::{Logger, Slave, StateError, StateReader, StateWriter};
 use std::process::Command;
 use videg_model::{Case, Parameters};
 
@@ -99,7 +99,7 @@ fn a_state_before_initialisation_keeps_what_was_set_even_if_it_is_contradictory(
 #[test]
 fn a_derivative_of_the_input_that_waits_for_the_next_step_is_part_of_the_state() {
     let mut original = run_to(&[], 0.3);
-    let fmi2_export::Kind::Real(spec) = common::row("externalForce").kind() else { unreachable!() };
+    let fmu_export::Kind::Real(spec) = common::row("externalForce").kind() else { unreachable!() };
     spec.input_derivatives.expect("derivatives").1(&mut original, 1, 0.4);
     let mut copy = restored(&bytes(&original)).expect("a state");
     assert_eq!(go_on(&mut copy, 0.3), go_on(&mut original, 0.3));
@@ -147,7 +147,7 @@ fn a_second_process_goes_on_to_the_last_bit() {
 
 #[test]
 fn a_state_of_model_exchange_goes_on_to_the_last_bit() {
-    let log = fmi2_export::Logger::silent();
+    let log = fmu_export::Logger::silent();
     let mut original = initialized(NOISY);
     original.place(0.0, None).expect("the start");
     original.place(0.1, Some(&[0.023, 0.3, 0.001, -0.1])).expect("states");

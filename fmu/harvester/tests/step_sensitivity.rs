@@ -5,7 +5,7 @@ mod common;
 
 use common::differences::{Random, compare};
 use common::host::{Host, unknowns};
-use fmi2_export::abi::fmi2CoSimulation;
+use fmu_export::abi::fmi2CoSimulation;
 use videg_model::{Case, GRAZING_SPEED, Parameters};
 
 const FORCE: &str = "externalForce";

@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use super::protocol::{Job, Ramp, Reply, receive, send};
-use crate::children::Group;
 use crate::ngspice::drain::Drain;
-use crate::temporary::TemporaryFolder;
+use videg_system::processes::ProcessGroup;
+use videg_system::temporary::TemporaryFolder;
 
 /// Verb of the command-line tool that runs the worker.
 pub const WORKER_VERB: &str = "ngspice-worker";
@@ -58,7 +58,7 @@ pub enum LiveError {
 
 /// A running worker.
 pub struct Worker {
-    group: Group,
+    group: ProcessGroup,
     requests: BufWriter<ChildStdin>,
     replies: Receiver<io::Result<Option<Reply>>>,
     stderr: Drain,
@@ -84,7 +84,7 @@ impl Worker {
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
-        let mut group = Group::start(&mut command).map_err(fail)?;
+        let mut group = ProcessGroup::start(&mut command).map_err(fail)?;
         let child = &mut group.child;
         let missing = || fail(io::Error::other("no pipe"));
         let requests = BufWriter::new(child.stdin.take().ok_or_else(missing)?);

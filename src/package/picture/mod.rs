@@ -9,7 +9,7 @@ use canvas::Canvas;
 use harvester::Dimensions;
 
 use super::error::{PackageError, Result};
-use crate::fmi::{Kind, ModelDescription};
+use fmu_import::{Kind, ModelDescription};
 
 /// Size of the picture, px.
 const SIZE: (u32, u32) = (600, 400);

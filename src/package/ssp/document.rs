@@ -212,7 +212,7 @@ pub(super) struct BaseUnit {
 }
 
 impl BaseUnit {
-    pub(super) fn new(unit: &crate::fmi::BaseUnit) -> Self {
+    pub(super) fn new(unit: &fmu_import::BaseUnit) -> Self {
         let [kg, m, s, ampere, kelvin, mol, cd, rad] = unit.exponents;
         let (factor, offset) = (number(unit.factor), number(unit.offset));
         Self { kg, m, s, ampere, kelvin, mol, cd, rad, factor, offset }
@@ -277,8 +277,8 @@ pub(super) struct Text {
 }
 
 impl Value {
-    pub(super) fn new(value: &crate::fmi::Value) -> Self {
-        use crate::fmi::Value as Fmi;
+    pub(super) fn new(value: &fmu_import::Value) -> Self {
+        use fmu_import::Value as Fmi;
         let text = |value: String| Text { value };
         match value {
             Fmi::Real(value) => Self::Real(text(number(*value))),

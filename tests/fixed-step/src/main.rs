@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use videg::fmi::{Causality, Fmu, Instance, Kind, Logging};
+use fmu_import::{Causality, Fmu, Instance, Kind, Logging};
 
 /// Outputs of the harvester and inputs of the circuit.
 const CONNECTED: [&str; 2] = ["left.capacitance", "right.capacitance"];

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use HarvestingCircuit::Harvesting;
-use fmi2_host::{Fmu, linked_functions};
+use fmu_host::{Fmu, linked_functions};
 use videg_fuzz_targets::Target;
 use videg_fuzz_targets::fmu::{self, calls, state, states, tapes};
 

@@ -1,6 +1,6 @@
 //! `modelDescription.xml` of an FMU from anywhere, and values for its variables as a user types them.
 
-use videg::fmi::{ModelDescription, Value};
+use fmu_import::{ModelDescription, Value};
 
 use crate::{Target, fmu};
 

@@ -1,14 +1,14 @@
 //! What the targets of both FMUs share: serialised states, and calls of the C functions.
 
-use fmi2_export::{Experiment, Logger, Slave, StateReader, StateWriter};
-use fmi2_host::{Fmu, run_tape};
+use fmu_export::{Experiment, Logger, Slave, StateReader, StateWriter};
+use fmu_host::{Fmu, run_tape};
 
 /// What the FMUs say of themselves.
 pub const HARVESTER: &str = include_str!("../../../modelDescription/VibroImpactHarvester.xml");
 /// As above.
 pub const CIRCUIT: &str = include_str!("../../../modelDescription/HarvestingCircuit.xml");
 /// A model description of a few lines, with variables of all types.
-pub(crate) const SMALL_DESCRIPTION: &str = include_str!("../../../src/fmi/testdata/good.xml");
+pub(crate) const SMALL_DESCRIPTION: &str = include_str!("../../../fmu/import/src/testdata/good.xml");
 
 /// Communication step, s, and number of steps that a restored slave must go on for.
 const STEP: f64 = 0.01;
@@ -72,7 +72,7 @@ pub fn calls(fmu: &Fmu, tape: &[u8]) -> bool {
 /// Tapes of calls, from a generator.
 pub fn tapes() -> Vec<Vec<u8>> {
     let tape = |seed| {
-        let mut random = fmi2_host::Random::seeded(seed);
+        let mut random = fmu_host::Random::seeded(seed);
         (0..TAPE).map(|_| random.bits().to_le_bytes()[0]).collect()
     };
     (0..8).map(tape).collect()

@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
+use fmu_import::{ModelDescription, Value};
 use videg::cosim::EmbeddedCircuit;
-use videg::fmi::{ModelDescription, Value};
 use videg::scenario::{self, Setting};
 use videg::sweep::{self, Request, Sweep, SweepError, SweepFile, Times};
 use videg_circuit::Settings;

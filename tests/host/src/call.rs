@@ -5,8 +5,8 @@ use crate::instance::{Blob, Instance, Known};
 use crate::{Fmu, Random};
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut, without_provenance_mut};
-use fmi2_export::Function;
-use fmi2_export::abi::{fmi2Component, fmi2EventInfo, fmi2FMUstate, fmi2False, fmi2Status, fmi2String, fmi2True};
+use fmu_export::Function;
+use fmu_export::abi::{fmi2Component, fmi2EventInfo, fmi2FMUstate, fmi2False, fmi2Status, fmi2String, fmi2True};
 
 /// What a call changes if it succeeds, beyond what the call state says.
 pub(crate) enum Effect {

@@ -1,7 +1,7 @@
 //! Reference results of an experiment, as importers get them that set inputs at each communication point and hold them.
 
 use core::fmt::Write as _;
-use fmi2_export::{Experiment, Kind, Logger, Slave, value_reference};
+use fmu_export::{Experiment, Kind, Logger, Slave, value_reference};
 
 /// Inputs against time: a table as the rules of the FMI cross-check have it, linear between its rows.
 pub struct Inputs {
@@ -38,7 +38,7 @@ impl Inputs {
 
 /// The Real accessors of a variable.
 #[allow(clippy::panic, clippy::expect_used)] // as in a test
-fn real<S: Slave>(name: &str) -> &'static fmi2_export::RealSpec<S> {
+fn real<S: Slave>(name: &str) -> &'static fmu_export::RealSpec<S> {
     let reference = value_reference(S::variables(), name).expect(name);
     match S::variables()[reference as usize].kind() {
         Kind::Real(spec) => spec,
@@ -62,10 +62,10 @@ pub fn reference<S: Slave>(
     inputs: &Inputs,
     outputs: &[&str],
     (steps, size): (u32, f64),
-) -> Result<String, fmi2_export::SlaveError> {
+) -> Result<String, fmu_export::SlaveError> {
     let (mut slave, log) = (S::new(), Logger::silent());
     for row in S::variables() {
-        if let Kind::Real(fmi2_export::RealSpec { start: Some(start), set: Some(set), .. }) = row.kind() {
+        if let Kind::Real(fmu_export::RealSpec { start: Some(start), set: Some(set), .. }) = row.kind() {
             set(&mut slave, *start);
         }
     }

@@ -1,6 +1,6 @@
 //! The C functions of an FMU, of a shared library or linked into this program.
 
-use fmi2_export::abi;
+use fmu_export::abi;
 use libloading::Library;
 
 macro_rules! functions {

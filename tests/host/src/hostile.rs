@@ -3,8 +3,8 @@
 use crate::{Fmu, Instance, Log};
 use core::ffi::CStr;
 use core::ptr::null;
-use fmi2_export::Interface;
-use fmi2_export::abi::{
+use fmu_export::Interface;
+use fmu_export::abi::{
     fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String, fmi2True,
     fmi2Warning,
 };

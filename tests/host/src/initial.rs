@@ -2,7 +2,7 @@
 //! variable table promises for `InitialUnknowns`.
 
 use crate::Random;
-use fmi2_export::{Causality, Experiment, Initial, Kind, Logger, Slave, Variable};
+use fmu_export::{Causality, Experiment, Initial, Kind, Logger, Slave, Variable};
 use std::collections::BTreeSet;
 
 /// Unknown and known, by name.

@@ -3,8 +3,8 @@
 use crate::{Fmu, Log};
 use core::ffi::CStr;
 use core::ptr::null;
-use fmi2_export::abi::{fmi2CoSimulation, fmi2Component, fmi2FMUstate, fmi2False, fmi2ModelExchange, fmi2True};
-use fmi2_export::{CallState, Interface};
+use fmu_export::abi::{fmi2CoSimulation, fmi2Component, fmi2FMUstate, fmi2False, fmi2ModelExchange, fmi2True};
+use fmu_export::{CallState, Interface};
 
 /// Call state and time, as the host knows them.
 #[derive(Debug, Clone, Copy)]

@@ -15,7 +15,7 @@ mod log;
 mod random;
 mod session;
 
-pub use fmi2_export::{Function, Interface, abi};
+pub use fmu_export::{Function, Interface, abi};
 pub use functions::{Exchange, Functions};
 pub use instance::Instance;
 pub use log::{LOGS, Line, Log};

@@ -1,7 +1,7 @@
 //! A logger that keeps what it is told.
 
 use core::ffi::{CStr, c_char, c_void};
-use fmi2_export::abi::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Status, fmi2String};
+use fmu_export::abi::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Status, fmi2String};
 
 /// One call of the logger.
 #[derive(Debug, Clone, PartialEq)]

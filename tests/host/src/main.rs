@@ -1,14 +1,14 @@
 //! Random calls on the shared library of an FMU, for tools that watch a program from outside, such as valgrind.
 //!
-//! `fmi2-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [threads | leak | overrun | race]`
+//! `fmu-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [threads | leak | overrun | race]`
 //!
 //! With `threads`, so many sequences run on each of several threads at once. The other words break a rule on purpose, to show
 //! that the tool sees it: an instance that is never freed, an array shorter than the call says, or two instances that write
 //! into one array at the same time.
 
-use fmi2_export::Interface;
-use fmi2_export::abi::{fmi2Component, fmi2ValueReference};
-use fmi2_host::{Fmu, Functions, Instance, run};
+use fmu_export::Interface;
+use fmu_export::abi::{fmi2Component, fmi2ValueReference};
+use fmu_host::{Fmu, Functions, Instance, run};
 use libloading::Library;
 use std::mem::ManuallyDrop;
 
@@ -20,7 +20,7 @@ const THREADS: u64 = 8;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [library, description, first, count, fault @ ..] = arguments.as_slice() else {
-        return Err(format!("usage: fmi2-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [{WORDS}]").into());
+        return Err(format!("usage: fmu-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [{WORDS}]").into());
     };
     let (first, count): (u64, u64) = (first.parse()?, count.parse()?);
     // It stays loaded to the end, so that valgrind knows the names of its functions.

@@ -4,8 +4,8 @@ use crate::call::{Answer, Effect, call};
 use crate::instance::{Blob, Instance, Known, is_refused};
 use crate::{Fmu, LOGS, Line, Random};
 use core::ptr::null_mut;
-use fmi2_export::abi::{fmi2Discard, fmi2Error, fmi2FMUstate, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
-use fmi2_export::{CallState, Function, Interface, Legality};
+use fmu_export::abi::{fmi2Discard, fmi2Error, fmi2FMUstate, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
+use fmu_export::{CallState, Function, Interface, Legality};
 use std::collections::BTreeSet;
 
 /// Calls of a sequence, at most.

@@ -5,7 +5,7 @@ use crate::call_state::Function;
 use crate::error::CallError;
 use crate::instance::Instance;
 use crate::slave::Slave;
-use fmi2_abi::{
+use fmu_abi::{
     fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2StatusKind, fmi2String, fmi2ValueReference,
 };
 

@@ -7,7 +7,7 @@ use crate::instance::Instance;
 use crate::slave::{Experiment, Slave};
 use crate::variable::{AsBoolean, AsInteger, AsReal, AsString};
 use core::ffi::c_char;
-use fmi2_abi::{
+use fmu_abi::{
     fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
 };
 

@@ -7,7 +7,7 @@ use crate::resource::resource_path;
 use crate::slave::Slave;
 use core::ptr::null_mut;
 use core::sync::atomic::Ordering;
-use fmi2_abi::{
+use fmu_abi::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2ModelExchange,
     fmi2String, fmi2Type,
 };

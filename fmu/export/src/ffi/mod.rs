@@ -32,7 +32,7 @@ use core::cell::UnsafeCell;
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
-use fmi2_abi::{fmi2Component, fmi2Error, fmi2Status};
+use fmu_abi::{fmi2Component, fmi2Error, fmi2Status};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 

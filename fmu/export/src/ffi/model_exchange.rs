@@ -5,7 +5,7 @@ use crate::call_state::Function;
 use crate::instance::{Call, Instance};
 use crate::slave::Slave;
 use core::mem::MaybeUninit;
-use fmi2_abi::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
+use fmu_abi::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
 
 /// `fmi2EnterEventMode`
 pub unsafe fn enter_event_mode<S: Slave>(c: fmi2Component) -> fmi2Status {

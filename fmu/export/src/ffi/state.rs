@@ -6,7 +6,7 @@ use crate::error::CallError;
 use crate::instance::{Call, Instance};
 use crate::slave::Slave;
 use core::ptr::{null_mut, without_provenance_mut};
-use fmi2_abi::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
+use fmu_abi::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 
 /// Replaces the token behind `state` by what `call` makes of it.
 unsafe fn replace<S: Slave>(

@@ -6,7 +6,7 @@ use crate::call_state::CallState;
 use crate::error::{CallError, Severity, SlaveError};
 use crate::slave::Slave;
 use crate::variable::{AsReal, Kind, Transfer, Variable};
-use fmi2_abi::{
+use fmu_abi::{
     fmi2Discard, fmi2DoStepStatus, fmi2Error, fmi2Fatal, fmi2LastSuccessfulTime, fmi2OK, fmi2Status, fmi2StatusKind,
     fmi2Terminated, fmi2Warning,
 };

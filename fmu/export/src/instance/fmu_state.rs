@@ -7,7 +7,7 @@ use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::serialize::{StateError, StateReader, StateWriter, seal, unseal};
 use crate::slave::{Experiment, Slave};
-use fmi2_abi::{fmi2OK, fmi2Pending};
+use fmu_abi::{fmi2OK, fmi2Pending};
 
 impl<S: Slave> Instance<S> {
     /// `fmi2GetFMUstate`: a new state if `token` is NULL, else that state is overwritten. Returns its token.

@@ -18,7 +18,7 @@ use crate::slave::{Experiment, Slave};
 use co_simulation::LastStep;
 use core::any::Any;
 use cores::Cores;
-use fmi2_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
+use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -3,7 +3,7 @@
 use super::kind::{EnumerationSpec, IntegerSpec, Kind, RealSpec, StringSpec};
 use super::{BooleanSpec, Variable};
 use crate::error::CallError;
-use fmi2_abi::fmi2Boolean;
+use fmu_abi::fmi2Boolean;
 
 /// A type of the C interface. Enumerations travel as Integers.
 pub(crate) trait Transfer<M: 'static>: Copy {

@@ -2,8 +2,8 @@
 
 use super::*;
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
-use fmi2_export::{CallState, Function, Interface};
+use fmu_export::abi::*;
+use fmu_export::{CallState, Function, Interface};
 
 /// An instance in this state; none for the two that no instance of this exporter reaches.
 pub fn host_in(interface: Interface, state: CallState) -> Option<Host> {

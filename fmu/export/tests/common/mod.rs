@@ -6,8 +6,8 @@ pub mod toy;
 
 use core::ffi::{CStr, c_char, c_void};
 use core::ptr::{null, null_mut};
-use fmi2_export::Guid;
-use fmi2_export::abi::*;
+use fmu_export::Guid;
+use fmu_export::abi::*;
 use std::ffi::CString;
 use toy::Toy;
 

@@ -1,6 +1,6 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
-use fmi2_export::{
+use fmu_export::{
     EnumerationItem, EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError,
     StateError, StateReader, StateWriter, Variable, export_fmu,
 };
@@ -164,7 +164,7 @@ impl Slave for Toy {
         .version("1.0")
         .copyright("(c) Nobody")
         .license("MIT OR Apache-2.0")
-        .generation_tool("fmi2-export")
+        .generation_tool("fmu-export")
         .default_experiment(0.0, 10.0, 0.5)
         .default_tolerance(1e-4)
         .can_serialize()

@@ -1,6 +1,6 @@
 //! Rows of the parameters, from the tables of the model.
 
-use fmi2_export::{EnumerationItem, EnumerationType, Variable};
+use fmu_export::{EnumerationItem, EnumerationType, Variable};
 use videg_model::Parameters;
 
 use crate::slave::Harvester;

@@ -1,6 +1,6 @@
 //! The compiler makes the rows of the table; here some are made again, where they can be looked at as they are made.
 
-use fmi2_export::Kind;
+use fmu_export::Kind;
 
 use super::*;
 

@@ -4,8 +4,8 @@ use super::row;
 use VibroImpactHarvester::Harvester;
 use core::ffi::{c_char, c_void};
 use core::ptr::{null, null_mut};
-use fmi2_export::abi::*;
-use fmi2_export::{Causality, Guid, Kind, Slave, Variability, Variable, value_reference};
+use fmu_export::abi::*;
+use fmu_export::{Causality, Guid, Kind, Slave, Variability, Variable, value_reference};
 use std::ffi::CString;
 
 macro_rules! symbols {

@@ -5,7 +5,7 @@ pub mod differences;
 pub mod host;
 
 use VibroImpactHarvester::Harvester;
-use fmi2_export::{Causality, Experiment, Kind, Logger, Slave, Variable, value_reference};
+use fmu_export::{Causality, Experiment, Kind, Logger, Slave, Variable, value_reference};
 
 /// Row of the variable table.
 pub fn row(name: &str) -> &'static Variable<Harvester> {

@@ -8,7 +8,7 @@ use std::ffi::{CString, c_int};
 use std::mem::MaybeUninit;
 use std::ptr;
 
-use fmi2_abi as abi;
+use fmu_abi as abi;
 use libloading::{Library, Symbol};
 use videg_model::{Case, Parameters};
 

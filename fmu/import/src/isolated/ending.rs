@@ -1,0 +1,70 @@
+//! How a worker ended: which FMU, which call, what happened, what it had said.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::process::ExitStatus;
+
+use super::Bounds;
+use crate::logging::LogRecord;
+
+/// What happened to a worker.
+#[derive(Debug, Clone)]
+pub(super) enum How {
+    /// Its process ended.
+    Ended(ExitStatus),
+    /// A call took longer than it may.
+    TooLong,
+    /// It does not answer any more, but its process goes on.
+    Silent,
+    /// It sent what is no answer.
+    Garbled(String),
+    /// The system refused something.
+    Refused(String),
+}
+
+/// The end of a worker before its time.
+#[derive(Debug, Clone)]
+pub struct Ending {
+    pub(super) path: PathBuf,
+    /// The call: function, instance, time.
+    pub(super) call: String,
+    pub(super) how: How,
+    pub(super) bounds: Bounds,
+    /// The last messages of the FMU, oldest first.
+    pub(super) messages: Vec<LogRecord>,
+    /// The end of what it printed.
+    pub(super) printed: String,
+}
+
+impl Ending {
+    fn how(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.how {
+            How::Ended(status) => write!(out, "ended its process ({status}{})", self.memory()),
+            How::TooLong => {
+                let limit = self.bounds.time.unwrap_or_default().as_secs_f64();
+                write!(out, "took longer than the time limit of {limit} s; its process was ended")
+            }
+            How::Silent => out.write_str("closed the pipes of its process, which was ended"),
+            How::Garbled(what) => write!(out, "corrupted its process, which was ended (what it sent: {what})"),
+            How::Refused(cause) => write!(out, "lost its process ({cause})"),
+        }
+    }
+
+    /// The bound on memory, a usual reason to crash.
+    fn memory(&self) -> String {
+        self.bounds.memory.map_or_else(String::new, |bytes| format!("; memory limit {} MiB", bytes >> 20))
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}: {} ", self.path.display(), self.call)?;
+        self.how(out)?;
+        if !self.messages.is_empty() {
+            let said: Vec<_> = self.messages.iter().map(|record| record.message.trim_end()).collect();
+            write!(out, "; the FMU had logged: {}", said.join(" | "))?;
+        }
+        let lines: Vec<_> = self.printed.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        if lines.is_empty() { Ok(()) } else { write!(out, "; it had printed: {}", lines.join(" | ")) }
+    }
+}

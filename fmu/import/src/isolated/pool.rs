@@ -1,0 +1,95 @@
+//! The workers of an FMU: one for each instance.
+
+use std::ffi::CStr;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use fmu_abi::fmi2Component;
+
+use super::Isolation;
+use super::ending::{Ending, How};
+use super::process::Process;
+use super::protocol::{Opening, Reply, Request};
+use super::remote::Remote;
+use crate::error::{FmiError, Result};
+use crate::logging::{Environment, LogRecord};
+
+/// Starts the workers of an FMU.
+pub(crate) struct Pool {
+    isolation: Isolation,
+    /// The archive.
+    path: PathBuf,
+    folder: PathBuf,
+    opening: Opening,
+    /// A worker that has loaded the library and has no instance yet.
+    spare: Mutex<Option<Process>>,
+}
+
+/// The arguments of `fmi2Instantiate`.
+pub(crate) struct Wanted<'a> {
+    pub name: &'a CStr,
+    pub guid: &'a CStr,
+    pub resources: &'a CStr,
+    pub debug: bool,
+}
+
+impl Pool {
+    /// For the FMU at `path`, unpacked into `folder` with its library at `entry`; starts the first worker.
+    ///
+    /// # Errors
+    /// If the worker cannot be started or the library not be loaded.
+    pub fn new(mut isolation: Isolation, path: &Path, folder: &Path, entry: &str) -> Result<Self> {
+        isolation.bounds = isolation.bounds.in_force();
+        let opening = Opening {
+            host: std::process::id(),
+            library: folder.join(entry).into(),
+            shown: path.join(entry).into(),
+            memory: isolation.bounds.memory,
+        };
+        let (path, folder) = (path.to_owned(), folder.to_owned());
+        let pool = Self { isolation, path, folder, opening, spare: Mutex::new(None) };
+        let first = pool.start()?;
+        *pool.spare.lock().unwrap_or_else(PoisonError::into_inner) = Some(first);
+        Ok(pool)
+    }
+
+    /// Starts a worker, which loads the library.
+    fn start(&self) -> Result<Process> {
+        let program = &self.isolation.program;
+        let mut process = Process::start(program, &self.folder)
+            .map_err(|cause| FmiError::Worker { program: program.clone(), cause: cause.to_string() })?;
+        let ended = |process: &Process, how| {
+            FmiError::Isolated(Box::new(self.ending("loading the library", how, Vec::new(), process.printed())))
+        };
+        match process.open(&self.opening, self.isolation.bounds.time) {
+            Ok(Reply::Loaded) => Ok(process),
+            Ok(Reply::Unable(cause)) => Err(FmiError::Worker { program: program.clone(), cause }),
+            Ok(Reply::Refused(reason)) => Err(FmiError::Refusal(reason)),
+            Ok(other) => Err(ended(&process, How::Garbled(format!("{} in answer to the library", other.name())))),
+            Err(how) => Err(ended(&process, how)),
+        }
+    }
+
+    /// Makes an instance in a worker of its own; NULL if the FMU refuses.
+    ///
+    /// # Errors
+    /// If the worker cannot be started, or ends.
+    pub fn instantiate(&self, wanted: &Wanted<'_>, environment: &Arc<Environment>) -> Result<fmi2Component> {
+        let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let process = spare.map_or_else(|| self.start(), Ok)?;
+        let name = wanted.name.to_string_lossy().into_owned();
+        let remote = Remote::new(process, &self.path, self.isolation.bounds, name, Arc::clone(environment));
+        let request = Request::Instantiate {
+            name: wanted.name.to_owned(),
+            guid: wanted.guid.to_owned(),
+            resources: wanted.resources.to_owned(),
+            debug: wanted.debug,
+        };
+        remote.instantiate(&request).map_err(FmiError::Isolated)
+    }
+
+    fn ending(&self, call: &str, how: How, messages: Vec<LogRecord>, printed: String) -> Ending {
+        let (path, call, bounds) = (self.path.clone(), call.to_owned(), self.isolation.bounds);
+        Ending { path, call, how, bounds, messages, printed }
+    }
+}

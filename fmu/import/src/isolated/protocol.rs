@@ -1,0 +1,395 @@
+//! What the two processes say to each other: frames of a length and a message, numbers with all their bits.
+
+use std::ffi::{CStr, CString, OsString, c_char};
+use std::io::{self, Read, Write};
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use crate::logging::LogRecord;
+
+/// Largest serialised state that is passed on, bytes.
+pub(crate) const LONGEST_STATE: usize = 256 << 20;
+/// What a message may have besides values, bytes: the longest log record, for one.
+pub(super) const SPARE: usize = 1 << 16;
+/// Longest message, bytes: a state and what goes with it.
+pub(super) const LONGEST: usize = LONGEST_STATE + SPARE;
+/// Longest Strings that a call may give altogether, bytes.
+const LONGEST_TEXTS: usize = 16 << 20;
+/// Bytes of the length in front of a message.
+const HEAD: usize = 4;
+
+/// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
+pub(super) fn build() -> String {
+    let sources = [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs")];
+    // FNV-1a
+    let hash = sources
+        .concat()
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{} with messages {hash:016x}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Second message to the worker.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Opening {
+    /// The process that asks: when it is gone, the worker goes.
+    pub host: u32,
+    /// The library, unpacked: a path, which need not be UTF-8.
+    pub library: OsString,
+    /// What errors call it: its path into the archive.
+    pub shown: OsString,
+    /// Address space that the worker may take, bytes.
+    pub memory: Option<u64>,
+}
+
+/// Functions that take nothing but the instance.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) enum Plain {
+    EnterInitializationMode,
+    ExitInitializationMode,
+    Terminate,
+    Reset,
+}
+
+/// Each further message to the worker: a request and the number of the call, from 1 on.
+pub(super) type Call = (u64, Request);
+
+/// What is asked for. States go by numbers from 1 on; 0 is none.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Request {
+    Instantiate {
+        name: CString,
+        guid: CString,
+        resources: CString,
+        debug: bool,
+    },
+    Free,
+    /// Unloads the library.
+    Unload,
+    SetDebugLogging {
+        on: i32,
+        categories: Vec<CString>,
+    },
+    SetupExperiment {
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    },
+    Plain(Plain),
+    DoStep {
+        time: f64,
+        step: f64,
+        keeps_no_state: i32,
+    },
+    GetReal {
+        references: Vec<u32>,
+    },
+    GetInteger {
+        references: Vec<u32>,
+    },
+    GetBoolean {
+        references: Vec<u32>,
+    },
+    GetString {
+        references: Vec<u32>,
+    },
+    SetReal {
+        references: Vec<u32>,
+        values: Vec<f64>,
+    },
+    SetInteger {
+        references: Vec<u32>,
+        values: Vec<i32>,
+    },
+    SetBoolean {
+        references: Vec<u32>,
+        values: Vec<i32>,
+    },
+    SetString {
+        references: Vec<u32>,
+        values: Vec<CString>,
+    },
+    SetInputDerivatives {
+        references: Vec<u32>,
+        orders: Vec<i32>,
+        values: Vec<f64>,
+    },
+    GetOutputDerivatives {
+        references: Vec<u32>,
+        orders: Vec<i32>,
+    },
+    DirectionalDerivative {
+        unknowns: Vec<u32>,
+        knowns: Vec<u32>,
+        seed: Vec<f64>,
+    },
+    GetState {
+        state: u64,
+    },
+    SetState {
+        state: u64,
+    },
+    FreeState {
+        state: u64,
+    },
+    StateSize {
+        state: u64,
+    },
+    SerializeState {
+        state: u64,
+        size: u64,
+    },
+    DeserializeState {
+        bytes: Vec<u8>,
+    },
+    RealStatus {
+        kind: i32,
+    },
+    BooleanStatus {
+        kind: i32,
+    },
+}
+
+impl Request {
+    /// Longest answer, bytes.
+    pub fn longest_answer(&self) -> usize {
+        let values = match self {
+            Self::GetReal { references }
+            | Self::GetInteger { references }
+            | Self::GetBoolean { references }
+            | Self::GetOutputDerivatives { references, .. } => 8 * references.len(),
+            Self::DirectionalDerivative { unknowns, .. } => 8 * unknowns.len(),
+            Self::GetString { .. } => LONGEST_TEXTS,
+            Self::SerializeState { size, .. } => usize::try_from(*size).unwrap_or(LONGEST_STATE),
+            _ => 0,
+        };
+        values.saturating_add(SPARE).min(LONGEST)
+    }
+}
+
+/// Each message from the worker.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Reply {
+    /// It cannot begin, and why. The first, so that every build reads it as this.
+    Unable(String),
+    /// The library is loaded.
+    Loaded,
+    /// It is not, and why.
+    Refused(String),
+    /// A message of the FMU, on the way to the answer.
+    Log(LogRecord),
+    /// The answer to the call of this number: the status, and what else the function gave.
+    Done { call: u64, status: i32, given: Given },
+}
+
+impl Reply {
+    /// What it is, in few words: its content may be of any length.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Unable(_) => "that it cannot begin",
+            Self::Loaded => "that the library is loaded",
+            Self::Refused(_) => "that the library is refused",
+            Self::Log(_) => "a log record",
+            Self::Done { .. } => "the answer to a call",
+        }
+    }
+}
+
+/// What a function gave besides its status. None takes more memory than bytes of its message.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Given {
+    Nothing,
+    Reals(Vec<f64>),
+    /// Little-endian: as numbers, small ones would travel in one byte each.
+    Integers(Vec<[u8; 4]>),
+    Texts(Texts),
+    Bytes(Vec<u8>),
+    Number(u64),
+}
+
+impl Given {
+    /// Integers.
+    pub fn integers(values: Vec<i32>) -> Self {
+        Self::Integers(values.into_iter().map(i32::to_le_bytes).collect())
+    }
+}
+
+/// Texts one behind the other, each with a zero at its end: however many, they take as many bytes as they have.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Texts(Vec<u8>);
+
+impl<'a> FromIterator<&'a CStr> for Texts {
+    fn from_iter<I: IntoIterator<Item = &'a CStr>>(texts: I) -> Self {
+        Self(texts.into_iter().flat_map(CStr::to_bytes_with_nul).copied().collect())
+    }
+}
+
+impl Texts {
+    /// Whether they are `count`, and whole.
+    pub fn are(&self, count: usize) -> bool {
+        self.0.last().is_none_or(|&last| last == 0) && self.pointers().count() == count
+    }
+
+    /// Pointers to them, as C wants them; to those only that are whole.
+    pub fn pointers(&self) -> impl Iterator<Item = *const c_char> {
+        let texts = self.0.split_inclusive(|&byte| byte == 0);
+        texts.filter_map(|text| CStr::from_bytes_with_nul(text).ok()).map(CStr::as_ptr)
+    }
+}
+
+/// A message as it travels.
+///
+/// # Errors
+/// If it is longer than any may be.
+pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
+    let mut frame = postcard::to_extend(message, vec![0; HEAD]).map_err(io::Error::other)?;
+    let length = frame.len() - HEAD;
+    if length > LONGEST {
+        return Err(io::Error::other(format!("a message of {length} bytes, allowed are {LONGEST}")));
+    }
+    let head = u32::try_from(length).map_err(io::Error::other)?.to_le_bytes();
+    frame[..HEAD].copy_from_slice(&head);
+    Ok(frame)
+}
+
+/// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is there as a whole.
+///
+/// # Errors
+/// A length that no message has; a message that is none.
+pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) -> io::Result<Option<T>> {
+    let Some(&head) = bytes.first_chunk::<HEAD>() else { return Ok(None) };
+    let end = HEAD + length(head, longest)?;
+    let Some(message) = bytes.get(HEAD..end) else { return Ok(None) };
+    let message = decode(message)?;
+    bytes.drain(..end);
+    Ok(Some(message))
+}
+
+/// Writes a message.
+///
+/// # Errors
+/// If it is too long or cannot be written.
+pub(super) fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
+    writer.write_all(&frame(message)?)?;
+    writer.flush()
+}
+
+/// Reads a message; none if the other side has closed.
+///
+/// # Errors
+/// If it cannot be read, or is none.
+pub(super) fn receive<T: DeserializeOwned>(reader: &mut impl Read) -> io::Result<Option<T>> {
+    let mut head = Vec::with_capacity(HEAD);
+    reader.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
+    let Some(&head) = head.first_chunk::<HEAD>() else { return Ok(None) };
+    let length = length(head, LONGEST)?;
+    let mut message = Vec::new();
+    // Memory is taken as bytes arrive, not as they are announced.
+    reader.by_ref().take(length as u64).read_to_end(&mut message)?;
+    if message.len() < length { Ok(None) } else { decode(&message).map(Some) }
+}
+
+fn length(head: [u8; HEAD], longest: usize) -> io::Result<usize> {
+    let length = usize::try_from(u32::from_le_bytes(head)).map_err(io::Error::other)?;
+    if length <= longest {
+        return Ok(length);
+    }
+    Err(io::Error::other(format!("a message of {length} bytes is announced, allowed are {longest}")))
+}
+
+fn decode<T: DeserializeOwned>(bytes: &[u8]) -> io::Result<T> {
+    match postcard::take_from_bytes(bytes) {
+        Ok((message, [])) => Ok(message),
+        Ok((_, rest)) => Err(io::Error::other(format!("{} bytes follow a message", rest.len()))),
+        Err(cause) => Err(io::Error::other(format!("{} bytes that are no message: {cause}", bytes.len()))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_arrive_with_all_their_bits() {
+        let values = vec![0.1 + 0.2, -0.0, f64::NAN, f64::INFINITY, -5e-324, f64::from_bits(0x7ff4_0000_0000_0001)];
+        let message = Reply::Done { call: 3, status: -77, given: Given::Reals(values.clone()) };
+        let bytes = frame(&message).unwrap();
+        let Some(Reply::Done { call: 3, status: -77, given: Given::Reals(found) }) = receive(&mut &*bytes).unwrap()
+        else {
+            panic!("another message");
+        };
+        let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&found), bits(&values));
+    }
+
+    #[test]
+    fn messages_are_taken_one_by_one_and_whole() {
+        let one = frame(&Reply::Loaded).unwrap();
+        let two = frame(&Reply::Refused("no".to_owned())).unwrap();
+        let mut bytes = [one, two].concat();
+        let last = bytes.pop().unwrap();
+        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Loaded)));
+        assert!(unframe::<Reply>(&mut bytes, LONGEST).unwrap().is_none());
+        bytes.push(last);
+        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Refused(text)) if text == "no"));
+        assert!(bytes.is_empty());
+    }
+
+    #[test]
+    fn an_answer_may_be_as_long_as_its_call_lets_it() {
+        let references = vec![0; 1000];
+        let reals = Given::Reals(vec![f64::MIN_POSITIVE; 1000]);
+        let integers = || Given::integers(vec![i32::MIN; 1000]);
+        let answer = |given| frame(&Reply::Done { call: u64::MAX, status: i32::MIN, given }).unwrap();
+        let is_taken = |mut bytes, request: Request| {
+            unframe::<Reply>(&mut bytes, request.longest_answer()).is_ok_and(|reply| reply.is_some())
+        };
+        assert!(is_taken(answer(reals), Request::GetReal { references: references.clone() }));
+        assert!(is_taken(answer(integers()), Request::GetBoolean { references }));
+        let state = |size| answer(Given::Bytes(vec![0xff; size]));
+        assert!(is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 20 }));
+        assert!(!is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 10 }));
+        assert!(!is_taken(state(1 << 20), Request::Free));
+    }
+
+    #[test]
+    fn what_was_not_asked_for_takes_no_more_memory_than_its_message() {
+        let count = 1 << 20;
+        let message = |given| frame(&Reply::Done { call: 1, status: 0, given }).unwrap().len();
+        assert!(message(Given::integers(vec![0; count])) > size_of::<[u8; 4]>() * count);
+        assert!(message(Given::Reals(vec![0.0; count])) > size_of::<f64>() * count);
+        let texts: Texts = std::iter::repeat_n(c"", count).collect();
+        assert_eq!(texts.0.len(), count, "nothing but the texts themselves");
+        assert!(texts.are(count) && !texts.are(1));
+    }
+
+    #[test]
+    fn texts_that_are_not_whole_are_none() {
+        let texts: Texts = [c"one", c"", c"three"].into_iter().collect();
+        assert!(texts.are(3) && texts.pointers().count() == 3);
+        assert!(Texts::default().are(0));
+        let cut = Texts(b"one\0tw".to_vec());
+        assert!(!cut.are(1) && !cut.are(2) && cut.pointers().count() == 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn paths_that_are_not_utf_8_arrive_as_they_are() {
+        use std::os::unix::ffi::OsStringExt as _;
+        let path = OsString::from_vec(b"/tmp/\xff/Toy.so".to_vec());
+        let opening = Opening { host: 1, library: path.clone(), shown: path.clone(), memory: None };
+        let found = receive::<Opening>(&mut &*frame(&opening).unwrap()).unwrap().unwrap();
+        assert_eq!((&found.library, &found.shown), (&path, &path));
+    }
+
+    #[test]
+    fn garbage_is_an_error_and_takes_no_memory() {
+        let vast = u32::MAX.to_le_bytes().to_vec();
+        let vector = [&[13, 0, 0, 0, 4, 0, 0, 1][..], &[0xff; 8], &[0x7f]].concat(); // Done with 2^63 Reals
+        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 1, 0], vector] {
+            assert!(receive::<Reply>(&mut &*garbage).is_err());
+            assert!(unframe::<Reply>(&mut garbage, LONGEST).is_err());
+        }
+        assert!(receive::<Reply>(&mut &[7, 0, 0, 0, 0][..]).unwrap().is_none(), "the stream ended");
+    }
+}

@@ -1,0 +1,191 @@
+//! The shared library of an FMU and the functions it exports.
+
+use std::ffi::{CStr, c_char};
+use std::path::{Path, PathBuf};
+
+use fmu_abi as abi;
+use libloading::Library;
+
+use super::error::{FmiError, Result};
+
+/// Name of this machine's folder in `binaries/`.
+pub const HOST_PLATFORM: &str = if cfg!(windows) {
+    if cfg!(target_pointer_width = "64") { "win64" } else { "win32" }
+} else if cfg!(target_vendor = "apple") {
+    "darwin64"
+} else if cfg!(target_pointer_width = "64") {
+    "linux64"
+} else {
+    "linux32"
+};
+
+/// Extension of shared libraries on this machine.
+pub const LIBRARY_EXTENSION: &str = library_extension(HOST_PLATFORM);
+
+/// Extension of shared libraries on a platform, as `binaries/` names it: `so`, unless it is Windows or macOS.
+pub const fn library_extension(platform: &str) -> &'static str {
+    match platform.as_bytes() {
+        [b'w', b'i', b'n', ..] => "dll",
+        [b'd', b'a', b'r', b'w', b'i', b'n', ..] => "dylib",
+        _ => "so",
+    }
+}
+
+/// Path of the library inside an FMU, with forward slashes.
+pub(super) fn entry_name(platform: &str, model_identifier: &str) -> String {
+    format!("binaries/{platform}/{model_identifier}.{}", library_extension(platform))
+}
+
+macro_rules! functions {
+    ($($field:ident: $type:ident = $symbol:literal),* $(,)?) => {
+        /// All functions of the co-simulation interface.
+        #[derive(Clone, Copy)]
+        #[allow(dead_code)] // some serve asynchronous steps only, but every FMU must export them
+        pub(super) struct Functions { $(pub(super) $field: abi::$type),* }
+
+        impl Functions {
+            /// Finds every function in `library`, which lies at `path`.
+            ///
+            /// # Safety
+            /// The library's functions of these names have the signatures of FMI 2.0.
+            unsafe fn resolve(library: &Library, path: &Path) -> Result<Self> {
+                let missing = |symbol| move |_| FmiError::MissingSymbol { path: path.to_path_buf(), symbol };
+                Ok(Self {
+                    // SAFETY: the caller vouches for the signatures.
+                    $($field: *unsafe { library.get::<abi::$type>($symbol) }.map_err(missing($symbol))?),*
+                })
+            }
+        }
+
+        /// The table of those functions which go by the names of its fields where this stands.
+        macro_rules! functions_in_scope {
+            () => {
+                $crate::library::Functions { $($field),* }
+            };
+        }
+    };
+}
+
+functions! {
+    get_types_platform: fmi2GetTypesPlatformTYPE = "fmi2GetTypesPlatform",
+    get_version: fmi2GetVersionTYPE = "fmi2GetVersion",
+    set_debug_logging: fmi2SetDebugLoggingTYPE = "fmi2SetDebugLogging",
+    instantiate: fmi2InstantiateTYPE = "fmi2Instantiate",
+    free_instance: fmi2FreeInstanceTYPE = "fmi2FreeInstance",
+    setup_experiment: fmi2SetupExperimentTYPE = "fmi2SetupExperiment",
+    enter_initialization_mode: fmi2EnterInitializationModeTYPE = "fmi2EnterInitializationMode",
+    exit_initialization_mode: fmi2ExitInitializationModeTYPE = "fmi2ExitInitializationMode",
+    terminate: fmi2TerminateTYPE = "fmi2Terminate",
+    reset: fmi2ResetTYPE = "fmi2Reset",
+    get_real: fmi2GetRealTYPE = "fmi2GetReal",
+    get_integer: fmi2GetIntegerTYPE = "fmi2GetInteger",
+    get_boolean: fmi2GetBooleanTYPE = "fmi2GetBoolean",
+    get_string: fmi2GetStringTYPE = "fmi2GetString",
+    set_real: fmi2SetRealTYPE = "fmi2SetReal",
+    set_integer: fmi2SetIntegerTYPE = "fmi2SetInteger",
+    set_boolean: fmi2SetBooleanTYPE = "fmi2SetBoolean",
+    set_string: fmi2SetStringTYPE = "fmi2SetString",
+    get_state: fmi2GetFMUstateTYPE = "fmi2GetFMUstate",
+    set_state: fmi2SetFMUstateTYPE = "fmi2SetFMUstate",
+    free_state: fmi2FreeFMUstateTYPE = "fmi2FreeFMUstate",
+    serialized_state_size: fmi2SerializedFMUstateSizeTYPE = "fmi2SerializedFMUstateSize",
+    serialize_state: fmi2SerializeFMUstateTYPE = "fmi2SerializeFMUstate",
+    deserialize_state: fmi2DeSerializeFMUstateTYPE = "fmi2DeSerializeFMUstate",
+    get_directional_derivative: fmi2GetDirectionalDerivativeTYPE = "fmi2GetDirectionalDerivative",
+    set_real_input_derivatives: fmi2SetRealInputDerivativesTYPE = "fmi2SetRealInputDerivatives",
+    get_real_output_derivatives: fmi2GetRealOutputDerivativesTYPE = "fmi2GetRealOutputDerivatives",
+    do_step: fmi2DoStepTYPE = "fmi2DoStep",
+    cancel_step: fmi2CancelStepTYPE = "fmi2CancelStep",
+    get_status: fmi2GetStatusTYPE = "fmi2GetStatus",
+    get_real_status: fmi2GetRealStatusTYPE = "fmi2GetRealStatus",
+    get_integer_status: fmi2GetIntegerStatusTYPE = "fmi2GetIntegerStatus",
+    get_boolean_status: fmi2GetBooleanStatusTYPE = "fmi2GetBooleanStatus",
+    get_string_status: fmi2GetStringStatusTYPE = "fmi2GetStringStatus",
+}
+#[allow(clippy::single_component_path_imports, reason = "makes the macro visible to other modules")]
+pub(crate) use functions_in_scope;
+
+/// Loads the library at `file` and checks that it speaks FMI 2.0 with the default C types. Errors call it `path`.
+///
+/// This runs the library's initializers: from here on the FMU is trusted like any native code.
+pub(super) fn load(file: &Path, path: &Path) -> Result<(Library, Functions)> {
+    let library = open(file).map_err(|cause| FmiError::Load { path: path.to_path_buf(), cause })?;
+    // SAFETY: an FMI 2.0 library exports these names with these signatures.
+    let functions = unsafe { Functions::resolve(&library, path)? };
+    check(&functions, path)?;
+    Ok((library, functions))
+}
+
+/// Resolves everything at once: a symbol that is missing shows here, not in the middle of a simulation.
+#[cfg(unix)]
+fn open(path: &Path) -> std::result::Result<Library, libloading::Error> {
+    use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+    // SAFETY: loading runs foreign code, which is what the caller asked for.
+    unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map(Into::into)
+}
+
+/// Looks for the library's own dependencies beside it.
+#[cfg(windows)]
+fn open(path: &Path) -> std::result::Result<Library, libloading::Error> {
+    use libloading::os::windows::{LOAD_WITH_ALTERED_SEARCH_PATH, Library};
+    // SAFETY: loading runs foreign code, which is what the caller asked for.
+    unsafe { Library::load_with_flags(path, LOAD_WITH_ALTERED_SEARCH_PATH) }.map(Into::into)
+}
+
+fn check(functions: &Functions, path: &Path) -> Result<()> {
+    let path = || PathBuf::from(path);
+    // SAFETY: the function takes nothing and returns a static string.
+    let version = unsafe { static_text((functions.get_version)()) };
+    if !version.starts_with("2.0") {
+        let function = "fmi2GetVersion";
+        return Err(FmiError::WrongInterface { path: path(), function, found: version, allowed: "2.0" });
+    }
+    // SAFETY: as above.
+    let types = unsafe { static_text((functions.get_types_platform)()) };
+    if types != "default" {
+        let function = "fmi2GetTypesPlatform";
+        return Err(FmiError::WrongInterface { path: path(), function, found: types, allowed: "default" });
+    }
+    Ok(())
+}
+
+/// # Safety
+/// `pointer` is NULL or points to a zero-terminated string.
+unsafe fn static_text(pointer: *const c_char) -> String {
+    if pointer.is_null() {
+        return String::new();
+    }
+    // SAFETY: as the caller promises.
+    unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{entry_name, load};
+
+    #[test]
+    fn libraries_are_named_after_platform_and_model() {
+        assert_eq!(entry_name("linux64", "Toy"), "binaries/linux64/Toy.so");
+        assert_eq!(entry_name("win64", "Toy"), "binaries/win64/Toy.dll");
+        assert_eq!(entry_name("darwin64", "Toy"), "binaries/darwin64/Toy.dylib");
+    }
+
+    #[test]
+    fn a_missing_library_is_an_error_that_names_it() {
+        let error = load(Path::new("/nowhere/Toy.so"), Path::new("x.fmu/Toy.so")).err().unwrap().to_string();
+        assert!(error.starts_with("cannot load x.fmu/Toy.so: "), "{error}");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_library_of_another_kind_lacks_a_symbol() {
+        let Ok(maps) = std::fs::read_to_string("/proc/self/maps") else { return };
+        let libc =
+            maps.lines().filter_map(|line| line.split_whitespace().nth(5)).find(|path| path.contains("/libc.so"));
+        let Some(libc) = libc else { return };
+        let error = load(Path::new(libc), Path::new(libc)).err().unwrap().to_string();
+        assert!(error.contains("does not export fmi2GetTypesPlatform"), "{error}");
+    }
+}

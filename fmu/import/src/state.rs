@@ -1,0 +1,135 @@
+//! Saved states of an instance.
+
+use std::ffi::c_char;
+use std::fmt;
+use std::ptr;
+use std::rc::Rc;
+
+use fmu_abi::fmi2FMUstate;
+
+use super::error::{FmiError, Result};
+use super::instance::{Core, Instance};
+use super::isolated::LONGEST_STATE;
+
+/// A saved state, freed on drop. It keeps its instance alive, since only that can free it.
+pub struct FmuState {
+    core: Rc<Core>,
+    state: fmi2FMUstate,
+}
+
+impl fmt::Debug for FmuState {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_struct("FmuState").field("instance", &self.core.name()).finish_non_exhaustive()
+    }
+}
+
+impl Drop for FmuState {
+    fn drop(&mut self) {
+        if self.state.is_null() {
+            return;
+        }
+        // SAFETY: the state belongs to this component and is freed once. Where the FMU has died, `call` does nothing.
+        // A state that cannot be freed is no reason to stop.
+        let _ = self.core.call("fmi2FreeFMUstate", |functions, component| unsafe {
+            (functions.free_state)(component, &raw mut self.state)
+        });
+    }
+}
+
+impl Instance {
+    /// Saves the state.
+    ///
+    /// # Errors
+    /// When the FMU does not declare `canGetAndSetFMUstate`, or the call fails.
+    pub fn save_state(&self) -> Result<FmuState> {
+        let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
+        self.save_state_into(&mut state)?;
+        Ok(state)
+    }
+
+    /// Saves the state over an older one, whose memory is used again.
+    ///
+    /// # Errors
+    /// As [`Instance::save_state`], and when the older state belongs to another instance.
+    pub fn save_state_into(&self, state: &mut FmuState) -> Result<()> {
+        let name = "fmi2GetFMUstate";
+        self.require_state(name)?;
+        self.require_own(name, state)?;
+        // SAFETY: the state is NULL or one of this component.
+        self.core().call(name, |functions, component| unsafe { (functions.get_state)(component, &raw mut state.state) })
+    }
+
+    /// Goes back to a saved state.
+    ///
+    /// # Errors
+    /// As [`Instance::save_state_into`].
+    pub fn restore_state(&mut self, state: &FmuState) -> Result<()> {
+        let name = "fmi2SetFMUstate";
+        self.require_state(name)?;
+        self.require_own(name, state)?;
+        // SAFETY: the state is one of this component.
+        self.core().call(name, |functions, component| unsafe { (functions.set_state)(component, state.state) })
+    }
+
+    /// Turns a saved state into bytes.
+    ///
+    /// # Errors
+    /// When the FMU does not declare `canSerializeFMUstate`, the state is foreign or larger than 256 MiB, or a call
+    /// fails.
+    pub fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
+        let name = "fmi2SerializeFMUstate";
+        self.require_serialization(name)?;
+        self.require_own(name, state)?;
+        let mut size = 0;
+        // SAFETY: the state is one of this component.
+        self.core().call("fmi2SerializedFMUstateSize", |functions, component| unsafe {
+            (functions.serialized_state_size)(component, state.state, &raw mut size)
+        })?;
+        self.check_size(name, size)?;
+        let mut bytes = vec![0_u8; size];
+        // SAFETY: as above, and the buffer has the size that the FMU has asked for.
+        self.core().call(name, |functions, component| unsafe {
+            (functions.serialize_state)(component, state.state, bytes.as_mut_ptr().cast::<c_char>(), size)
+        })?;
+        Ok(bytes)
+    }
+
+    /// Makes a saved state from bytes. The bytes are for the FMU to check: pass only what it has serialized.
+    ///
+    /// # Errors
+    /// When the FMU does not declare `canSerializeFMUstate`, there are more than 256 MiB, or it does not take the bytes.
+    pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
+        let name = "fmi2DeSerializeFMUstate";
+        self.require_serialization(name)?;
+        self.check_size(name, bytes.len())?;
+        let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
+        // SAFETY: the buffer has the size that is passed with it.
+        self.core().call(name, |functions, component| unsafe {
+            (functions.deserialize_state)(component, bytes.as_ptr().cast::<c_char>(), bytes.len(), &raw mut state.state)
+        })?;
+        Ok(state)
+    }
+
+    fn require_state(&self, function: &'static str) -> Result<()> {
+        let supported = self.description().co_simulation.can_get_and_set_fmu_state;
+        self.core().require(function, supported, "canGetAndSetFMUstate")
+    }
+
+    fn require_serialization(&self, function: &'static str) -> Result<()> {
+        let supported = self.description().co_simulation.can_serialize_fmu_state;
+        self.core().require(function, supported, "canSerializeFMUstate")
+    }
+
+    fn check_size(&self, function: &'static str, found: usize) -> Result<()> {
+        let (instance, allowed) = (self.name().to_owned(), LONGEST_STATE);
+        if found <= allowed { Ok(()) } else { Err(FmiError::StateSize { function, instance, found, allowed }) }
+    }
+
+    fn require_own(&self, function: &'static str, state: &FmuState) -> Result<()> {
+        if Rc::ptr_eq(self.core(), &state.core) {
+            return Ok(());
+        }
+        let (instance, owner) = (self.name().to_owned(), state.core.name().to_owned());
+        Err(FmiError::ForeignState { function, instance, owner })
+    }
+}
