@@ -22,6 +22,7 @@ pub mod crosscheck;
 pub mod ngspice;
 pub mod package;
 pub mod paper;
+pub mod progress;
 pub mod scenario;
 pub mod sweep;
 pub(crate) mod threads;

@@ -1,0 +1,32 @@
+//! What a run tells its caller while it goes on: the one trait that every long run takes.
+
+use std::time::Duration;
+
+/// A task that runs at present.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Running {
+    /// Its name.
+    pub name: String,
+    /// How much of it is done, if that is known, %.
+    pub percent: Option<u8>,
+}
+
+/// Follows a run. Each method does nothing unless it is implemented; `()` ignores everything. Runs call it from several
+/// threads.
+pub trait Progress: Sync {
+    /// An item of the run begins, e.g. a figure of the paper.
+    fn begin(&self, _name: &str, _title: &str) {}
+
+    /// `done` of the `total` parts of the present item are done; `running` are those in work, where they have names.
+    fn advance(&self, _done: u64, _total: u64, _running: &[Running]) {}
+
+    /// An item is complete.
+    fn end(&self, _name: &str, _took: Duration) {}
+
+    /// Whether the caller wants the run to stop. A run that stops returns what it has.
+    fn is_stopped(&self) -> bool {
+        false
+    }
+}
+
+impl Progress for () {}
