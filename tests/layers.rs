@@ -15,8 +15,8 @@ const DOWNWARDS: [&str; 11] = [
     "ngspice",
     "scenario",
     "circuit_sample",
-    "progress",
     "threads",
+    "progress",
 ];
 
 /// Place of a module from the top.

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use approx::assert_relative_eq;
 use fmu_import::Fmu;
 use videg::package::{Options, build_all};
-use videg::paper::{Artefact, Effort, Finding, ITEMS, Sheet, Verdict, Workshop};
+use videg::paper::{Artefact, Effort, Finding, ITEMS, Sheet, Study, Verdict};
 
 static FMU: LazyLock<Fmu> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
@@ -19,7 +19,7 @@ static FIGURE_10: LazyLock<Artefact> = LazyLock::new(|| make("fig10"));
 
 fn make(name: &str) -> Artefact {
     let item = ITEMS.iter().find(|item| item.name == name).unwrap();
-    (item.make)(&Workshop { fmu: &FMU, effort: Effort::Quick, watch: &() }).unwrap()
+    (item.make)(&Study { fmu: &FMU, effort: Effort::Quick, observer: &() }).unwrap()
 }
 
 fn finding<'a>(artefact: &'a Artefact, place: &str, quantity: &str) -> &'a Finding {

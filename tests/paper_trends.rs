@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use fmu_import::Fmu;
 use videg::package::{Options, build_all};
-use videg::paper::{Artefact, Effort, Finding, ITEMS, Run, Sheet, Verdict, Workshop};
+use videg::paper::{Artefact, Effort, Finding, ITEMS, Run, Sheet, Study, Verdict};
 use videg::scenario::Setting;
 
 static FMU: LazyLock<Fmu> = LazyLock::new(|| {
@@ -15,13 +15,13 @@ static FMU: LazyLock<Fmu> = LazyLock::new(|| {
     Fmu::open(&paths[0]).unwrap()
 });
 
-fn workshop() -> Workshop<'static> {
-    Workshop { fmu: &FMU, effort: Effort::Quick, watch: &() }
+fn study() -> Study<'static> {
+    Study { fmu: &FMU, effort: Effort::Quick, observer: &() }
 }
 
 fn make(name: &str) -> Artefact {
     let item = ITEMS.iter().find(|item| item.name == name).unwrap();
-    (item.make)(&workshop()).unwrap()
+    (item.make)(&study()).unwrap()
 }
 
 fn found<'a>(artefact: &'a Artefact, quantity: &str) -> &'a Finding {
@@ -63,7 +63,7 @@ fn phase_noise_takes_most_of_the_output_until_it_hardly_matters() {
             Run { settings, window: [50.0, 100.0] }
         };
         let runs: Vec<Run> = (1..=SAMPLES).map(sample).collect();
-        let mut gains: Vec<f64> = workshop().averages(&runs).unwrap().iter().map(|run| run.voltage_gain).collect();
+        let mut gains: Vec<f64> = study().averages(&runs).unwrap().iter().map(|run| run.voltage_gain).collect();
         gains.sort_by(f64::total_cmp);
         let mean = gains.iter().sum::<f64>() / SAMPLES as f64;
         let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (SAMPLES - 1) as f64;
@@ -154,9 +154,9 @@ fn a_run_does_not_depend_on_its_neighbours() {
         Run { settings, window: [5.0, 10.0] }
     };
     let mut runs: Vec<Run> = (1..=12).map(noisy).collect();
-    let forwards = workshop().averages(&runs).unwrap();
+    let forwards = study().averages(&runs).unwrap();
     runs.reverse();
-    let mut backwards = workshop().averages(&runs).unwrap();
+    let mut backwards = study().averages(&runs).unwrap();
     backwards.reverse();
     assert_eq!(forwards, backwards);
     assert_ne!(forwards[0], forwards[1]);

@@ -10,10 +10,11 @@ use super::{electrical, settings};
 use crate::cosim::CircuitSummary;
 use crate::crosscheck::{
     Agreement, Bench, Case, Check, Compared, Findings, Pulses, Repeat, Solver, Stop, Sweep, Task, Values, checks,
-    common, comparison_checks, conclusion, export, in_parallel, limited, pulse_checks,
+    common, comparison_checks, conclusion, export, limited, pulse_checks,
 };
 use crate::ngspice::{Elements, Ngspice, NgspiceError, Outcome, Waveforms};
 use crate::scenario::Scenario;
+use crate::threads;
 use fmu_import::Fmu;
 
 /// Runs the mechanics of `scenario`, and its circuit in every solver.
@@ -40,7 +41,7 @@ fn solve(
     let others = others(&settings, case.best_ratio());
     let mut pulses = Pulses::new(&case, settings.circuit.topology)?;
     let bar = TaskBar::new(scenario.name.clone());
-    let told = in_parallel(tasks(&bench, &case, &settings, &others, pulses.as_ref()), &bar)?;
+    let told = threads::run(tasks(&bench, &case, &settings, &others, pulses.as_ref()), &bar)?;
     let mut found = Gathered::new(told, others.len());
     let sweep = if sweep { Some(Sweep::new(&bench, &case, &settings, &bar)?) } else { None };
     bar.finish();

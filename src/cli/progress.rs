@@ -1,14 +1,13 @@
 //! Progress on a terminal; silence elsewhere.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::message::{plain, say};
 use crate::cosim::{CosimError, Observer, Row};
-use crate::crosscheck::{Running, Watch};
-use crate::{paper, sweep};
+use crate::progress::{Progress, Running};
 
 /// Parts into which the bar divides a run.
 const PARTS: u64 = 1000;
@@ -69,15 +68,15 @@ impl TaskBar {
     }
 }
 
-impl Watch for TaskBar {
-    fn show(&self, total: usize, done: usize, running: &[Running]) {
+impl Progress for TaskBar {
+    fn advance(&self, done: u64, total: u64, running: &[Running]) {
         let task = |task: &Running| match task.percent {
             Some(percent) => format!("{} {percent} %", task.name),
             None => task.name.clone(),
         };
         self.bar.set_prefix(self.name.clone());
-        self.bar.set_length(total as u64);
-        self.bar.set_position(done as u64);
+        self.bar.set_length(total);
+        self.bar.set_position(done);
         self.bar.set_message(running.iter().map(task).collect::<Vec<_>>().join(" | "));
     }
 }
@@ -100,8 +99,14 @@ impl ItemBar {
         Self { bar, items, begun: AtomicUsize::new(0) }
     }
 
-    /// An item begins.
-    pub fn begin(&self, name: &str, title: &str) {
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for ItemBar {
+    fn begin(&self, name: &str, title: &str) {
         let number = self.begun.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_prefix(format!("{number}/{}", self.items));
         self.bar.set_message(format!("{name}: {title}"));
@@ -109,8 +114,7 @@ impl ItemBar {
         self.bar.set_position(0);
     }
 
-    /// It is done.
-    pub fn end(&self, name: &str, took: Duration) {
+    fn end(&self, name: &str, took: Duration) {
         let line = format!("{name} made in {:.1} s", took.as_secs_f64());
         if self.bar.is_hidden() {
             say(&line);
@@ -119,43 +123,28 @@ impl ItemBar {
         }
     }
 
-    /// Does `work` as an item.
-    pub fn during<T>(&self, name: &str, title: &str, work: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
-        let started = Instant::now();
-        self.begin(name, title);
-        let result = work()?;
-        self.end(name, started.elapsed());
-        Ok(result)
-    }
-
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-impl paper::Watch for ItemBar {
-    fn show(&self, done: usize, total: usize) {
-        self.bar.set_length(total as u64);
-        self.bar.set_position(done as u64);
+    fn advance(&self, done: u64, total: u64, _running: &[Running]) {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
     }
 }
 
 /// A bar that follows runs, their rate and the time that is left.
-pub struct RunBar {
+pub struct RunBar<'a> {
     bar: ProgressBar,
-    is_begun: bool,
+    has_begun: AtomicBool,
+    stop: &'a AtomicBool,
 }
 
-impl RunBar {
-    /// A bar for the runs of `name`.
-    pub fn new(name: &str) -> Self {
+impl<'a> RunBar<'a> {
+    /// A bar for the runs of `name`, which end early when `stop` is set.
+    pub fn new(name: &str, stop: &'a AtomicBool) -> Self {
         let bar = ProgressBar::new(1).with_message(plain(name));
         let style = ProgressStyle::with_template(
             "{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left",
         );
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
-        Self { bar, is_begun: false }
+        Self { bar, has_begun: AtomicBool::new(false), stop }
     }
 
     /// Removes the bar.
@@ -164,15 +153,18 @@ impl RunBar {
     }
 }
 
-impl sweep::Watch for RunBar {
-    fn show(&mut self, done: u64, total: u64) {
+impl Progress for RunBar<'_> {
+    fn advance(&self, done: u64, total: u64, _running: &[Running]) {
         self.bar.set_length(total);
         self.bar.set_position(done);
-        if !self.is_begun {
+        if !self.has_begun.swap(true, Ordering::Relaxed) {
             // Runs that were there from the beginning took no time.
             self.bar.reset_eta();
-            self.is_begun = true;
         }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 }
 

@@ -15,7 +15,8 @@ use super::reproduce_report::{self as page, Chapter};
 use super::{Verdict, cosim, crosscheck_files, crosscheck_solve, format, output, packaging, reproduce_files as files};
 use crate::cosim::Coupling;
 use crate::ngspice::Ngspice;
-use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Verdict as Of, Workshop};
+use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Study, Verdict as Of};
+use crate::progress::Progress;
 use crate::scenario::Request;
 use fmu_import::{Fmu, nearest_name};
 
@@ -98,16 +99,16 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
     for item in ITEMS.iter().filter(|item| wanted.has(item.name)) {
         let started = Instant::now();
         bar.begin(item.name, item.title);
-        let artefact = (item.make)(&Workshop { fmu: &fmu, effort, watch: &bar })
+        let artefact = (item.make)(&Study { fmu: &fmu, effort, observer: &bar })
             .with_context(|| format!("cannot make {}", item.name))?;
         book.add(item, artefact)?;
         bar.end(item.name, started.elapsed());
     }
     if wanted.has(AUDIT) {
-        bar.during(AUDIT, "where the energy goes", || book.audit(&fmu))?;
+        during(&bar, AUDIT, "where the energy goes", || book.audit(&fmu))?;
     }
     if wanted.has(CROSSCHECK) {
-        bar.during(CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK)))?;
+        during(&bar, CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK)))?;
     }
     bar.finish();
     let passed = !book.solvers_disagree && !book.findings().any(|finding| finding.verdict == Of::Differs);
@@ -122,6 +123,20 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
     }
     output::warn(&book.warnings);
     Ok(if passed { Verdict::Passed } else { Verdict::Failed })
+}
+
+/// Does `work` as an item.
+fn during<T>(
+    observer: &dyn Progress,
+    name: &str,
+    title: &str,
+    work: impl FnOnce() -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    let started = Instant::now();
+    observer.begin(name, title);
+    let result = work()?;
+    observer.end(name, started.elapsed());
+    Ok(result)
 }
 
 /// What is to be made.

@@ -186,10 +186,9 @@ fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBo
         shard: arguments.shard,
         jobs: arguments.jobs.map_or_else(cores, usize::from),
         fresh: arguments.fresh,
-        stop,
     };
-    let mut bar = RunBar::new(&format!("sweep {}", sweep.name()));
-    let report = sweep::run(sweep, engine, &job, &mut bar);
+    let bar = RunBar::new(&format!("sweep {}", sweep.name()), stop);
+    let report = sweep::run(sweep, engine, &job, &bar);
     bar.finish();
     report
 }

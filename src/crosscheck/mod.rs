@@ -2,7 +2,7 @@
 //!
 //! - [`Case`] is a run of the mechanics: one [`CapacitanceTable`](crate::ngspice::CapacitanceTable) that every solver
 //!   gets, and the impacts;
-//! - [`Bench`] runs a circuit in one [`Solver`], [`in_parallel`] several at once;
+//! - [`Bench`] runs a circuit in one [`Solver`];
 //! - [`checks`] holds the solvers against each other and against the closed forms: a [`Check`] says separately whether
 //!   the solvers [agree](Agreement) and whether a [claim](Claim) holds. A refuted claim is a finding, no failure;
 //! - [`Stop`] is a run of ngspice that ended too early: what was found until then stands, and [`common`] and [`limited`] say how
@@ -22,7 +22,8 @@ mod peaks;
 mod stop;
 mod sweep;
 
-pub use bench::{Bench, Progress, Running, Solver, Task, Watch, in_parallel};
+pub(crate) use bench::Task;
+pub use bench::{Bench, Progress, Solver};
 pub use case::{Case, Impact};
 pub use check::{Agreement, Check, Claim, Values};
 pub use claims::{Findings, checks, pulse_checks};

@@ -3,8 +3,9 @@
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, formulas};
 
-use super::{Agreement, Bench, Case, Check, Repeat, Solver, Stop, Task, Values, Watch, in_parallel};
+use super::{Agreement, Bench, Case, Check, Repeat, Solver, Stop, Task, Values};
 use crate::ngspice::NgspiceError;
+use crate::{progress, threads};
 
 /// What a circuit comes to at one point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -121,13 +122,18 @@ impl Sweep {
     ///
     /// # Errors
     /// What a solver says.
-    pub fn new(bench: &Bench<'_>, case: &Case, settings: &Settings, watch: &dyn Watch) -> Result<Self, NgspiceError> {
+    pub fn new(
+        bench: &Bench<'_>,
+        case: &Case,
+        settings: &Settings,
+        observer: &dyn progress::Progress,
+    ) -> Result<Self, NgspiceError> {
         let supply = settings.circuit.supply_voltage;
         let predicted =
             [1.0, 0.0].map(|idle| formulas::best_release_voltage(supply, 1.0 + idle, case.best_ratio() + idle));
         let plans: Vec<Plan> = over_voltage(case, settings, predicted).chain(over_load(settings)).collect();
         let tasks = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
-        let mut results = in_parallel(tasks, watch)?.into_iter();
+        let mut results = threads::run(tasks, observer)?.into_iter();
         let (mut stops, mut repeats) = (Vec::new(), Vec::new());
         let mut whole = |visit: Visit| {
             repeats.extend(visit.repeats);

@@ -2,7 +2,7 @@
 
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study, Verdict};
 use videg_report::{Column, Figure, HeatMap, Panel, Scale, Table};
 
 /// `f_0`, Hz, and A, N, of Figures 11 to 15.
@@ -85,8 +85,8 @@ struct Basins {
 }
 
 impl Basins {
-    fn new(workshop: &Workshop<'_>, cylinder: &Cylinder, restitution: f64) -> Result<Self, PaperError> {
-        let count = match workshop.effort {
+    fn new(study: &Study<'_>, cylinder: &Cylinder, restitution: f64) -> Result<Self, PaperError> {
+        let count = match study.effort {
             Effort::Full => 100_u32,
             Effort::Quick => 30,
         };
@@ -100,8 +100,8 @@ impl Basins {
             ..Start::saw_tooth(cylinder, restitution, gamma, FREQUENCY)
         };
         let starts: Vec<Start> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| start(x, y))).collect();
-        let ends = workshop.each(&starts, |start| {
-            let orbit = Stroboscope::new(workshop, &start.settings(cylinder), FREQUENCY)?.take(TRANSIENT, TAKEN)?;
+        let ends = study.each(&starts, |start| {
+            let orbit = Stroboscope::new(study, &start.settings(cylinder), FREQUENCY)?.take(TRANSIENT, TAKEN)?;
             Ok(Attractor::of(&orbit))
         })?;
         let attractors = by_share(&ends);
@@ -128,11 +128,11 @@ fn by_share(ends: &[Attractor]) -> Vec<(Attractor, f64)> {
 }
 
 /// Makes the maps.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let cylinder = Cylinder::new(workshop)?;
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let cylinder = Cylinder::new(study)?;
     let mut artefact = Artefact { text: text(), ..Artefact::default() };
     for case in &CASES {
-        let basins = Basins::new(workshop, &cylinder, case.restitution)?;
+        let basins = Basins::new(study, &cylinder, case.restitution)?;
         artefact.findings.push(finding(case, &basins));
         artefact.tables.push(table(case, &basins));
         artefact.pictures.push(picture(case, &basins)?);

@@ -2,7 +2,7 @@
 
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Effort, PaperError, Picture, Sheet, Workshop};
+use super::{Effort, PaperError, Picture, Sheet, Study};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
@@ -45,19 +45,19 @@ pub struct Diagram {
 
 impl Diagram {
     /// Follows `path`.
-    pub fn new(workshop: &Workshop<'_>, cylinder: &Cylinder, path: &Path) -> Result<Self, PaperError> {
-        let count = match workshop.effort {
+    pub fn new(study: &Study<'_>, cylinder: &Cylinder, path: &Path) -> Result<Self, PaperError> {
+        let count = match study.effort {
             Effort::Full => 400_u32,
             Effort::Quick => 100,
         };
         let [from, to] = path.range;
         let xs: Vec<f64> = (0..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)).collect();
         let orbit = |start: &Start| -> Result<Orbit, PaperError> {
-            Stroboscope::new(workshop, &start.settings(cylinder), start.frequency)?.take(TRANSIENT, TAKEN)
+            Stroboscope::new(study, &start.settings(cylinder), start.frequency)?.take(TRANSIENT, TAKEN)
         };
-        let fresh = workshop.each(&xs, |&x| orbit(&(path.start)(cylinder, x)))?;
+        let fresh = study.each(&xs, |&x| orbit(&(path.start)(cylinder, x)))?;
         // Each motion begins where the one before has ended, so these are one task each.
-        let followed = workshop.each(&[false, true], |&downwards| {
+        let followed = study.each(&[false, true], |&downwards| {
             let mut orbits: Vec<Orbit> = Vec::new();
             for k in 0..xs.len() {
                 let x = if downwards { xs[xs.len() - 1 - k] } else { xs[k] };

@@ -2,7 +2,7 @@
 
 use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 use crate::cosim::{CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row};
 use crate::scenario::{Request, Setting};
 
@@ -66,7 +66,7 @@ impl Drive {
     ///
     /// # Errors
     /// What the FMU or a circuit says.
-    pub fn run(&self, workshop: &Workshop<'_>, circuits: &[Settings]) -> Result<Driven, PaperError> {
+    pub fn run(&self, study: &Study<'_>, circuits: &[Settings]) -> Result<Driven, PaperError> {
         let [from, to] = self.window;
         let request = Request {
             case: Some(self.case.to_owned()),
@@ -76,7 +76,7 @@ impl Drive {
             ..Request::default()
         };
         let Coupled { master, rest_capacitance, bias_voltage } =
-            Coupled::new(workshop, request, circuits, self.tolerance)?;
+            Coupled::new(study, request, circuits, self.tolerance)?;
         let mut books =
             Books { from, bias_voltage, gain: 0.0, start: None, peaks: vec![0.0; circuits.len()], ratios: Vec::new() };
         let outcome = master.run(&mut [&mut books])?;
@@ -109,14 +109,9 @@ impl Coupled {
     ///
     /// # Errors
     /// What the FMU or a circuit says.
-    pub fn new(
-        workshop: &Workshop<'_>,
-        request: Request,
-        circuits: &[Settings],
-        tolerance: f64,
-    ) -> Result<Self, PaperError> {
+    pub fn new(study: &Study<'_>, request: Request, circuits: &[Settings], tolerance: f64) -> Result<Self, PaperError> {
         let scenario = request.resolve()?;
-        let harvester = HarvesterFmu::new(workshop.fmu, &scenario, &scenario.settings)?;
+        let harvester = HarvesterFmu::new(study.fmu, &scenario, &scenario.settings)?;
         let rest_capacitance = harvester.sample()?.capacitance();
         let bias_voltage = harvester.bias_voltage();
         let slaves = circuits.iter().map(|settings| -> Result<Box<dyn CircuitSlave>, CosimError> {

@@ -2,7 +2,7 @@
 
 use super::bifurcation::{Diagram, Path};
 use super::stroboscope::Start;
-use super::{Artefact, Finding, PaperError, Verdict, Workshop, excitation::Cylinder, poincare};
+use super::{Artefact, Finding, PaperError, Study, Verdict, excitation::Cylinder, poincare};
 
 /// `f_0`, Hz.
 const FREQUENCY: f64 = 2.0;
@@ -29,9 +29,9 @@ const PATHS: [Path; 2] = [
 ];
 
 /// Makes the pictures.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let cylinder = Cylinder::new(workshop)?;
-    let sections = poincare::sections(workshop)?;
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let cylinder = Cylinder::new(study)?;
+    let sections = poincare::sections(study)?;
     let mut artefact = Artefact {
         findings: poincare::findings(&sections),
         text: text(),
@@ -40,7 +40,7 @@ pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
         ..Artefact::default()
     };
     for path in &PATHS {
-        let diagram = Diagram::new(workshop, &cylinder, path)?;
+        let diagram = Diagram::new(study, &cylinder, path)?;
         artefact.findings.push(coexistence(path, &diagram));
         artefact.tables.push(diagram.table(path));
         artefact.pictures.push(diagram.picture(path)?);

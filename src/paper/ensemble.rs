@@ -1,7 +1,7 @@
 //! Many starts beside one: how they are nudged, and how they are spread.
 
 use super::excitation::set;
-use super::{PaperError, Run, Workshop};
+use super::{PaperError, Run, Study};
 use crate::scenario::Setting;
 
 /// Largest nudge of the ball's velocity at the start, m/s: a millionth of its usual speed.
@@ -18,25 +18,21 @@ pub(super) fn nudges(count: usize, largest: f64) -> Vec<f64> {
 
 /// `settings` with the ball's velocity at the start nudged by each of `nudges`, m/s. The velocity: a ball that is
 /// nudged out of the gap would be put back.
-pub(super) fn nearby(
-    workshop: &Workshop<'_>,
-    settings: &[Setting],
-    nudges: &[f64],
-) -> Result<Vec<Vec<Setting>>, PaperError> {
+pub(super) fn nearby(study: &Study<'_>, settings: &[Setting], nudges: &[f64]) -> Result<Vec<Vec<Setting>>, PaperError> {
     const NUDGED: &str = "initial.ballVelocity";
-    let [velocity] = workshop.reals(&workshop.start(settings)?, [NUDGED])?;
+    let [velocity] = study.reals(&study.start(settings)?, [NUDGED])?;
     let nudged = |nudge: &f64| settings.iter().cloned().chain([set(NUDGED, velocity + nudge)]).collect();
     Ok(nudges.iter().map(nudged).collect())
 }
 
 /// `<U>`, V/s, of each run over `window`, s, through the FMU.
 pub(super) fn voltage_gains(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     starts: Vec<Vec<Setting>>,
     window: [f64; 2],
 ) -> Result<Vec<f64>, PaperError> {
     let runs: Vec<_> = starts.into_iter().map(|settings| Run { settings, window }).collect();
-    Ok(workshop.averages(&runs)?.iter().map(|average| average.voltage_gain).collect())
+    Ok(study.averages(&runs)?.iter().map(|average| average.voltage_gain).collect())
 }
 
 /// Values by ascending order; at least one.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 use crate::scenario::Setting;
 
 /// The variable called `name` at `value`, to the last bit.
@@ -24,10 +24,10 @@ impl Cylinder {
     ///
     /// # Errors
     /// An FMU that lacks a variable.
-    pub fn new(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
-        let references = [workshop.reference("cylinder.mass")?, workshop.reference("ball.travel")?];
+    pub fn new(study: &Study<'_>) -> Result<Self, PaperError> {
+        let references = [study.reference("cylinder.mass")?, study.reference("ball.travel")?];
         let mut values = [0.0; 2];
-        workshop.start(&[])?.get_real(&references, &mut values)?;
+        study.start(&[])?.get_real(&references, &mut values)?;
         let [mass, travel] = values;
         Ok(Self { mass, travel })
     }

@@ -2,7 +2,7 @@
 
 use super::excitation::{Cylinder, nudge};
 use super::statistics::{Summary, rank_correlation};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Study, Verdict, WINDOW};
 use videg_report::{Figure, Panel, Series, Style};
 
 /// Nearby starts that are averaged.
@@ -34,12 +34,12 @@ struct Curve {
 }
 
 /// Makes the figure.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let cylinder = Cylinder::new(workshop)?;
-    let mut artefact = Artefact { text: text(starts(workshop.effort)), ..Artefact::default() };
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let cylinder = Cylinder::new(study)?;
+    let mut artefact = Artefact { text: text(starts(study.effort)), ..Artefact::default() };
     let mut panels = Vec::new();
     for half in halves() {
-        let curves = half.curves(workshop, &cylinder)?;
+        let curves = half.curves(study, &cylinder)?;
         artefact.findings.extend(curves.iter().map(|curve| finding(&half, curve)));
         artefact.sheets.push(half.sheet(&curves));
         panels.push((half, curves));
@@ -68,8 +68,8 @@ fn halves() -> [Half; 2] {
 }
 
 impl Half {
-    fn curves(&self, workshop: &Workshop<'_>, cylinder: &Cylinder) -> Result<Vec<Curve>, PaperError> {
-        let starts = starts(workshop.effort);
+    fn curves(&self, study: &Study<'_>, cylinder: &Cylinder) -> Result<Vec<Curve>, PaperError> {
+        let starts = starts(study.effort);
         let (symbol, parameters, unit) = &self.parameter;
         let points = parameters.iter().flat_map(|&parameter| self.xs.iter().map(move |&x| (self.at)(x, parameter)));
         let runs: Vec<Run> = points
@@ -78,7 +78,7 @@ impl Half {
             })
             .map(|settings| Run { settings, window: WINDOW })
             .collect();
-        let gains: Vec<f64> = workshop.averages(&runs)?.iter().map(|average| average.voltage_gain).collect();
+        let gains: Vec<f64> = study.averages(&runs)?.iter().map(|average| average.voltage_gain).collect();
         let mut summaries = gains.chunks(starts).map(Summary::new);
         let curve = |parameter: &f64| Curve {
             label: format!("{symbol} = {parameter}{unit}"),

@@ -2,7 +2,7 @@
 
 use super::excitation::{Cylinder, nudge, set};
 use super::statistics::{Summary, TWO_SIDED, mean, slope};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Verdict, WINDOW, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Study, Verdict, WINDOW};
 use crate::cosim::Averages;
 use crate::scenario::Setting;
 use videg_report::{Figure, Panel, Series, Style};
@@ -50,22 +50,22 @@ impl Point {
 }
 
 /// Makes the figure.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let cylinder = Cylinder::new(workshop)?;
-    let count = samples(workshop.effort);
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let cylinder = Cylinder::new(study)?;
+    let count = samples(study.effort);
     let settings = |point| (0..count).map(move |sample| settings(&cylinder, point, sample, count));
     let runs: Vec<Run> =
         (0..INTENSITIES.len()).flat_map(settings).map(|settings| Run { settings, window: WINDOW }).collect();
-    let averages = workshop.averages(&runs)?;
+    let averages = study.averages(&runs)?;
     let points: Vec<Point> =
         INTENSITIES.into_iter().zip(averages.chunks(count)).map(|(d, a)| Point::new(d, a)).collect();
     let mut patterns = Vec::new();
     for intensity in PATTERNS {
         let point = INTENSITIES.iter().position(|&d| d == intensity).unwrap_or_default();
-        patterns.push(Pattern::new(workshop, &self::settings(&cylinder, point, 0, count))?);
+        patterns.push(Pattern::new(study, &self::settings(&cylinder, point, 0, count))?);
     }
     Ok(Artefact {
-        findings: findings(&points, workshop.effort),
+        findings: findings(&points, study.effort),
         text: text(count),
         tables: Vec::new(),
         pictures: vec![curve(&points)?, voltages(&patterns)?],
@@ -98,14 +98,14 @@ impl Pattern {
     /// Communication step, s: impacts within one count as one with their mean voltage.
     const STEP: f64 = 1e-3;
 
-    fn new(workshop: &Workshop<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
+    fn new(study: &Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
         let reals = [
-            workshop.reference("gain.voltage")?,
-            workshop.reference("relativeDisplacement")?,
-            workshop.reference("biasVoltage")?,
+            study.reference("gain.voltage")?,
+            study.reference("relativeDisplacement")?,
+            study.reference("biasVoltage")?,
         ];
-        let count = [workshop.reference("impact.count")?];
-        let mut instance = workshop.start(settings)?;
+        let count = [study.reference("impact.count")?];
+        let mut instance = study.start(settings)?;
         let [from, to] = SHOWN;
         instance.do_step(0.0, from)?;
         let (mut values, mut impacts) = ([0.0; 3], [0]);

@@ -2,7 +2,7 @@
 
 use super::excitation::set;
 use super::statistics::{mean, slope};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict};
 use crate::scenario::Setting;
 use videg_report::{Figure, Panel, Series, Style};
 
@@ -17,9 +17,9 @@ const PRINTED: [f64; 2] = [4.0847e5, 2.6];
 type Point = (f64, f64);
 
 /// Makes the figure.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let elastic = contact(workshop, 1.0)?;
-    let lossy = contact(workshop, 0.6)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let elastic = contact(study, 1.0)?;
+    let lossy = contact(study, 0.6)?;
     let fitted = fit(&elastic);
     let law = |(x, _): &Point| (*x, PRINTED[0] * x.powf(PRINTED[1]));
     let findings = ["K, fitted to the force in the FMU", "n, fitted to the force in the FMU"].iter().enumerate().map(
@@ -61,22 +61,22 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 }
 
 /// The contact of a ball that flies into the membrane of a cylinder at rest, sampled.
-fn contact(workshop: &Workshop<'_>, restitution: f64) -> Result<Vec<Point>, PaperError> {
-    let instance = &mut workshop.start(&[
+fn contact(study: &Study<'_>, restitution: f64) -> Result<Vec<Point>, PaperError> {
+    let instance = &mut study.start(&[
         Setting::new("contact.law", "compliant"),
         set("excitation.amplitude", 0.0),
         set("initial.ballPosition", 0.0),
         set("initial.ballVelocity", SPEED),
         set("membrane.restitution", restitution),
     ])?;
-    let [travel, mass] = workshop.reals(instance, ["ball.travel", "ball.mass"])?;
+    let [travel, mass] = study.reals(instance, ["ball.travel", "ball.mass"])?;
     let mut time = travel / 2.0 / SPEED;
     instance.do_step(0.0, time)?;
     let mut points = Vec::new();
     loop {
         instance.do_step(time, SAMPLING)?;
         time += SAMPLING;
-        let [deflection, acceleration] = workshop.reals(instance, ["right.deflection", "der(ball.velocity)"])?;
+        let [deflection, acceleration] = study.reals(instance, ["right.deflection", "der(ball.velocity)"])?;
         if deflection <= 0.0 {
             break;
         }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop, peak};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict, peak};
 use videg_report::{Figure, Panel, Series, Style};
 
 const CASE: &str = "fig14";
@@ -58,10 +58,10 @@ fn area_of_revolution(profile: &[(f64, f64)]) -> f64 {
 }
 
 /// Makes the figure.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let instance = workshop.start(&workshop.case(CASE)?)?;
-    let [radius, ball] = workshop.reals(&instance, ["membrane.radius", "ball.radius"])?;
-    let peak = peak::largest(workshop, CASE, WHEN)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let instance = study.start(&study.case(CASE)?)?;
+    let [radius, ball] = study.reals(&instance, ["membrane.radius", "ball.radius"])?;
+    let peak = peak::largest(study, CASE, WHEN)?;
     let shape = Shape::new(radius, ball, peak.deflection);
     let drawn = area_of_revolution(&shape.half_profile()) / (PI * radius * radius);
     let agrees = (drawn / peak.area_ratio - 1.0).abs() < 1e-4;

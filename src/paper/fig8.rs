@@ -4,7 +4,7 @@ use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
 use super::coupled::{Coupled, circuit};
 use super::peak::{self, Peak};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict};
 use crate::cosim::{CosimError, Observer, Row};
 use crate::scenario::Request;
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
@@ -91,8 +91,8 @@ struct Cycle {
 }
 
 /// Makes the picture.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let cycle = Cycle::run(workshop)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let cycle = Cycle::run(study)?;
     Ok(Artefact {
         findings: findings(&cycle),
         text: text(&cycle),
@@ -104,12 +104,12 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 
 impl Cycle {
     /// That of the impact which makes stage 3 of Table 1.
-    fn run(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
-        let peak = peak::stage_3(workshop)?;
+    fn run(study: &Study<'_>) -> Result<Self, PaperError> {
+        let peak = peak::stage_3(study)?;
         let request =
             Request { case: Some(peak::CASE.to_owned()), until: Some(peak.time + AROUND), ..Request::default() };
         let Coupled { master, rest_capacitance, bias_voltage } =
-            Coupled::new(workshop, request, &KINDS.map(|kind| kind.settings()), TOLERANCE)?;
+            Coupled::new(study, request, &KINDS.map(|kind| kind.settings()), TOLERANCE)?;
         let mut course = Course { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
         master.run(&mut [&mut course])?;
         let points = course.points;

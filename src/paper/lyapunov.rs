@@ -1,7 +1,7 @@
 //! How fast nearby motions part: the largest Lyapunov exponent.
 
 use super::stroboscope::{Flash, Orbit, Start, Stroboscope};
-use super::{PaperError, Workshop, excitation::Cylinder};
+use super::{PaperError, Study, excitation::Cylinder};
 
 /// Distance, m, to which the neighbour is brought back after each period.
 const DISTANCE: f64 = 1e-9;
@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-17;
 /// # Errors
 /// What the FMU says.
 pub fn exponent(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     cylinder: &Cylinder,
     start: Start,
     orbit: &Orbit,
@@ -25,7 +25,7 @@ pub fn exponent(
     // Velocities count by the distance that they cover in 1/(2 pi f0).
     let scale = 1.0 / (std::f64::consts::TAU * start.frequency);
     let after = |flash: Flash| -> Result<Flash, PaperError> {
-        let mut eye = Stroboscope::new(workshop, &start.from(flash).settings(cylinder), start.frequency)?;
+        let mut eye = Stroboscope::new(study, &start.from(flash).settings(cylinder), start.frequency)?;
         eye.pass(1)?;
         eye.flash()
     };

@@ -1,6 +1,6 @@
 //! Every table and figure of the paper, and what lies beyond it, computed through the harvester FMU.
 //!
-//! An [`Item`] is one table or figure, a file of this module each. It makes an [`Artefact`] with the [`Workshop`]: numbers
+//! An [`Item`] is one table or figure, a file of this module each. It makes an [`Artefact`] with the [`Study`]: numbers
 //! beside the paper's ([`Finding`]), data ([`Sheet`]), pictures and words. The same items give the same bytes whenever
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
@@ -30,16 +30,16 @@ mod recording;
 mod stability;
 mod statistics;
 mod stroboscope;
+mod study;
 mod table1;
 mod table2;
 mod table2_output;
 mod table3;
 mod tuning;
-mod workshop;
 
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
 pub use error::PaperError;
-pub use workshop::{Effort, Run, Watch, Workshop};
+pub use study::{Effort, Run, Study};
 
 /// Averaging window of the paper, s (Section 5).
 const WINDOW: [f64; 2] = [50.0, 100.0];
@@ -54,7 +54,7 @@ pub struct Item {
     /// What it is, e.g. `Figure 14`.
     pub title: &'static str,
     /// Makes it.
-    pub make: fn(&Workshop<'_>) -> Result<Artefact, PaperError>,
+    pub make: fn(&Study<'_>) -> Result<Artefact, PaperError>,
 }
 
 /// All items, in the order of the report.
@@ -65,21 +65,21 @@ pub const ITEMS: &[Item] = &[
     Item { name: "fig4", title: "Figure 4: force law", make: fig4::make },
     Item { name: "fig7", title: "Figure 7: shape of the membrane", make: fig7::make },
     Item { name: "fig8", title: "Figure 8(b): one harvesting cycle", make: fig8::make },
-    Item { name: "fig9", title: "Figure 9: no impact", make: |workshop| motion::make(workshop, &motion::FIG9) },
+    Item { name: "fig9", title: "Figure 9: no impact", make: |study| motion::make(study, &motion::FIG9) },
     Item { name: "fig10", title: "Figure 10: saw-tooth motion", make: stability::make },
     Item {
         name: "fig11",
         title: "Figure 11: saw-tooth start, A = 0.5 N",
-        make: |workshop| motion::make(workshop, &motion::FIG11),
+        make: |study| motion::make(study, &motion::FIG11),
     },
     Item {
         name: "fig12",
         title: "Figure 12: start outside the gap",
-        make: |workshop| motion::make(workshop, &motion::FIG12),
+        make: |study| motion::make(study, &motion::FIG12),
     },
-    Item { name: "fig13", title: "Figure 13: zero start", make: |workshop| motion::make(workshop, &motion::FIG13) },
-    Item { name: "fig14", title: "Figure 14: r = 0.6", make: |workshop| motion::make(workshop, &motion::FIG14) },
-    Item { name: "fig15", title: "Figure 15: r = 0.3", make: |workshop| motion::make(workshop, &motion::FIG15) },
+    Item { name: "fig13", title: "Figure 13: zero start", make: |study| motion::make(study, &motion::FIG13) },
+    Item { name: "fig14", title: "Figure 14: r = 0.6", make: |study| motion::make(study, &motion::FIG14) },
+    Item { name: "fig15", title: "Figure 15: r = 0.3", make: |study| motion::make(study, &motion::FIG15) },
     Item { name: "fig16", title: "Figure 16: amplitude and frequency", make: fig16::make },
     Item { name: "fig17", title: "Figure 17: phase noise", make: fig17::make },
     Item { name: "tuning", title: "Tuning of the circuit", make: tuning::make },

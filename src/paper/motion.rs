@@ -5,7 +5,7 @@ use super::patterns::Pattern;
 use super::recording::{
     BALL, BALL_VELOCITY, CYLINDER, CYLINDER_VELOCITY, DISPLACEMENT, Impact, OUTPUTS, Recording, Sample, record,
 };
-use super::{Artefact, PaperError, Picture, Sheet, Workshop};
+use super::{Artefact, PaperError, Picture, Sheet, Study};
 use videg_report::{Figure, Panel, Series, Style};
 
 /// Distance of samples between corners, s.
@@ -56,9 +56,9 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    fn of(workshop: &Workshop<'_>, case: &str) -> Result<Self, PaperError> {
-        let instance = workshop.start(&workshop.case(case)?)?;
-        let [mass, travel, amplitude, frequency, restitution, bias_voltage] = workshop.reals(
+    fn of(study: &Study<'_>, case: &str) -> Result<Self, PaperError> {
+        let instance = study.start(&study.case(case)?)?;
+        let [mass, travel, amplitude, frequency, restitution, bias_voltage] = study.reals(
             &instance,
             [
                 "cylinder.mass",
@@ -69,14 +69,14 @@ impl Setup {
                 "biasVoltage",
             ],
         )?;
-        let start = workshop.reals(
+        let start = study.reals(
             &instance,
             ["initial.cylinderPosition", "initial.cylinderVelocity", "initial.ballPosition", "initial.ballVelocity"],
         )?;
         let [ball, length, width, radius] =
-            workshop.reals(&instance, ["ball.mass", "cylinder.length", "frame.width", "ball.radius"])?;
+            study.reals(&instance, ["ball.mass", "cylinder.length", "frame.width", "ball.radius"])?;
         let [r1, h1, r2] =
-            workshop.reals(&instance, ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"])?;
+            study.reals(&instance, ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"])?;
         let [z_cylinder, v_cylinder, z_ball, v_ball] = start;
         let caption = format!(
             "A = {amplitude} N, f_0 = {frequency} Hz, r = {restitution}; M = {} g, m = {} g, d = {} mm, w = {} mm, r_b \
@@ -109,10 +109,10 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Makes a figure.
-pub(super) fn make(workshop: &Workshop<'_>, shown: &Shown) -> Result<Artefact, PaperError> {
-    let setup = Setup::of(workshop, shown.case)?;
-    let recording = record(workshop, &workshop.case(shown.case)?, shown.window, STEP)?;
-    let (findings, text) = findings(workshop, shown, &setup, &recording)?;
+pub(super) fn make(study: &Study<'_>, shown: &Shown) -> Result<Artefact, PaperError> {
+    let setup = Setup::of(study, shown.case)?;
+    let recording = record(study, &study.case(shown.case)?, shown.window, STEP)?;
+    let (findings, text) = findings(study, shown, &setup, &recording)?;
     let picture = picture(shown, &setup, &recording)?;
     let sheets = vec![samples(shown, &setup, &recording), impacts(shown, &setup, &recording)];
     Ok(Artefact { findings, text, pictures: vec![picture], sheets, ..Artefact::default() })

@@ -3,7 +3,7 @@
 use super::motion::{Setup, Shown};
 use super::patterns::{Pattern, mean_falling_row};
 use super::recording::{BALL, DISPLACEMENT, Impact, Recording, Sample, impacts, record};
-use super::{Finding, PaperError, Verdict, WINDOW, Workshop};
+use super::{Finding, PaperError, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
 /// Where it is asked whether a motion repeats, s: any transient is long over.
@@ -58,23 +58,23 @@ fn fact<'a>(shown: &Shown, quantity: &'a str, unit: &'a str) -> Fact<'a> {
 
 /// Of the figure `shown`.
 pub(super) fn findings(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     shown: &Shown,
     setup: &Setup,
     recording: &Recording,
 ) -> Result<Found, PaperError> {
-    let settings = workshop.case(shown.case)?;
+    let settings = study.case(shown.case)?;
     if shown.number == 9 {
-        let whole = record(workshop, &settings, [0.0, WINDOW[1]], 0.01)?;
+        let whole = record(study, &settings, [0.0, WINDOW[1]], 0.01)?;
         return Ok((without_impacts(shown, setup, &whole), Vec::new()));
     }
-    let steady = impacts(workshop, &settings, WINDOW)?;
+    let steady = impacts(study, &settings, WINDOW)?;
     Ok(match shown.number {
         10 => (saw_tooth(shown, setup, &steady), Vec::new()),
         11 => short_flights(shown, setup, recording, &steady),
-        12 => double_hits(workshop, shown, setup, recording)?,
+        12 => double_hits(study, shown, setup, recording)?,
         13 => (counts(shown, setup, recording), Vec::new()),
-        _ => damped(shown, setup, &steady, &period(workshop, setup, &settings)?),
+        _ => damped(shown, setup, &steady, &period(study, setup, &settings)?),
     })
 }
 
@@ -139,15 +139,10 @@ fn short_flights(shown: &Shown, setup: &Setup, recording: &Recording, steady: &[
 }
 
 /// Figure 12.
-fn double_hits(
-    workshop: &Workshop<'_>,
-    shown: &Shown,
-    setup: &Setup,
-    recording: &Recording,
-) -> Result<Found, PaperError> {
-    let mut free = workshop.case(shown.case)?;
+fn double_hits(study: &Study<'_>, shown: &Shown, setup: &Setup, recording: &Recording) -> Result<Found, PaperError> {
+    let mut free = study.case(shown.case)?;
     free.push(Setting::new("initial.outsideGap", "free"));
-    let free = impacts(workshop, &free, shown.window)?;
+    let free = impacts(study, &free, shown.window)?;
     let hits = Pattern::DoubleHit.count(&free, setup.travel);
     let [cylinder, _, ball, _] = setup.start;
     let (start, half) = (1e3 * (cylinder - ball).abs(), 500.0 * setup.travel);
@@ -237,8 +232,8 @@ struct Period {
 
 /// The number of cycles, at most [`MOST_CYCLES`], after which the relative displacement at the beginning of a cycle
 /// comes back best; of several that are as good as equal the smallest.
-fn period(workshop: &Workshop<'_>, setup: &Setup, settings: &[Setting]) -> Result<Period, PaperError> {
-    let run = record(workshop, settings, LATE, 1.0 / setup.frequency)?;
+fn period(study: &Study<'_>, setup: &Setup, settings: &[Setting]) -> Result<Period, PaperError> {
+    let run = record(study, settings, LATE, 1.0 / setup.frequency)?;
     let starts_cycle =
         |sample: &&Sample| ((sample.time * setup.frequency).round() - sample.time * setup.frequency).abs() < 1e-9;
     let cycles: Vec<f64> = run.samples.iter().filter(starts_cycle).map(|sample| sample.values[DISPLACEMENT]).collect();

@@ -10,7 +10,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::excitation::set;
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 use crate::scenario::Setting;
 
 /// At which turning point of the cylinder the ball hits a membrane.
@@ -65,10 +65,10 @@ impl Multipliers {
 
 impl Orbit {
     /// The orbit of a case, its parameters read from the FMU.
-    pub(super) fn of(workshop: &Workshop<'_>, settings: &[Setting], phase: Phase) -> Result<Self, PaperError> {
-        let instance = workshop.start(settings)?;
+    pub(super) fn of(study: &Study<'_>, settings: &[Setting], phase: Phase) -> Result<Self, PaperError> {
+        let instance = study.start(settings)?;
         let names = ["excitation.frequency", "ball.travel", "excitation.amplitude", "cylinder.mass"];
-        let [frequency, travel, amplitude, mass] = workshop.reals(&instance, names)?;
+        let [frequency, travel, amplitude, mass] = study.reals(&instance, names)?;
         Ok(Self { phase, frequency, half_travel: travel / 2.0, acceleration: amplitude / mass })
     }
 
@@ -137,11 +137,7 @@ impl Orbit {
     }
 
     /// Multipliers by central differences of runs of the FMU over one period; `settings` are those of the case.
-    pub(super) fn by_differences(
-        &self,
-        workshop: &Workshop<'_>,
-        settings: &[Setting],
-    ) -> Result<Multipliers, PaperError> {
+    pub(super) fn by_differences(&self, study: &Study<'_>, settings: &[Setting]) -> Result<Multipliers, PaperError> {
         /// Step in units of s/2 and V: its square is the error of the differences, rounding over it their noise.
         const STEP: f64 = 1e-5;
         let scale = [self.half_travel, self.speed()];
@@ -151,7 +147,7 @@ impl Orbit {
             let after = |step: f64| {
                 let mut state = middle;
                 state[column] += step * scale[column];
-                self.after_a_period(workshop, settings, state)
+                self.after_a_period(study, settings, state)
             };
             let (ahead, behind) = (after(STEP)?, after(-STEP)?);
             for row in 0..2 {
@@ -161,16 +157,11 @@ impl Orbit {
         Ok(Multipliers::of(matrix))
     }
 
-    fn after_a_period(
-        &self,
-        workshop: &Workshop<'_>,
-        settings: &[Setting],
-        state: [f64; 2],
-    ) -> Result<[f64; 2], PaperError> {
-        let mut instance = workshop.start(&[settings, &self.start_in_the_middle(state)].concat())?;
+    fn after_a_period(&self, study: &Study<'_>, settings: &[Setting], state: [f64; 2]) -> Result<[f64; 2], PaperError> {
+        let mut instance = study.start(&[settings, &self.start_in_the_middle(state)].concat())?;
         instance.do_step(0.0, self.period())?;
         let [displacement, cylinder, ball] =
-            workshop.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
+            study.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
         Ok([displacement, cylinder - ball])
     }
 }

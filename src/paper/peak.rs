@@ -1,7 +1,7 @@
 //! The largest deflection of a run: stage 3 of Table 1.
 
 use super::recording::{DEFLECTIONS, record};
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 
 /// A membrane pressed in to the largest deflection of a run, as the FMU says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,22 +29,22 @@ pub(super) const CASE: &str = "fig14";
 pub(super) const WHEN: [f64; 2] = [50.0, 60.0];
 
 /// The impact that makes stage 3 of Table 1.
-pub(super) fn stage_3(workshop: &Workshop<'_>) -> Result<Peak, PaperError> {
-    largest(workshop, CASE, WHEN)
+pub(super) fn stage_3(study: &Study<'_>) -> Result<Peak, PaperError> {
+    largest(study, CASE, WHEN)
 }
 
 /// The largest deflection of either membrane between `from` and `to`, s, in a run of a case of the paper; peaks are
 /// landed on.
-pub(super) fn largest(workshop: &Workshop<'_>, case: &str, [from, to]: [f64; 2]) -> Result<Peak, PaperError> {
-    let settings = workshop.case(case)?;
-    let samples = record(workshop, &settings, [from, to], to - from)?.samples;
+pub(super) fn largest(study: &Study<'_>, case: &str, [from, to]: [f64; 2]) -> Result<Peak, PaperError> {
+    let settings = study.case(case)?;
+    let samples = record(study, &settings, [from, to], to - from)?.samples;
     let deflections = samples.iter().flat_map(|sample| {
         DEFLECTIONS.iter().enumerate().map(|(side, output)| (sample.values[*output], sample.time, side))
     });
     let (_, time, side) = deflections.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, from, 0));
-    let mut instance = workshop.start(&settings)?;
+    let mut instance = study.start(&settings)?;
     instance.do_step(0.0, time)?;
-    let [deflection, capacitance, area_ratio] = workshop.reals(&instance, OF_A_MEMBRANE[side])?;
+    let [deflection, capacitance, area_ratio] = study.reals(&instance, OF_A_MEMBRANE[side])?;
     instance.terminate()?;
     Ok(Peak { time, side, deflection, capacitance, area_ratio })
 }

@@ -2,7 +2,7 @@
 
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop, lyapunov};
+use super::{Effort, Finding, PaperError, Picture, Sheet, Study, Verdict, lyapunov};
 use videg_report::{Figure, Panel, Series, Style};
 
 /// `f_0`, Hz, and A, N, of the cases.
@@ -26,21 +26,21 @@ pub struct Section {
 ///
 /// # Errors
 /// What the FMU says.
-pub fn sections(workshop: &Workshop<'_>) -> Result<Vec<Section>, PaperError> {
-    let many = match workshop.effort {
+pub fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
+    let many = match study.effort {
         Effort::Full => 4000,
         Effort::Quick => 400,
     };
-    let cylinder = Cylinder::new(workshop)?;
+    let cylinder = Cylinder::new(study)?;
     let cases = [
         ("fig13", "Figure 13, r = 1", 1.0, many),
         ("fig14", "Figure 14, r = 0.6", 0.6, 100),
         ("fig15", "Figure 15, r = 0.3", 0.3, many),
     ];
-    workshop.each(&cases, |&(case, title, restitution, periods)| {
-        let orbit = Stroboscope::new(workshop, &workshop.case(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
+    study.each(&cases, |&(case, title, restitution, periods)| {
+        let orbit = Stroboscope::new(study, &study.case(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
         let start = Start::saw_tooth(&cylinder, restitution, cylinder.gamma(FORCE, FREQUENCY), FREQUENCY);
-        let exponent = lyapunov::exponent(workshop, &cylinder, start, &orbit, many / 4)?;
+        let exponent = lyapunov::exponent(study, &cylinder, start, &orbit, many / 4)?;
         Ok(Section { case, title, orbit, exponent })
     })
 }

@@ -5,7 +5,7 @@ use videg_circuit::{Release, Topology};
 use videg_model::{Case, Limit, Membrane};
 
 use super::coupled::{Drive, circuit};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, VOLUME, Verdict, WINDOW, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, VOLUME, Verdict, WINDOW};
 use videg_report::{Column, Figure, Panel, Series, Table};
 
 /// Cases of Table 3, and what the paper calls them.
@@ -45,8 +45,8 @@ impl Count {
 }
 
 /// Makes the comparison.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let counts = workshop.each(&CASES, |(case, _)| counts(workshop, case))?;
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let counts = study.each(&CASES, |(case, _)| counts(study, case))?;
     let bearable = |counts: &[Count]| voltage_of(counts, BEARABLE);
     // U_DE4 / U_in = C3 / C2, Eq. (12).
     let highest = counts.iter().flatten().map(|count| count.voltage).fold(0.0, f64::max) / BIAS;
@@ -101,9 +101,9 @@ fn deflection(membrane: &Membrane, area: f64) -> f64 {
 }
 
 /// The power of `case` in different circuits.
-fn counts(workshop: &Workshop<'_>, case: &'static str) -> Result<Vec<Count>, PaperError> {
+fn counts(study: &Study<'_>, case: &'static str) -> Result<Vec<Count>, PaperError> {
     let drive = Drive { case, settings: Vec::new(), window: WINDOW, tolerance: TOLERANCE };
-    let ahead = drive.run(workshop, &[])?;
+    let ahead = drive.run(study, &[])?;
     let best = ahead.best_voltage(0.0);
     let bearable = bearable_voltage(case, ahead.highest_voltage() / BIAS);
     let kinds = [
@@ -113,18 +113,18 @@ fn counts(workshop: &Workshop<'_>, case: &'static str) -> Result<Vec<Count>, Pap
         (BEARABLE, Topology::Isolated, Release::Switch, bearable, 1e6),
     ];
     let circuits = kinds.map(|(_, topology, release, voltage, load)| circuit(topology, release, voltage, load));
-    let driven = drive.run(workshop, &circuits)?;
+    let driven = drive.run(study, &circuits)?;
     let eq14 = Count { name: "Eq. (14)", power: driven.eq14, voltage: driven.highest_voltage() };
     let net = kinds.iter().zip(driven.power.iter().zip(&driven.peaks));
     let net = net.map(|(kind, (power, peak))| Count { name: kind.0, power: power.surplus(), voltage: *peak });
-    let lost = Count { name: LOST, power: loss(workshop, case)?, voltage: f64::NAN };
+    let lost = Count { name: LOST, power: loss(study, case)?, voltage: f64::NAN };
     Ok(std::iter::once(eq14).chain(net).chain([lost]).collect())
 }
 
 /// What the membranes take from the ball, W: the FMU's own books of (1 - r^2) m v^2 / 2.
-fn loss(workshop: &Workshop<'_>, case: &str) -> Result<f64, PaperError> {
-    let energy = [workshop.reference("energy.impactLoss")?];
-    let mut instance = workshop.start(&workshop.case(case)?)?;
+fn loss(study: &Study<'_>, case: &str) -> Result<f64, PaperError> {
+    let energy = [study.reference("energy.impactLoss")?];
+    let mut instance = study.start(&study.case(case)?)?;
     let [from, to] = WINDOW;
     let (mut start, mut end) = ([0.0], [0.0]);
     instance.do_step(0.0, from)?;

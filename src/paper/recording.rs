@@ -1,6 +1,6 @@
 //! A run of the harvester FMU in detail: samples that show every corner of the motion, and its impacts.
 
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 use crate::scenario::Setting;
 use fmu_import::Instance;
 
@@ -71,12 +71,12 @@ pub(super) struct Recording {
 /// Runs the FMU with `settings` and records it from `from` to `to`, s, at every multiple of `step`, s, and at all
 /// corners.
 pub(super) fn record(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     settings: &[Setting],
     [from, to]: [f64; 2],
     step: f64,
 ) -> Result<Recording, PaperError> {
-    let mut recorder = Recorder::new(workshop, settings)?;
+    let mut recorder = Recorder::new(study, settings)?;
     if from > 0.0 {
         recorder.go_to(from)?;
         recorder.note()?;
@@ -93,12 +93,8 @@ pub(super) fn record(
 }
 
 /// Impacts between `from` and `to`, s.
-pub(super) fn impacts(
-    workshop: &Workshop<'_>,
-    settings: &[Setting],
-    window: [f64; 2],
-) -> Result<Vec<Impact>, PaperError> {
-    Ok(record(workshop, settings, window, window[1] - window[0])?.impacts)
+pub(super) fn impacts(study: &Study<'_>, settings: &[Setting], window: [f64; 2]) -> Result<Vec<Impact>, PaperError> {
+    Ok(record(study, settings, window, window[1] - window[0])?.impacts)
 }
 
 struct Recorder {
@@ -110,12 +106,12 @@ struct Recorder {
 }
 
 impl Recorder {
-    fn new(workshop: &Workshop<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
+    fn new(study: &Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
         Ok(Self {
-            instance: workshop.start(settings)?,
+            instance: study.start(settings)?,
             time: 0.0,
-            outputs: OUTPUTS.iter().map(|(name, ..)| workshop.reference(name)).collect::<Result<_, _>>()?,
-            events: EVENTS.iter().map(|name| workshop.reference(name)).collect::<Result<_, _>>()?,
+            outputs: OUTPUTS.iter().map(|(name, ..)| study.reference(name)).collect::<Result<_, _>>()?,
+            events: EVENTS.iter().map(|name| study.reference(name)).collect::<Result<_, _>>()?,
             recording: Recording { samples: Vec::new(), impacts: Vec::new() },
         })
     }

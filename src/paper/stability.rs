@@ -9,7 +9,7 @@ use super::motion;
 use super::motion_findings::Fact;
 use super::orbit::{Multipliers, Orbit, Phase};
 use super::statistics::slope;
-use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study};
 use crate::scenario::Setting;
 use videg_report::{Figure, Panel, Series, Style};
 
@@ -71,9 +71,9 @@ struct Stability {
 }
 
 /// Makes Figure 10.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let mut artefact = motion::make(workshop, &motion::FIG10)?;
-    let stability = Stability::of(workshop)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let mut artefact = motion::make(study, &motion::FIG10)?;
+    let stability = Stability::of(study)?;
     artefact.findings.extend(stability.findings());
     artefact.text.extend(stability.text());
     artefact.pictures.push(stability.picture()?);
@@ -82,30 +82,30 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 }
 
 impl Stability {
-    fn of(workshop: &Workshop<'_>) -> Result<Self, PaperError> {
-        let settings = workshop.case(CASE)?;
-        let orbit = Orbit::of(workshop, &settings, Phase::Paper)?;
+    fn of(study: &Study<'_>) -> Result<Self, PaperError> {
+        let settings = study.case(CASE)?;
+        let orbit = Orbit::of(study, &settings, Phase::Paper)?;
         let opposite = Orbit { phase: Phase::Opposite, ..orbit };
-        let nudged = workshop
-            .each(&NUDGES, |nudge| track(workshop, &settings, &orbit, *nudge, format!("nudged by {nudge:e} m/s")))?;
+        let nudged =
+            study.each(&NUDGES, |nudge| track(study, &settings, &orbit, *nudge, format!("nudged by {nudge:e} m/s")))?;
         let at_other_frequency = Orbit { frequency: INEXACT, ..orbit };
         let window = [50.0, UNTIL];
         let run = Run { settings: [settings.as_slice(), &opposite.at_impact()].concat(), window };
-        let gain = workshop.averages(&[run])?.first().map_or(f64::NAN, |averages| averages.voltage_gain);
+        let gain = study.averages(&[run])?.first().map_or(f64::NAN, |averages| averages.voltage_gain);
         Ok(Self {
             orbit,
             closed_form: orbit.closed_form(),
-            by_differences: orbit.by_differences(workshop, &settings)?,
+            by_differences: orbit.by_differences(study, &settings)?,
             opposite,
-            opposite_by_differences: opposite.by_differences(workshop, &settings)?,
+            opposite_by_differences: opposite.by_differences(study, &settings)?,
             opposite_gain: gain,
             nudged,
-            exact: track(workshop, &settings, &orbit, 0.0, "not nudged".to_owned())?,
-            inexact: track(workshop, &settings, &at_other_frequency, 0.0, format!("not nudged, f_0 = {INEXACT} Hz"))?,
+            exact: track(study, &settings, &orbit, 0.0, "not nudged".to_owned())?,
+            inexact: track(study, &settings, &at_other_frequency, 0.0, format!("not nudged, f_0 = {INEXACT} Hz"))?,
             stepped: stepped(&orbit),
             stepped_gain: stepped_gain(window),
             opposite_nudged: track(
-                workshop,
+                study,
                 &settings,
                 &opposite,
                 NUDGES[2],
@@ -247,21 +247,21 @@ impl Stability {
 
 /// A run of the FMU from the orbit's start with the ball's velocity nudged, m/s.
 fn track(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     settings: &[Setting],
     orbit: &Orbit,
     nudge: f64,
     label: String,
 ) -> Result<Track, PaperError> {
     let velocity = set("initial.ballVelocity", nudge - orbit.speed());
-    let mut instance = workshop.start(&[settings, &orbit.at_impact(), &[velocity]].concat())?;
+    let mut instance = study.start(&[settings, &orbit.at_impact(), &[velocity]].concat())?;
     let mut points = Vec::new();
     let mut now = 0.0;
     for time in middles(orbit) {
         instance.do_step(now, time - now)?;
         now += time - now;
         let [displacement, cylinder, ball] =
-            workshop.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
+            study.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
         points.push((time, orbit.distance([displacement, cylinder - ball])));
     }
     instance.terminate()?;

@@ -1,7 +1,7 @@
 //! The motion once a period, in phase with the force: what Poincare sections and bifurcation diagrams are made of.
 
 use super::excitation::{Cylinder, set};
-use super::{PaperError, Workshop};
+use super::{PaperError, Study};
 use crate::scenario::Setting;
 use fmu_import::Instance;
 
@@ -31,14 +31,14 @@ impl Stroboscope {
     ///
     /// # Errors
     /// What the FMU says.
-    pub fn new(workshop: &Workshop<'_>, settings: &[Setting], frequency: f64) -> Result<Self, PaperError> {
+    pub fn new(study: &Study<'_>, settings: &[Setting], frequency: f64) -> Result<Self, PaperError> {
         let references = [
-            workshop.reference("relativeDisplacement")?,
-            workshop.reference("cylinder.velocity")?,
-            workshop.reference("ball.velocity")?,
-            workshop.reference("gain.voltage")?,
+            study.reference("relativeDisplacement")?,
+            study.reference("cylinder.velocity")?,
+            study.reference("ball.velocity")?,
+            study.reference("gain.voltage")?,
         ];
-        Ok(Self { instance: workshop.start(settings)?, references, period: 1.0 / frequency, count: 0.0 })
+        Ok(Self { instance: study.start(settings)?, references, period: 1.0 / frequency, count: 0.0 })
     }
 
     /// Lets `periods` pass.

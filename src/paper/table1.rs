@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use videg_model::VACUUM_PERMITTIVITY;
 
 use super::peak::{self, CASE, WHEN};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// A stage in numbers, SI.
@@ -19,8 +19,8 @@ struct Stage {
 }
 
 /// Makes the table.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let stages = stages(workshop)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let stages = stages(study)?;
     let [first, second, third, fourth] = &stages;
     let printed = |quantity: &str, paper: f64, videg: f64| Finding {
         place: "Section 2.2".to_owned(),
@@ -69,9 +69,9 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
     })
 }
 
-fn stages(workshop: &Workshop<'_>) -> Result<[Stage; 4], PaperError> {
-    let instance = workshop.start(&workshop.case(CASE)?)?;
-    let [r1, h1, r2, h2, c2, permittivity, bias] = workshop.reals(
+fn stages(study: &Study<'_>) -> Result<[Stage; 4], PaperError> {
+    let instance = study.start(&study.case(CASE)?)?;
+    let [r1, h1, r2, h2, c2, permittivity, bias] = study.reals(
         &instance,
         [
             "membrane.initialRadius",
@@ -83,7 +83,7 @@ fn stages(workshop: &Workshop<'_>) -> Result<[Stage; 4], PaperError> {
             "biasVoltage",
         ],
     )?;
-    let peak = peak::stage_3(workshop)?;
+    let peak = peak::stage_3(study)?;
     let stage = |radius: Option<f64>, area: f64, thickness: f64, capacitance: f64, voltage: f64| Stage {
         radius,
         area,

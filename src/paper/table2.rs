@@ -5,7 +5,7 @@ use videg_model::Case;
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
 use super::fixed_step::{FixedStep, STEP};
 use super::table2_output::{picture, sheets, table, text};
-use super::{Artefact, Effort, Finding, PaperError, Run, Verdict, WINDOW, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Run, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
 /// Largest nudge for the paper's method, m/s: what its time step makes of one impact, 2 A/M times 1e-5 s. Smaller ones
@@ -79,8 +79,8 @@ pub(super) struct Computation {
 }
 
 /// Makes the table.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let computation = compute(workshop)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let computation = compute(study)?;
     let mut findings: Vec<_> = computation.cases.iter().map(|case| finding(case, &computation.pooled)).collect();
     findings.extend(other_rule(&computation.free));
     findings.extend(computation.cases.iter().filter_map(by_the_papers_method));
@@ -96,9 +96,9 @@ pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
 /// Nearby starts of each case.
 const STARTS: usize = 200;
 
-fn compute(workshop: &Workshop<'_>) -> Result<Computation, PaperError> {
+fn compute(study: &Study<'_>) -> Result<Computation, PaperError> {
     // Runs of the FMU take no time beside those of the paper's method.
-    let stepped_starts = match workshop.effort {
+    let stepped_starts = match study.effort {
         Effort::Full => STARTS,
         Effort::Quick => STARTS / 5,
     };
@@ -106,15 +106,15 @@ fn compute(workshop: &Workshop<'_>) -> Result<Computation, PaperError> {
     let coarse = ensemble::nudges(stepped_starts, STEPPED_NUDGE);
     let mut cases = Vec::new();
     for printed in &PRINTED {
-        let mut case = computed(workshop, printed, workshop.case(printed.case)?, &nudges)?;
+        let mut case = computed(study, printed, study.case(printed.case)?, &nudges)?;
         if !matches!(printed.motion, Motion::Damped(_)) {
-            case.stepped = stepped(workshop, printed, &coarse)?;
+            case.stepped = stepped(study, printed, &coarse)?;
         }
         cases.push(case);
     }
     let rule = Setting::new("initial.outsideGap", "free");
-    let free = workshop.case("fig12")?.into_iter().chain([rule]).collect();
-    let free = computed(workshop, &PRINTED[2], free, &nudges)?;
+    let free = study.case("fig12")?.into_iter().chain([rule]).collect();
+    let free = computed(study, &PRINTED[2], free, &nudges)?;
     let pooled = cases.iter().filter(|case| case.is_chaotic()).flat_map(|case| case.values.iter().copied());
     let pooled = Ensemble::new(pooled.collect());
     Ok(Computation { nudges, cases, free, pooled })
@@ -122,26 +122,26 @@ fn compute(workshop: &Workshop<'_>) -> Result<Computation, PaperError> {
 
 /// The start of the paper and those nearby, through the FMU.
 fn computed(
-    workshop: &Workshop<'_>,
+    study: &Study<'_>,
     printed: &'static Printed,
     settings: Vec<Setting>,
     nudges: &[f64],
 ) -> Result<Computed, PaperError> {
-    let values = voltage_gains(workshop, nearby(workshop, &settings, nudges)?, WINDOW)?;
-    let own = workshop.averages(&[Run { settings, window: WINDOW }])?;
+    let values = voltage_gains(study, nearby(study, &settings, nudges)?, WINDOW)?;
+    let own = study.averages(&[Run { settings, window: WINDOW }])?;
     let own = own.first().map_or(f64::NAN, |averages| averages.voltage_gain);
     Ok(Computed { printed, own, nearby: Ensemble::new(values.clone()), values, stepped: None })
 }
 
 /// Nearby starts by the paper's method.
-fn stepped(workshop: &Workshop<'_>, printed: &Printed, nudges: &[f64]) -> Result<Option<Ensemble>, PaperError> {
+fn stepped(study: &Study<'_>, printed: &Printed, nudges: &[f64]) -> Result<Option<Ensemble>, PaperError> {
     let Some(case) = Case::find(printed.case) else { return Ok(None) };
     let parameters = (case.parameters)();
     let batches: Vec<Vec<f64>> = nudges
         .chunks(BATCH)
         .map(|batch| batch.iter().map(|nudge| parameters.ball_velocity + nudge).collect())
         .collect();
-    let gains = workshop.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities, STEP).run(WINDOW)))?;
+    let gains = study.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities, STEP).run(WINDOW)))?;
     Ok(Some(Ensemble::new(gains.concat().iter().map(|run| run.voltage_gain).collect())))
 }
 

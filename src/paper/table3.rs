@@ -3,7 +3,7 @@
 use videg_model::Case;
 
 use super::fixed_step::{FixedStep, STEP, Stepped};
-use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, VOLUME, Verdict, WINDOW, Workshop};
+use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study, VOLUME, Verdict, WINDOW};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Steps of the paper's method to show, s.
@@ -61,8 +61,8 @@ impl Compared {
 }
 
 /// Makes the table.
-pub(super) fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let compared = compare(workshop)?;
+pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let compared = compare(study)?;
     let findings = compared.iter().flat_map(findings).collect();
     let of_each = compared.iter().map(|it| (it.printed.text)(it));
     let text = of_each.chain([OF_MASSES.to_owned(), OF_SIZES.to_owned()]).collect();
@@ -102,15 +102,15 @@ fn text_at_5_hz(compared: &Compared) -> String {
     )
 }
 
-fn compare(workshop: &Workshop<'_>) -> Result<Vec<Compared>, PaperError> {
+fn compare(study: &Study<'_>) -> Result<Vec<Compared>, PaperError> {
     let runs = PRINTED
         .iter()
-        .map(|printed| Ok(Run { settings: workshop.case(printed.case)?, window: WINDOW }))
+        .map(|printed| Ok(Run { settings: study.case(printed.case)?, window: WINDOW }))
         .collect::<Result<Vec<_>, PaperError>>()?;
-    let averages = workshop.averages(&runs)?;
+    let averages = study.averages(&runs)?;
     // The longest first, so that all cores end together.
     let tasks: Vec<_> = STEPS.iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
-    let mut stepped = workshop.each(&tasks, |(printed, step)| {
+    let mut stepped = study.each(&tasks, |(printed, step)| {
         let parameters = Case::find(printed.case).map(|case| (case.parameters)());
         Ok(parameters.and_then(|p| FixedStep::new(&p, &[p.ball_velocity], *step).run(WINDOW).pop()))
     })?;

@@ -3,7 +3,7 @@
 use videg_circuit::{Release, Settings, Topology};
 
 use super::coupled::{Drive, Driven, circuit};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Verdict, Workshop};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study, Verdict};
 use videg_report::{Figure, HeatMap, Panel, Scale, Series, Style};
 
 /// Window of the averages, s: Figure 14 is periodic by then.
@@ -44,13 +44,13 @@ impl Grid {
     }
 
     /// Net gain, uW, of each cell, row by row from the smallest load.
-    fn gains(&self, workshop: &Workshop<'_>, kind: (Topology, Release)) -> Result<Vec<f64>, PaperError> {
+    fn gains(&self, study: &Study<'_>, kind: (Topology, Release)) -> Result<Vec<f64>, PaperError> {
         let rows: Vec<Vec<Settings>> = self
             .loads
             .iter()
             .map(|&load| self.voltages.iter().map(|&voltage| circuit(kind.0, kind.1, voltage, load)).collect())
             .collect();
-        let driven = workshop.each(&rows, |circuits| drive().run(workshop, circuits))?;
+        let driven = study.each(&rows, |circuits| drive().run(study, circuits))?;
         Ok(driven.iter().flat_map(|driven| &driven.power).map(|power| 1e6 * power.surplus()).collect())
     }
 }
@@ -71,9 +71,9 @@ struct Map {
 }
 
 impl Map {
-    fn new(workshop: &Workshop<'_>, grid: &Grid, index: usize) -> Result<Self, PaperError> {
+    fn new(study: &Study<'_>, grid: &Grid, index: usize) -> Result<Self, PaperError> {
         let (name, topology, release) = CIRCUITS[index];
-        let gains = grid.gains(workshop, (topology, release))?;
+        let gains = grid.gains(study, (topology, release))?;
         let columns = grid.voltages.len();
         let cell = |(k, gain): (usize, &f64)| [grid.voltages[k % columns], grid.loads[k / columns], *gain];
         let top = |gains: &[f64]| {
@@ -85,11 +85,11 @@ impl Map {
 }
 
 /// Makes the maps.
-pub fn make(workshop: &Workshop<'_>) -> Result<Artefact, PaperError> {
-    let grid = Grid::new(workshop.effort);
-    let maps = [Map::new(workshop, &grid, 0)?, Map::new(workshop, &grid, 1)?];
+pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
+    let grid = Grid::new(study.effort);
+    let maps = [Map::new(study, &grid, 0)?, Map::new(study, &grid, 1)?];
     let at_paper = CIRCUITS.map(|(_, topology, release)| circuit(topology, release, PAPER[0], PAPER[1]));
-    let driven = drive().run(workshop, &at_paper)?;
+    let driven = drive().run(study, &at_paper)?;
     Ok(Artefact {
         findings: findings(&maps, &driven),
         text: text(&maps, &driven),

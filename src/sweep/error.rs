@@ -78,12 +78,6 @@ pub enum SweepError {
         /// The file.
         path: PathBuf,
     },
-    /// The system gives no thread that could compute.
-    #[error("cannot start a thread that computes runs: {cause}")]
-    Threads {
-        /// What the system said.
-        cause: io::Error,
-    },
     /// Shards that do not make a whole.
     #[error("cannot merge: {reason}")]
     Merge {

@@ -38,7 +38,7 @@ pub use error::SweepError;
 pub use file::SweepFile;
 pub use merge::merge;
 pub use plan::{Request, Sweep};
-pub use run::{Job, Report, Watch, run};
+pub use run::{Job, Report, run};
 pub use seeds::SEED_VARIABLE;
 pub use shard::Shard;
 pub use times::Times;

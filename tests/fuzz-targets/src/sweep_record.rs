@@ -5,10 +5,9 @@
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
-use std::sync::atomic::AtomicBool;
 
 use videg::scenario::CaseFile;
-use videg::sweep::{self, BuiltIn, Engine, Job, Report, Sweep, SweepError, SweepFile, Vary, Watch};
+use videg::sweep::{self, BuiltIn, Engine, Job, Report, Sweep, SweepError, SweepFile, Vary};
 
 use crate::{Target, sweeps};
 
@@ -35,15 +34,9 @@ static OWN: LazyLock<Own> = LazyLock::new(|| {
     Own { sweep, engine, lines }
 });
 
-struct Nobody;
-
-impl Watch for Nobody {
-    fn show(&mut self, _done: u64, _total: u64) {}
-}
-
 fn run(folder: &Path, sweep: &Sweep, engine: &Engine) -> Result<Report, SweepError> {
-    let job = Job { folder, shard: None, jobs: 1, fresh: false, stop: &AtomicBool::new(false) };
-    sweep::run(sweep, engine, &job, &mut Nobody)
+    let job = Job { folder, shard: None, jobs: 1, fresh: false };
+    sweep::run(sweep, engine, &job, &())
 }
 
 fn lines(bytes: &[u8]) -> Vec<Vec<u8>> {

@@ -1,10 +1,8 @@
 //! What the items work with: the harvester FMU, and runs of it on all cores.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-
 use super::PaperError;
 use crate::cosim::{Averages, Gains};
+use crate::progress::Progress;
 use crate::scenario::{Request, Setting};
 use crate::threads;
 use fmu_import::{Fmu, Instance, Logging};
@@ -19,25 +17,14 @@ pub enum Effort {
     Quick,
 }
 
-/// Watches the work.
-pub trait Watch: Sync {
-    /// Of `total` parts of the present item, `done` are done.
-    fn show(&self, done: usize, total: usize);
-}
-
-/// Nobody watches.
-impl Watch for () {
-    fn show(&self, _done: usize, _total: usize) {}
-}
-
 /// What the items work with.
-pub struct Workshop<'a> {
+pub struct Study<'a> {
     /// The harvester FMU.
     pub fmu: &'a Fmu,
     /// How much work the large ensembles may be.
     pub effort: Effort,
-    /// Who watches.
-    pub watch: &'a dyn Watch,
+    /// Follows the parts of the present item.
+    pub observer: &'a dyn Progress,
 }
 
 /// A run of the harvester from 0 s, of which averages are wanted.
@@ -49,7 +36,7 @@ pub struct Run {
     pub window: [f64; 2],
 }
 
-impl Workshop<'_> {
+impl Study<'_> {
     /// Averages of each run, in their order.
     ///
     /// # Errors
@@ -109,27 +96,9 @@ impl Workshop<'_> {
     pub fn each<T: Sync, R: Send>(
         &self,
         tasks: &[T],
-        work: impl Fn(&T) -> Result<R, PaperError> + Sync,
+        work: impl Fn(&T) -> Result<R, PaperError> + Send + Sync,
     ) -> Result<Vec<R>, PaperError> {
-        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let results = Mutex::new((0..tasks.len()).map(|_| None).collect::<Vec<_>>());
-        threads::share(cores.min(tasks.len()), || {
-            while let Some((index, task)) = {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                tasks.get(index).map(|task| (index, task))
-            } {
-                let result = work(task);
-                let failed = result.is_err();
-                results.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
-                if failed {
-                    next.store(tasks.len(), Ordering::Relaxed); // the rest is of no use
-                }
-                self.watch.show(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
-            }
-        });
-        // Tasks are taken in order: what was left out stands behind an error.
-        results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+        threads::map(tasks, self.observer, work)
     }
 
     fn average(&self, run: &Run) -> Result<Averages, PaperError> {
