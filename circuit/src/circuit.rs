@@ -212,7 +212,7 @@ impl Circuit {
         self.state.supply_current
     }
 
-    /// The books since the start.
+    /// Energies and charges since the start.
     pub fn ledger(&self) -> Ledger {
         Ledger { stored: self.stored_energy() - self.state.initial_energy, ..self.state.ledger }
     }

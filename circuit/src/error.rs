@@ -36,6 +36,20 @@ pub enum Error {
         /// SI unit of the value.
         unit: &'static str,
     },
+    /// A parameter is NaN or out of its bounds.
+    #[error("{name} = {value} {unit} is outside its bounds [{min}, {max}] {unit}")]
+    Bounds {
+        /// Name of the parameter, as in [`names`](crate::names).
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// SI unit of the values.
+        unit: &'static str,
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+    },
     /// The release element would conduct all the time: the paper demands `U_in <= U_z` (Section 4.1).
     #[error("zener.voltage = {zener} V is below supply.voltage = {supply} V")]
     ZenerBelowSupply {

@@ -1,15 +1,17 @@
-//! Integration of the circuit with exponential diodes: the length of the internal steps, and the books.
+//! Integration of the circuit with exponential diodes: the length of the internal steps, and the ledger.
 //!
-//! A step itself, with the estimate of its error, is in [`crate::step`].
+//! A step itself, with the estimate of its error, is in [`step`].
+
+mod step;
 
 use core::cell::Cell;
 
 use crate::devices::Devices;
 use crate::error::{Error, Failure};
 use crate::network::Network;
+use crate::node_equations::Point;
 use crate::parameters::Solver;
-use crate::stage::Point;
-use crate::step::Flow;
+use step::Flow;
 
 /// Accepted steps in a row that did not grow, after which a much shorter one is tried. At the edge where an element
 /// begins to conduct, a step may end below the edge, where nothing restores it, and the next repeat that for ever at
@@ -86,7 +88,7 @@ impl Exponential<'_> {
                 *internal_step = proposed;
             }
             if last {
-                self.book(&flow, network);
+                self.record(&flow, network);
                 return Ok(point);
             }
             next = proposed;
@@ -103,8 +105,8 @@ impl Exponential<'_> {
         Error::Integration { time: self.time + elapsed, step, failure }
     }
 
-    /// Puts what has flowed into the charges and the ledger.
-    fn book(&self, flow: &Flow, network: &mut Network) {
+    /// Adds what has flowed to the charges and the ledger.
+    fn record(&self, flow: &Flow, network: &mut Network) {
         let charges = self.charges(flow);
         for (node, charge) in network.nodes.iter_mut().zip(charges) {
             node.charge = charge;

@@ -4,9 +4,9 @@ use crate::error::{Error, finite};
 
 /// Running sums since the start; energies in J, charges in C.
 ///
-/// What the mechanics gave is booked twice, on two paths that share no arithmetic: [`converted`](Self::converted)
+/// What the mechanics gave is summed twice, on two paths that share no arithmetic: [`converted`](Self::converted)
 /// from the elements and the stored energy, `mechanical` from the work on the capacitances. Their difference,
-/// [`residual`](Self::residual), is the error of the bookkeeping.
+/// [`residual`](Self::residual), is the error of the sums.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ledger {
     /// Energy drawn from the supply, `U_in` times its charge (J).
@@ -46,7 +46,7 @@ impl Ledger {
         self.load - self.supply
     }
 
-    /// Energy that the two ways of booking disagree on (J): converted - mechanical; zero but for rounding
+    /// Difference of the two sums of what the mechanics gave (J): converted - mechanical; zero but for rounding
     /// (ideal diodes) or the integrator's tolerance (exponential diodes).
     pub fn residual(&self) -> f64 {
         self.converted() - self.mechanical

@@ -17,13 +17,12 @@ pub mod formulas;
 mod ideal;
 mod ledger;
 mod network;
+mod node_equations;
 mod parameters;
 mod release;
 mod roots;
 mod settings;
-mod stage;
 mod state;
-mod step;
 
 pub use circuit::Circuit;
 pub use error::{Error, Failure};

@@ -56,7 +56,7 @@ impl Elements {
     }
 }
 
-/// The nodes with ideal elements, and the books.
+/// The nodes with ideal elements, and the ledger.
 ///
 /// # Two nodes, one load
 /// The release elements are one-way, so that the load follows the highest node above `U_z`: a lower one is

@@ -1,6 +1,4 @@
-//! Parameters of the circuit: the one place for their names, units, defaults and bounds.
-
-use crate::error::{Error, finite, not_negative, positive};
+//! Parameters of the circuit and their defaults. Units, bounds and descriptions are in the table of [`crate::Settings`].
 
 /// Names of parameters and inputs, as an FMU variable table and the error messages spell them.
 pub mod names {
@@ -85,120 +83,103 @@ pub enum Diodes {
 /// Parameters of an exponential diode, with ngspice's meaning; `RS` and `CJO` are zero and `BV` is `U_z`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiodeParameters {
-    /// `diode.saturationCurrent`: `IS` (A), above 0, default 1e-13.
+    /// `diode.saturationCurrent`: `IS` (A).
     pub saturation_current: f64,
-    /// `diode.emissionCoefficient`: `N` (1), above 0, default 0.01 (near-ideal).
+    /// `diode.emissionCoefficient`: `N` (1).
     pub emission_coefficient: f64,
-    /// `diode.temperature` (K), above 0, default 300.15.
+    /// `diode.temperature` (K).
     pub temperature: f64,
-    /// `zener.breakdownCurrent`: `IBV` (A), above 0, default 1e-13. Below `IS BV / Vt` it has no effect and
-    /// the current at `U_z` is `IS`, as in ngspice.
+    /// `zener.breakdownCurrent`: `IBV` (A). Below `IS BV / Vt` it has no effect and the current at `U_z` is `IS`, as in
+    /// ngspice.
     pub breakdown_current: f64,
-    /// `zener.emissionCoefficient`: `NBV` (1), above 0, default 0.01.
+    /// `zener.emissionCoefficient`: `NBV` (1).
     pub breakdown_emission: f64,
-    /// `switch.band` (V), above 0, default 0.02: [`Release::Switch`] turns on linearly between `U_z` and
-    /// `U_z` + band.
+    /// `switch.band` (V): [`Release::Switch`] turns on linearly between `U_z` and `U_z` + band.
     pub switch_band: f64,
     /// Accuracy and effort of the integrator.
     pub solver: Solver,
 }
 
-impl Default for DiodeParameters {
-    fn default() -> Self {
-        Self {
-            saturation_current: 1e-13,
-            emission_coefficient: 0.01,
-            temperature: 300.15,
-            breakdown_current: 1e-13,
-            breakdown_emission: 0.01,
-            switch_band: 0.02,
-            solver: Solver::default(),
-        }
-    }
-}
-
 /// Accuracy and effort of the integrator of the exponential diodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solver {
-    /// `solver.relativeTolerance` (1), above 0, default 1e-9: largest error of an internal step, charges
-    /// relative to `C U_in` or the charge that is there, energies to that charge at its voltage, and the energy of a load
-    /// behind a Zener diode to that charge at the voltage of the load. Below some 1e-13 it asks for more than the last
-    /// bits of a charge hold.
+    /// `solver.relativeTolerance` (1): largest error of an internal step, charges relative to `C U_in` or the charge that
+    /// is there, energies to that charge at its voltage, and the energy of a load behind a Zener diode to that charge at
+    /// the voltage of the load. Below some 1e-13 it asks for more than the last bits of a charge hold.
     ///
     /// Where `N Vt` comes near the last bit of a voltage (6e-11 V at 300 kV, against `N Vt` = 2.6e-4 V by default), currents
     /// are taken from the balance of charge instead of the exponential, and keep this accuracy.
     pub relative_tolerance: f64,
-    /// `solver.maximumSteps`, default 100 000: internal steps, rejected ones included, in one call.
+    /// Internal steps, rejected ones included, in one call.
     pub maximum_steps: usize,
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self { relative_tolerance: 1e-9, maximum_steps: 100_000 }
-    }
 }
 
 /// Parameters of the circuit of Fig. 8(a). The default is the paper's (Section 4.1) with a load of 1 Gohm,
 /// which the paper does not give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters {
-    /// `supply.voltage`: `U_in` (V), above 0, default 2000.
+    /// `supply.voltage`: `U_in` (V).
     pub supply_voltage: f64,
-    /// `zener.voltage`: `U_z` (V), at least `U_in`, default 2000. Without effect on a storage.
+    /// `zener.voltage`: `U_z` (V), at least `U_in`. Without effect on a storage.
     pub zener_voltage: f64,
-    /// `storage.voltage`: `U_out` (V), at least `U_in`, default 2450, near the best for Fig. 14 on a shared node.
+    /// `storage.voltage`: `U_out` (V), at least `U_in`; the default is near the best for Fig. 14 on a shared node.
     /// Effective with [`Release::Storage`] only.
     pub storage_voltage: f64,
-    /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends, default 1e9. Without effect on a storage.
+    /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends. Without effect on a storage.
     pub load_resistance: f64,
-    /// `topology`, default [`Topology::SharedNode`].
+    /// `topology`
     pub topology: Topology,
-    /// `release`, default [`Release::Zener`].
+    /// `release`
     pub release: Release,
-    /// Model of the diodes, default [`Diodes::Ideal`].
+    /// Model of the diodes.
     pub diodes: Diodes,
+}
+
+impl DiodeParameters {
+    /// Near-ideal diodes.
+    pub(crate) const DEFAULT: Self = Self {
+        saturation_current: 1e-13,
+        emission_coefficient: 0.01,
+        temperature: 300.15,
+        breakdown_current: 1e-13,
+        breakdown_emission: 0.01,
+        switch_band: 0.02,
+        solver: Solver { relative_tolerance: 1e-9, maximum_steps: 100_000 },
+    };
+}
+
+impl Parameters {
+    /// The paper's circuit.
+    pub(crate) const DEFAULT: Self = Self {
+        supply_voltage: 2000.0,
+        zener_voltage: 2000.0,
+        storage_voltage: 2450.0,
+        load_resistance: 1e9,
+        topology: Topology::SharedNode,
+        release: Release::Zener,
+        diodes: Diodes::Ideal,
+    };
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        DiodeParameters::DEFAULT.solver
+    }
+}
+
+impl Default for DiodeParameters {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl Default for Parameters {
     fn default() -> Self {
-        Self {
-            supply_voltage: 2000.0,
-            zener_voltage: 2000.0,
-            storage_voltage: 2450.0,
-            load_resistance: 1e9,
-            topology: Topology::default(),
-            release: Release::default(),
-            diodes: Diodes::default(),
-        }
+        Self::DEFAULT
     }
 }
 
 impl Parameters {
-    /// Checks every bound.
-    ///
-    /// # Errors
-    /// The first parameter that is not finite (`R` may be infinite), out of its range, or a voltage of release below
-    /// `U_in`.
-    pub fn validate(&self) -> Result<(), Error> {
-        positive(names::SUPPLY_VOLTAGE, self.supply_voltage, "V")?;
-        finite(names::ZENER_VOLTAGE, self.zener_voltage, "V")?;
-        finite(names::STORAGE_VOLTAGE, self.storage_voltage, "V")?;
-        let (supply, release) = (self.supply_voltage, self.release_voltage());
-        if release < supply {
-            return Err(match self.release {
-                Release::Zener | Release::Switch => Error::ZenerBelowSupply { zener: release, supply },
-                Release::Storage => Error::StorageBelowSupply { storage: release, supply },
-            });
-        }
-        if self.load_resistance != f64::INFINITY {
-            not_negative(names::LOAD_RESISTANCE, self.load_resistance, "ohm")?;
-        }
-        match &self.diodes {
-            Diodes::Ideal => Ok(()),
-            Diodes::Exponential(diode) => diode.validate(),
-        }
-    }
-
     /// Resistance of the load, ohm: -0 is 0.
     pub(crate) fn resistance(&self) -> f64 {
         self.load_resistance.abs()
@@ -224,17 +205,5 @@ impl Parameters {
             Topology::SharedNode => 1,
             Topology::Isolated => 2,
         }
-    }
-}
-
-impl DiodeParameters {
-    fn validate(&self) -> Result<(), Error> {
-        positive(names::SATURATION_CURRENT, self.saturation_current, "A")?;
-        positive(names::EMISSION_COEFFICIENT, self.emission_coefficient, "1")?;
-        positive(names::TEMPERATURE, self.temperature, "K")?;
-        positive(names::BREAKDOWN_CURRENT, self.breakdown_current, "A")?;
-        positive(names::BREAKDOWN_EMISSION, self.breakdown_emission, "1")?;
-        positive(names::SWITCH_BAND, self.switch_band, "V")?;
-        positive(names::RELATIVE_TOLERANCE, self.solver.relative_tolerance, "1")
     }
 }

@@ -95,6 +95,8 @@ proptest! {
             prop_assert!((b - a).abs() <= 1e-4 * a + leak * scale, "{b} instead of {a} with ideal diodes");
             prop_assert!((b - c).abs() <= 1e-6 * c, "{b} instead of {c} with a tight tolerance");
         }
+        let ledger = real.ledger();
+        prop_assert!(ledger.residual().abs() < 3e-9 * moved(&ledger) && ledger.diode > 0.0, "{ledger:?}");
         let deviation = (deviation / time).sqrt();
         prop_assert!(deviation < 0.1, "{deviation} V RMS");
     }

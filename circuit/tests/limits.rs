@@ -4,39 +4,20 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{last_cycle, pulse, run};
-use videg_circuit::{Circuit, Ledger, Parameters, Release, Topology, formulas};
-
-const U: f64 = 2000.0;
-const C2: f64 = 15e-12;
-const C3: f64 = 27e-12;
+use common::{C2, C3, TOPOLOGIES, U, node, pulse, run, steady_cycle};
+use videg_circuit::{Circuit, Parameters, Release, Topology, formulas};
 
 fn parameters(topology: Topology, release: Release, zener: f64, resistance: f64) -> Parameters {
     Parameters { zener_voltage: zener, load_resistance: resistance, topology, release, ..Parameters::default() }
 }
 
-/// Steady cycle of a slow pulse between `C2` and `C3` on the left membrane.
-fn cycle(parameters: Parameters) -> Ledger {
-    let mut circuit = Circuit::new(parameters, [C2; 2]).unwrap();
-    last_cycle(&mut circuit, &pulse([C2; 2], C3 - C2, 1.0, 3.0, 200), 3)
-}
-
-/// `C2`, `C3` of the node: the idle membrane lies in parallel on a shared node.
-fn node(topology: Topology) -> (f64, f64) {
-    match topology {
-        Topology::SharedNode => (C2 + C2, C3 + C2),
-        Topology::Isolated => (C2, C3),
-    }
-}
-
-const TOPOLOGIES: [Topology; 2] = [Topology::SharedNode, Topology::Isolated];
 const RELEASES: [Release; 2] = [Release::Zener, Release::Switch];
 
 #[test]
 fn a_fast_discharge_moves_dq_and_gains_nothing_at_the_supply_voltage() {
     for topology in TOPOLOGIES {
         for release in RELEASES {
-            let ledger = cycle(parameters(topology, release, U, 1e6));
+            let ledger = steady_cycle(parameters(topology, release, U, 1e6)).1;
             let charge = formulas::cycle_charge(U, C2, C3);
             assert_relative_eq!(ledger.load_charge, charge, max_relative = 1e-9);
             assert_relative_eq!(ledger.supply_charge, charge, max_relative = 1e-9);
@@ -52,7 +33,7 @@ fn a_release_at_the_zener_voltage_converts_the_formula() {
         for release in RELEASES {
             let (c2, c3) = node(topology);
             let zener = formulas::best_release_voltage(U, c2, c3);
-            let ledger = cycle(parameters(topology, release, zener, 1e4));
+            let ledger = steady_cycle(parameters(topology, release, zener, 1e4)).1;
             let gain = formulas::release_net_gain(U, zener, c2, c3);
             assert_relative_eq!(ledger.converted(), gain, max_relative = 1e-5);
             assert_relative_eq!(gain, formulas::best_release_net_gain(U, c2, c3), max_relative = 1e-12);

@@ -4,30 +4,11 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{last_cycle, moved, pulse, run};
-use videg_circuit::{Circuit, DiodeParameters, Diodes, Ledger, Parameters, Release, Topology, formulas};
-
-const U: f64 = 2000.0;
-const C2: f64 = 15e-12;
-const C3: f64 = 27e-12;
-const TOPOLOGIES: [Topology; 2] = [Topology::SharedNode, Topology::Isolated];
+use common::{C2, C3, TOPOLOGIES, U, moved, node, pulse, run, steady_cycle};
+use videg_circuit::{Circuit, DiodeParameters, Diodes, Parameters, Release, Topology, formulas};
 
 fn parameters(topology: Topology, storage_voltage: f64, diodes: Diodes) -> Parameters {
     Parameters { release: Release::Storage, topology, storage_voltage, diodes, ..Parameters::default() }
-}
-
-/// `C2`, `C3` of the node: the idle membrane lies in parallel on a shared node.
-fn node(topology: Topology) -> (f64, f64) {
-    match topology {
-        Topology::SharedNode => (C2 + C2, C3 + C2),
-        Topology::Isolated => (C2, C3),
-    }
-}
-
-/// Steady cycle of a pulse of one second between `C2` and `C3` on the left membrane.
-fn cycle(parameters: Parameters) -> Ledger {
-    let mut circuit = Circuit::new(parameters, [C2; 2]).unwrap();
-    last_cycle(&mut circuit, &pulse([C2; 2], C3 - C2, 1.0, 3.0, 200), 3)
 }
 
 #[test]
@@ -37,7 +18,7 @@ fn a_cycle_gains_the_closed_form_and_the_most_at_the_best_voltage() {
         let best = formulas::best_release_voltage(U, c2, c3);
         let mut gains = Vec::new();
         for voltage in [0.5 * (U + best), best - 1.0, best, best + 1.0, 0.5 * (best + U * c3 / c2)] {
-            let ledger = cycle(parameters(topology, voltage, Diodes::Ideal));
+            let ledger = steady_cycle(parameters(topology, voltage, Diodes::Ideal)).1;
             let expected = formulas::release_net_gain(U, voltage, c2, c3);
             // A difference of two energies, each exact to rounding.
             assert_relative_eq!(ledger.surplus(), expected, epsilon = 1e-12 * ledger.supply);
@@ -54,7 +35,7 @@ fn a_cycle_gains_the_closed_form_and_the_most_at_the_best_voltage() {
 #[test]
 fn a_storage_at_the_supply_voltage_hands_on_what_the_supply_gives() {
     for topology in TOPOLOGIES {
-        let ledger = cycle(parameters(topology, U, Diodes::Ideal));
+        let ledger = steady_cycle(parameters(topology, U, Diodes::Ideal)).1;
         assert_relative_eq!(ledger.load_charge, formulas::cycle_charge(U, C2, C3), max_relative = 1e-12);
         assert!(ledger.surplus().abs() <= 1e-12 * ledger.supply, "{ledger:?}");
     }
@@ -65,9 +46,7 @@ fn a_storage_out_of_reach_gets_nothing() {
     for topology in TOPOLOGIES {
         let (c2, c3) = node(topology);
         let voltage = formulas::peak_voltage(U, c2, c3) + 1e-6;
-        let parameters = parameters(topology, voltage, Diodes::Ideal);
-        let mut circuit = Circuit::new(parameters, [C2; 2]).unwrap();
-        let ledger = last_cycle(&mut circuit, &pulse([C2; 2], C3 - C2, 1.0, 3.0, 200), 3);
+        let (circuit, ledger) = steady_cycle(parameters(topology, voltage, Diodes::Ideal));
         assert_eq!((circuit.ledger().load_charge, circuit.load_current()), (0.0, 0.0));
         // The first pulse has charged the membranes, the later ones run to and fro at constant charge.
         assert!(ledger.supply <= 1e-12 * circuit.ledger().supply, "{ledger:?}");
@@ -106,14 +85,13 @@ fn the_current_into_the_storage_is_that_of_a_falling_capacitance() {
 }
 
 #[test]
-fn near_ideal_diodes_come_to_the_closed_form_and_the_books_close() {
+fn near_ideal_diodes_come_to_the_closed_form_and_the_ledger_closes() {
     for topology in TOPOLOGIES {
         let (c2, c3) = node(topology);
         let best = formulas::best_release_voltage(U, c2, c3);
         for voltage in [U, best, 0.5 * (best + U * c3 / c2)] {
             let diodes = Diodes::Exponential(DiodeParameters::default());
-            let mut circuit = Circuit::new(parameters(topology, voltage, diodes), [C2; 2]).unwrap();
-            let ledger = last_cycle(&mut circuit, &pulse([C2; 2], C3 - C2, 1.0, 3.0, 200), 3);
+            let (circuit, ledger) = steady_cycle(parameters(topology, voltage, diodes));
             let lost = formulas::release_net_gain(U, voltage, c2, c3) - ledger.surplus();
             // Each diode drops up to N k T / q ln(1e-6 A / IS) = 4.2 mV, so that less charge passes and loses more; from
             // each membrane the storage leaks IS.

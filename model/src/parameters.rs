@@ -6,9 +6,10 @@ use crate::error::ModelError;
 /// Vacuum permittivity, F/m (CODATA 2022). The paper rounds it to 8.85e-12.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
 
-/// One real parameter: what a user must know of it, and how to reach it.
+/// One real parameter: what a user must know of it, and how to reach it in `P`, the parameters themselves or what holds
+/// them.
 #[derive(Debug, Clone, Copy)]
-pub struct Quantity {
+pub struct Quantity<P = Parameters> {
     /// Structured name, as the FMU shows it.
     pub name: &'static str,
     /// SI unit; "1" for a pure number.
@@ -22,15 +23,15 @@ pub struct Quantity {
     /// Symbol and equation of the paper, and meaning.
     pub description: &'static str,
     /// Reads the parameter.
-    pub get: fn(&Parameters) -> f64,
+    pub get: fn(&P) -> f64,
     /// Writes the parameter, unchecked.
-    pub set: fn(&mut Parameters, f64),
+    pub set: fn(&mut P, f64),
 }
 
 /// One parameter that chooses or counts. Its value travels as an integer, as in FMI 2.0: items count from 1, a switch is
 /// 0 or 1.
 #[derive(Debug, Clone, Copy)]
-pub struct Choice {
+pub struct Choice<P = Parameters> {
     /// Structured name, as the FMU shows it.
     pub name: &'static str,
     /// Start value.
@@ -38,9 +39,9 @@ pub struct Choice {
     /// What it chooses, and where the paper speaks of it.
     pub description: &'static str,
     /// Reads the parameter.
-    pub get: fn(&Parameters) -> i32,
+    pub get: fn(&P) -> i32,
     /// Writes the parameter; a number that is no item counts as the last.
-    pub set: fn(&mut Parameters, i32),
+    pub set: fn(&mut P, i32),
 }
 
 impl Quantity {
@@ -88,11 +89,11 @@ macro_rules! parameters {
             }
         }
 
-        impl Parameters {
+        impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Quantity<P> {
             /// Every real parameter, in the order in which the FMU lists them.
-            pub const TABLE: &'static [Quantity] = &[$(Quantity {
+            pub const TABLE: &'static [Self] = &[$(Self {
                 name: $name, unit: $unit, start: $start, min: $min, max: $max, description: $description,
-                get: |p| p.$field, set: |p, value| p.$field = value,
+                get: |p| p.as_ref().$field, set: |p, value| p.as_mut().$field = value,
             },)*];
         }
     };
@@ -150,54 +151,92 @@ pub enum ContactLaw {
     Compliant,
 }
 
-impl Parameters {
+impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
     /// Every parameter that chooses or counts, in the order in which the FMU lists them.
-    pub const CHOICES: &'static [Choice] = &[
-        Choice {
-            name: "excitation.seed",
-            start: 1,
-            description: "Seed of the phase noise: equal seeds, equal noise",
-            get: |p| p.seed,
-            set: |p, seed| p.seed = seed,
-        },
-        Choice {
-            name: "excitation.noiseModel",
-            start: 1,
-            description: "How the phase noise is read, Section 5.2",
-            get: |p| if p.noise_model == NoiseModel::Held { 1 } else { 2 },
-            set: |p, item| p.noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
-        },
-        Choice {
-            name: "initial.outsideGap",
-            start: 1,
-            description: "Meaning of a start beyond a membrane, as in Fig. 12",
-            get: |p| if p.outside_gap == OutsideGap::Project { 1 } else { 2 },
-            set: |p, item| p.outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free },
-        },
-        Choice {
-            name: "contact.law",
-            start: 1,
-            description: "Law of the contact between ball and membrane, Section 3.2",
-            get: |p| if p.contact_law == ContactLaw::Impulsive { 1 } else { 2 },
-            set: |p, item| p.contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
-        },
-        Choice {
-            name: "contact.electrostaticFeedback",
-            start: 0,
-            description: "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in \
-                          Section 2.1",
-            get: |p| i32::from(p.electrostatic_feedback),
-            set: |p, on| p.electrostatic_feedback = on != 0,
-        },
-        Choice {
-            name: "contact.reaction",
-            start: 0,
-            description: "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: \
-                          m / M is small",
-            get: |p| i32::from(p.reaction),
-            set: |p, on| p.reaction = on != 0,
-        },
+    pub const TABLE: &'static [Self] = &[
+        Self::SEED,
+        Self::NOISE_MODEL,
+        Self::OUTSIDE_GAP,
+        Self::CONTACT_LAW,
+        Self::ELECTROSTATIC_FEEDBACK,
+        Self::REACTION,
     ];
+
+    /// `excitation.seed`
+    pub const SEED: Self = Self {
+        name: "excitation.seed",
+        start: 1,
+        description: "Seed of the phase noise: equal seeds, equal noise",
+        get: |p| p.as_ref().seed,
+        set: |p, seed| p.as_mut().seed = seed,
+    };
+
+    /// `excitation.noiseModel`
+    pub const NOISE_MODEL: Self = Self {
+        name: "excitation.noiseModel",
+        start: 1,
+        description: "How the phase noise is read, Section 5.2",
+        get: |p| if p.as_ref().noise_model == NoiseModel::Held { 1 } else { 2 },
+        set: |p, item| p.as_mut().noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
+    };
+
+    /// `initial.outsideGap`
+    pub const OUTSIDE_GAP: Self = Self {
+        name: "initial.outsideGap",
+        start: 1,
+        description: "Meaning of a start beyond a membrane, as in Fig. 12",
+        get: |p| if p.as_ref().outside_gap == OutsideGap::Project { 1 } else { 2 },
+        set: |p, item| p.as_mut().outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free },
+    };
+
+    /// `contact.law`
+    pub const CONTACT_LAW: Self = Self {
+        name: "contact.law",
+        start: 1,
+        description: "Law of the contact between ball and membrane, Section 3.2",
+        get: |p| if p.as_ref().contact_law == ContactLaw::Impulsive { 1 } else { 2 },
+        set: |p, item| p.as_mut().contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
+    };
+
+    /// `contact.electrostaticFeedback`
+    pub const ELECTROSTATIC_FEEDBACK: Self = Self {
+        name: "contact.electrostaticFeedback",
+        start: 0,
+        description: "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in \
+                      Section 2.1",
+        get: |p| i32::from(p.as_ref().electrostatic_feedback),
+        set: |p, on| p.as_mut().electrostatic_feedback = on != 0,
+    };
+
+    /// `contact.reaction`
+    pub const REACTION: Self = Self {
+        name: "contact.reaction",
+        start: 0,
+        description: "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: \
+                      m / M is small",
+        get: |p| i32::from(p.as_ref().reaction),
+        set: |p, on| p.as_mut().reaction = on != 0,
+    };
+}
+
+impl AsRef<Self> for Parameters {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+impl AsMut<Self> for Parameters {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
+impl Parameters {
+    /// Every real parameter, in the order in which the FMU lists them.
+    pub const TABLE: &'static [Quantity] = Quantity::<Self>::TABLE;
+
+    /// Every parameter that chooses or counts, in the order in which the FMU lists them.
+    pub const CHOICES: &'static [Choice] = Choice::<Self>::TABLE;
 
     /// All real parameters zero: no change of any.
     pub(crate) fn none() -> Self {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use videg_circuit::{Release, Settings, Topology, names};
+use videg_circuit::{Choice, Release, Settings, Topology, names};
 
 use super::isolation::IsolationOptions;
 use super::options::RunOptions;
@@ -269,11 +269,8 @@ fn circuits(
 
 /// What a circuit is called in tables.
 pub fn label(settings: &Settings) -> String {
-    let chosen = |index: usize| {
-        let choice = &Settings::CHOICES[index];
-        choice.items[(choice.get)(settings)].0
-    };
-    format!("{}, {} at {:.0} V", chosen(0), chosen(1), settings.circuit.release_voltage())
+    let [topology, release] = [Choice::TOPOLOGY, Choice::RELEASE].map(|choice| choice.chosen(settings));
+    format!("{topology}, {release} at {:.0} V", settings.circuit.release_voltage())
 }
 
 fn write_files(folder: &Path, csv: &Path, finished: &Finished) -> anyhow::Result<Vec<PathBuf>> {

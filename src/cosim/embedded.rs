@@ -49,8 +49,7 @@ impl EmbeddedCircuit {
         let Some(choice) = Settings::CHOICES.iter().find(|choice| choice.name == setting.name) else {
             return Ok(false);
         };
-        if let Some(item) = choice.items.iter().position(|(name, _)| *name == setting.value) {
-            (choice.set)(settings, item);
+        if choice.choose(settings, &setting.value) {
             return Ok(true);
         }
         let items: Vec<_> = choice.items.iter().map(|(name, _)| *name).collect();

@@ -19,6 +19,27 @@ pub fn pulse(rest: [f64; 2], height: f64, length: f64, period: f64, pieces: u32)
     ramps
 }
 
+/// Supply voltage (V), capacitances at rest and at the peak of [`steady_cycle`] (F).
+pub const U: f64 = 2000.0;
+pub const C2: f64 = 15e-12;
+pub const C3: f64 = 27e-12;
+pub const TOPOLOGIES: [Topology; 2] = [Topology::SharedNode, Topology::Isolated];
+
+/// `C2`, `C3` of the node: the idle membrane lies in parallel on a shared node.
+pub fn node(topology: Topology) -> (f64, f64) {
+    match topology {
+        Topology::SharedNode => (C2 + C2, C3 + C2),
+        Topology::Isolated => (C2, C3),
+    }
+}
+
+/// A circuit with both membranes at rest, and the ledger of its third pulse of one second on the left membrane.
+pub fn steady_cycle(parameters: Parameters) -> (Circuit, Ledger) {
+    let mut circuit = Circuit::new(parameters, [C2; 2]).unwrap();
+    let ledger = last_cycle(&mut circuit, &pulse([C2; 2], C3 - C2, 1.0, 3.0, 200), 3);
+    (circuit, ledger)
+}
+
 pub fn run(circuit: &mut Circuit, ramps: &[Ramp]) {
     for &(dt, ends) in ramps {
         circuit.advance(dt, ends).unwrap();
@@ -48,12 +69,12 @@ pub fn difference(a: &Ledger, b: &Ledger) -> Ledger {
     }
 }
 
-/// Energy that passed through the books, the scale of their error.
+/// Sum of all energies, the scale of the ledger's error.
 pub fn moved(ledger: &Ledger) -> f64 {
     ledger.supply.abs() + ledger.load.abs() + ledger.zener.abs() + ledger.mechanical.abs() + ledger.stored.abs()
 }
 
-/// What the independent solver books: supply charge, load charge, load energy, Zener energy, final charges.
+/// The sums of the independent solver: supply charge, load charge, load energy, Zener energy, final charges.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reference {
     pub supply_charge: f64,
@@ -84,7 +105,7 @@ fn stepped(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32)
         Topology::Isolated => c,
     };
     let mut from = start;
-    let mut book = Reference { charge: node(from).map(|c| c * parameters.supply_voltage), ..Reference::default() };
+    let mut sums = Reference { charge: node(from).map(|c| c * parameters.supply_voltage), ..Reference::default() };
     let mut conducting = [false; 5];
     for &(dt, to) in ramps {
         // Short against the time constant of the load, too.
@@ -100,21 +121,21 @@ fn stepped(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps: u32)
                 let part = (f64::from(i) + part) / f64::from(steps);
                 node([0, 1].map(|j| from[j] + (to[j] - from[j]) * part))
             };
-            let before = book;
-            let after = euler(parameters, &mut book, at(1.0), h);
+            let before = sums;
+            let after = euler(parameters, &mut sums, at(1.0), h);
             if after != conducting {
                 // A current may jump inside this step: go through it again in small ones.
-                book = before;
+                sums = before;
                 for fine in 1..=REFINEMENT {
                     let part = f64::from(fine) / f64::from(REFINEMENT);
-                    euler(parameters, &mut book, at(part), h / f64::from(REFINEMENT));
+                    euler(parameters, &mut sums, at(part), h / f64::from(REFINEMENT));
                 }
                 conducting = after;
             }
         }
         from = to;
     }
-    book
+    sums
 }
 
 /// A storage has no time constant to resolve.
@@ -126,10 +147,10 @@ fn load_resistance(parameters: &Parameters) -> f64 {
 const REFINEMENT: u32 = 1000;
 
 /// One step to the capacitances `c`; which diodes and release elements conducted, and if above the voltage of release.
-fn euler(parameters: &Parameters, book: &mut Reference, c: [f64; 2], h: f64) -> [bool; 5] {
+fn euler(parameters: &Parameters, sums: &mut Reference, c: [f64; 2], h: f64) -> [bool; 5] {
     let (u_in, u_z) = (parameters.supply_voltage, parameters.release_voltage());
     let drop = if parameters.release == Release::Zener { u_z } else { 0.0 };
-    let free = [0, 1].map(|j| book.charge[j] / c[j]);
+    let free = [0, 1].map(|j| sums.charge[j] / c[j]);
     let top = match parameters.release {
         Release::Storage => u_z,
         Release::Zener | Release::Switch => load_line(c, free, h, u_z, drop, parameters.load_resistance),
@@ -138,21 +159,21 @@ fn euler(parameters: &Parameters, book: &mut Reference, c: [f64; 2], h: f64) -> 
     let mut conducting = [false; 5];
     for j in 0..2 {
         if free[j] < u_in {
-            let drawn = u_in * c[j] - book.charge[j];
-            book.supply_charge += drawn;
-            book.charge[j] += drawn;
+            let drawn = u_in * c[j] - sums.charge[j];
+            sums.supply_charge += drawn;
+            sums.charge[j] += drawn;
             conducting[j] = true;
         } else if free[j] > top {
             let passed = c[j] * (free[j] - top);
-            book.charge[j] -= passed;
+            sums.charge[j] -= passed;
             current += passed / h;
             conducting[2 + j] = true;
         }
     }
     conducting[4] = top > u_z;
-    book.load_charge += h * current;
-    book.zener += h * current * drop;
-    book.load += h * current * (top - drop);
+    sums.load_charge += h * current;
+    sums.zener += h * current * drop;
+    sums.load += h * current * (top - drop);
     conducting
 }
 

@@ -12,7 +12,7 @@ impl Harvesting {
             out.f64((quantity.get)(&self.settings));
         }
         for choice in Settings::CHOICES {
-            out.len((choice.get)(&self.settings));
+            out.i32((choice.get)(&self.settings));
         }
         self.capacitance.into_iter().for_each(|value| out.f64(value));
         self.rate.into_iter().for_each(|value| out.option_f64(value));
@@ -31,9 +31,11 @@ impl Harvesting {
             (quantity.set)(&mut settings, from.f64()?);
         }
         for choice in Settings::CHOICES {
-            let item = from.u64()?;
-            let item = usize::try_from(item).ok().filter(|item| *item < choice.items.len());
-            (choice.set)(&mut settings, item.ok_or_else(|| invalid(format!("{}: no such item", choice.name)))?);
+            let item = from.i32()?;
+            if !(1..).zip(choice.items).any(|(number, _)| number == item) {
+                return Err(invalid(format!("{}: no such item", choice.name)));
+            }
+            (choice.set)(&mut settings, item);
         }
         let capacitance = pair(from)?;
         let rate = [from.option_f64()?, from.option_f64()?];

@@ -1,70 +1,60 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the table of the
 //! circuit.
 
-use fmu_export::{EnumerationItem, EnumerationType, Variable, concat};
-use videg_circuit::{Circuit, Settings, names};
+use fmu_export::{EnumerationType, Variable, concat};
+use videg_circuit::{Choice, Circuit, Quantity, Settings, names};
 
 use crate::slave::{Harvesting, REST_CAPACITANCE};
 
 type V = Variable<Harvesting>;
 
-/// Real parameter number `INDEX` of the circuit's table.
-const fn quantity<const INDEX: usize>() -> V {
-    let quantity = &Settings::QUANTITIES[INDEX];
-    let mut row = V::parameter(quantity.name, quantity.unit, quantity.start, quantity.description).min(quantity.min);
-    if quantity.max == f64::INFINITY {
-        row = row.infinity_allowed();
-    } else {
-        row = row.max(quantity.max);
+impl AsRef<Settings> for Harvesting {
+    fn as_ref(&self) -> &Settings {
+        &self.settings
     }
-    row.access(
-        |slave| (Settings::QUANTITIES[INDEX].get)(&slave.settings),
-        |slave, value| (Settings::QUANTITIES[INDEX].set)(&mut slave.settings, value),
-    )
 }
 
-/// The items of choice number `INDEX`, all of them: a `COUNT` that is not theirs does not compile.
-const fn items<const INDEX: usize, const COUNT: usize>() -> [EnumerationItem; COUNT] {
-    let items = Settings::CHOICES[INDEX].items;
-    assert!(items.len() == COUNT);
-    let mut found = [EnumerationItem::new("", ""); COUNT];
-    let mut k = 0;
-    while k < COUNT {
-        found[k] = EnumerationItem::new(items[k].0, items[k].1);
+impl AsMut<Settings> for Harvesting {
+    fn as_mut(&mut self) -> &mut Settings {
+        &mut self.settings
+    }
+}
+
+const fn real(of: &Quantity<Harvesting>) -> V {
+    let row = V::parameter(of.name, of.unit, of.start, of.description).min(of.min);
+    let row = if of.max == f64::INFINITY { row.infinity_allowed() } else { row.max(of.max) };
+    row.access(of.get, of.set)
+}
+
+const fn real_rows<const N: usize>(table: &[Quantity<Harvesting>]) -> [V; N] {
+    let mut rows = [real(&table[0]); N];
+    let mut k = 1;
+    while k < N {
+        rows[k] = real(&table[k]);
         k += 1;
     }
-    found
+    rows
 }
 
-const fn enumeration<const INDEX: usize>(name: &'static str, items: &'static [EnumerationItem]) -> EnumerationType {
-    EnumerationType::new(name, Settings::CHOICES[INDEX].description, items)
+const fn enumeration(name: &'static str, of: &Choice<Harvesting>) -> EnumerationType {
+    EnumerationType { name, description: of.description, items: of.items }
 }
 
-static TOPOLOGY_ITEMS: [EnumerationItem; 2] = items::<0, 2>();
-static RELEASE_ITEMS: [EnumerationItem; 3] = items::<1, 3>();
-static DIODE_ITEMS: [EnumerationItem; 2] = items::<2, 2>();
-static TOPOLOGY: EnumerationType = enumeration::<0>("Topology", &TOPOLOGY_ITEMS);
-static RELEASE: EnumerationType = enumeration::<1>("Release", &RELEASE_ITEMS);
-static DIODE_MODEL: EnumerationType = enumeration::<2>("DiodeModel", &DIODE_ITEMS);
-
-/// Choice number `INDEX` of the circuit's table. FMI counts items from 1, the table from 0.
-const fn choice<const INDEX: usize>(of: &'static EnumerationType) -> V {
-    let choice = &Settings::CHOICES[INDEX];
-    #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, clippy::cast_sign_loss)] // numbers of items
-    V::enumeration_parameter(choice.name, of, 1, choice.description).access(
-        |slave| (Settings::CHOICES[INDEX].get)(&slave.settings) as i32 + 1,
-        |slave, item| (Settings::CHOICES[INDEX].set)(&mut slave.settings, item as usize - 1),
-    )
+const fn choice(of: &Choice<Harvesting>, items: &'static EnumerationType) -> V {
+    V::enumeration_parameter(of.name, items, 1, of.description).access(of.get, of.set)
 }
 
-macro_rules! quantities {
-    ($($index:literal)*) => { [$(quantity::<$index>()),*] };
-}
+static TOPOLOGY: EnumerationType = enumeration("Topology", &Choice::TOPOLOGY);
+static RELEASE: EnumerationType = enumeration("Release", &Choice::RELEASE);
+static DIODE_MODEL: EnumerationType = enumeration("DiodeModel", &Choice::DIODE_MODEL);
 
-static QUANTITIES: [V; Settings::QUANTITIES.len()] = quantities!(0 1 2 3 4 5 6 7 8 9 10);
+static QUANTITIES: [V; Settings::QUANTITIES.len()] = real_rows(Quantity::TABLE);
 
-static CHOICES: [V; Settings::CHOICES.len()] =
-    [choice::<0>(&TOPOLOGY), choice::<1>(&RELEASE), choice::<2>(&DIODE_MODEL)];
+static CHOICES: [V; Settings::CHOICES.len()] = [
+    choice(&Choice::TOPOLOGY, &TOPOLOGY),
+    choice(&Choice::RELEASE, &RELEASE),
+    choice(&Choice::DIODE_MODEL, &DIODE_MODEL),
+];
 
 macro_rules! capacitance {
     ($index:literal, $name:expr, $side:literal) => {
@@ -122,37 +112,10 @@ pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUT
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fmu_export::Kind;
-
-    /// The compiler makes the rows of the table; here one is made again, where it can be looked at as it is made.
-    #[test]
-    fn a_parameter_has_name_unit_start_and_bounds_of_the_table_of_the_circuit() {
-        let mut infinite = 0;
-        for (row, quantity) in quantities!(0 1 2 3 4 5 6 7 8 9 10).iter().zip(Settings::QUANTITIES) {
-            assert_eq!((row.name(), row.description()), (quantity.name, quantity.description));
-            let Kind::Real(real) = row.kind() else { panic!("{} is no Real", row.name()) };
-            assert_eq!((real.unit, real.start), (quantity.unit, Some(quantity.start)), "{}", row.name());
-            assert_eq!((real.min, real.max), (quantity.min, quantity.max), "{}", row.name());
-            assert_eq!(real.infinity_allowed, quantity.max == f64::INFINITY, "{}", row.name());
-            infinite += usize::from(real.infinity_allowed);
-        }
-        assert!(infinite > 0 && infinite < Settings::QUANTITIES.len(), "{infinite} parameters may be infinite");
-    }
 
     #[test]
-    fn a_choice_has_the_items_of_the_table_of_the_circuit() {
-        let items: [EnumerationItem; 3] = items::<1, 3>();
-        let wanted = Settings::CHOICES[1].items;
-        assert!(items.iter().map(|item| (item.name, item.description)).eq(wanted.iter().copied()), "{items:?}");
-        let of = enumeration::<1>("Release", &RELEASE_ITEMS);
-        assert_eq!(of, RELEASE);
-        let row = choice::<1>(&RELEASE);
-        assert_eq!((row.name(), row.description()), (Settings::CHOICES[1].name, Settings::CHOICES[1].description));
-    }
-
-    #[test]
-    #[should_panic(expected = "items.len() == COUNT")]
-    fn a_count_of_items_that_is_not_theirs_is_refused() {
-        let _ = items::<1, 2>();
+    fn the_rows_have_the_order_and_the_names_of_the_tables_of_the_circuit() {
+        let names = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
+        assert!(QUANTITIES.iter().chain(&CHOICES).map(Variable::name).eq(names));
     }
 }

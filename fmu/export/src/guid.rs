@@ -122,7 +122,7 @@ impl Hasher {
                 self.option(s.start, Self::i32);
                 self.text(s.of.name);
                 self.count(s.of.items.len());
-                s.of.items.iter().for_each(|item| self.text(item.name));
+                s.of.items.iter().for_each(|(name, _)| self.text(name));
             }
         }
     }

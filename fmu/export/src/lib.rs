@@ -113,7 +113,7 @@ pub use serialize::{StateError, StateReader, StateWriter};
 pub use slave::{EventOutcome, Experiment, Slave};
 pub use units::{BaseUnit, base_unit};
 pub use variable::{
-    BooleanSpec, Causality, Declaration, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, Initial,
-    IntegerSpec, Kind, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, TableError, Variability, Variable,
-    concat, value_reference,
+    BooleanSpec, Causality, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial, IntegerSpec, Kind,
+    ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, TableError, Variability, Variable, concat,
+    value_reference,
 };

@@ -217,10 +217,9 @@ fn simple_type(xml: &mut Xml, enumeration: &EnumerationType) -> Written {
     attributes.extend(text("description", enumeration.description));
     element(xml, "SimpleType", &attributes, |xml| {
         element(xml, "Enumeration", &[], |xml| {
-            for (item, number) in enumeration.items.iter().zip(1..) {
-                let number: i32 = number;
-                let mut attributes = vec![("name", item.name.to_owned()), ("value", number.to_string())];
-                attributes.extend(text("description", item.description));
+            for (number, (name, description)) in (1_i32..).zip(enumeration.items) {
+                let mut attributes = vec![("name", (*name).to_owned()), ("value", number.to_string())];
+                attributes.extend(text("description", description));
                 empty(xml, "Item", &attributes)?;
             }
             Ok(())

@@ -9,8 +9,7 @@ mod common;
 
 use common::toy::Toy;
 use fmu_export::{
-    Causality, EnumerationItem, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Variable,
-    model_description,
+    Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Variable, model_description,
 };
 use videg_golden::Golden;
 
@@ -146,8 +145,8 @@ fn mistakes_in_a_table_are_found_and_named() {
     fn mistake<S: Slave>() -> String {
         model_description::<S>().expect_err("a mistake").to_string()
     }
-    static LAW: EnumerationType = EnumerationType::new("Law", "", &[EnumerationItem::new("a", "")]);
-    static OTHER: EnumerationType = EnumerationType::new("Law", "", &[EnumerationItem::new("b", "")]);
+    static LAW: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("a", "")] };
+    static OTHER: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("b", "")] };
     slave!(Twice, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
     assert_eq!(mistake::<Twice>(), "the FMU is faulty: a: its name occurs twice");
     slave!(Bounds, V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v));

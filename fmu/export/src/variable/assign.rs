@@ -183,7 +183,7 @@ impl<M> EnumerationSpec<M> {
             return None;
         }
         let items = self.of.items.iter().zip(1..);
-        let choices: Vec<_> = items.map(|(item, n)| format!("{n} ({})", item.name)).collect();
+        let choices: Vec<_> = items.map(|((name, _), n)| format!("{n} ({name})")).collect();
         Some(format!("no item of {}; allowed: {}", self.of.name, choices.join(", ")))
     }
 }

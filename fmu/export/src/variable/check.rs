@@ -126,10 +126,10 @@ fn check_kind<M>(variable: &Variable<M>) -> Check {
         Kind::Enumeration(spec) => {
             ensure(!spec.of.items.is_empty(), spec.of.name, || "it has no items".into())?;
             let mut names = HashSet::new();
-            for item in spec.of.items {
-                ensure(names.insert(item.name), item.name, || "the item occurs twice".into())?;
-                check_text(spec.of.name, item.name)?;
-                check_text(item.name, item.description)?;
+            for (item, description) in spec.of.items {
+                ensure(names.insert(item), item, || "the item occurs twice".into())?;
+                check_text(spec.of.name, item)?;
+                check_text(item, description)?;
             }
             check_text(spec.of.name, spec.of.name)?;
             check_text(spec.of.name, spec.of.description)?;

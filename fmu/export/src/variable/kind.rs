@@ -97,36 +97,15 @@ pub struct EnumerationType {
     pub name: &'static str,
     /// What the choice is about.
     pub description: &'static str,
-    /// The choices.
-    pub items: &'static [EnumerationItem],
-}
-
-/// One choice of an enumeration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct EnumerationItem {
-    /// Name of the choice.
-    pub name: &'static str,
-    /// What it means.
-    pub description: &'static str,
+    /// Name and meaning of each item.
+    pub items: &'static [(&'static str, &'static str)],
 }
 
 impl EnumerationType {
-    /// An enumeration with `(name, description)` items made by [`EnumerationItem::new`].
-    pub const fn new(name: &'static str, description: &'static str, items: &'static [EnumerationItem]) -> Self {
-        Self { name, description, items }
-    }
-
-    /// The item with this number, counted from 1.
-    pub fn item(&self, number: i32) -> Option<&EnumerationItem> {
+    /// Name of the item with this number, counted from 1.
+    pub fn item(&self, number: i32) -> Option<&'static str> {
         let index = usize::try_from(number).ok()?.checked_sub(1)?;
-        self.items.get(index)
-    }
-}
-
-impl EnumerationItem {
-    /// An item.
-    pub const fn new(name: &'static str, description: &'static str) -> Self {
-        Self { name, description }
+        self.items.get(index).map(|item| item.0)
     }
 }
 

@@ -18,8 +18,8 @@ pub use builder::{Declaration, ReadOnly, Settable};
 pub use check::TableError;
 pub(crate) use check::check_fmu;
 pub use kind::{
-    BooleanSpec, EnumerationItem, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, RealSpec,
-    SetDerivative, StringSpec,
+    BooleanSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, RealSpec, SetDerivative,
+    StringSpec,
 };
 
 /// What a variable is for.

@@ -1,8 +1,8 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
 use fmu_export::{
-    EnumerationItem, EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError,
-    StateError, StateReader, StateWriter, Variable, export_fmu,
+    EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
+    StateWriter, Variable, export_fmu,
 };
 use std::cell::Cell;
 
@@ -44,11 +44,11 @@ impl Clone for Toy {
     }
 }
 
-pub static LAW: EnumerationType = EnumerationType::new(
-    "Law",
-    "What is integrated",
-    &[EnumerationItem::new("value", "The input"), EnumerationItem::new("square", "Its square, x < y & \"so\"")],
-);
+pub static LAW: EnumerationType = EnumerationType {
+    name: "Law",
+    description: "What is integrated",
+    items: &[("value", "The input"), ("square", "Its square, x < y & \"so\"")],
+};
 
 pub const GAIN: u32 = 0;
 pub const LIMIT: u32 = 1;

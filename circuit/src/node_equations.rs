@@ -1,4 +1,4 @@
-//! The nonlinear equations of one implicit stage: node voltages for given charges and step.
+//! Node voltages for given charges: the nonlinear equations of one stage of the implicit Runge-Kutta method.
 //!
 //! Every equation is reduced to a scalar one that rises monotonically, and is solved inside a bracket: unlike a
 //! plain Newton iteration over exponentials, this cannot diverge or overflow. Where equations are nested, behind Zener
@@ -28,7 +28,7 @@ pub(crate) struct Point {
 
 /// The equations `C_j V_j - charge_j = span (I_supply,j - I_release,j)`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stage<'a> {
+pub(crate) struct NodeEquations<'a> {
     pub devices: &'a Devices,
     /// Number of nodes.
     pub count: usize,
@@ -42,7 +42,7 @@ pub(crate) struct Stage<'a> {
     pub trials: &'a Cell<usize>,
 }
 
-impl Stage<'_> {
+impl NodeEquations<'_> {
     /// Solves, starting from `guess`; `None` if that fails.
     pub fn solve(&self, guess: &Point) -> Option<Point> {
         match self.devices.release {

@@ -17,9 +17,10 @@
 //! for its energy does not follow from the charge.
 
 use crate::devices::Devices;
-use crate::exponential::Exponential;
+use crate::node_equations::{NodeEquations, Point};
 use crate::parameters::Release;
-use crate::stage::{Point, Stage};
+
+use super::Exponential;
 
 const STAGES: usize = 5;
 /// Diagonal coefficient.
@@ -103,7 +104,7 @@ impl Exponential<'_> {
     /// One step of `h` seconds from `start`, `elapsed` seconds after the start of the call; `None` where the node
     /// equations are not solved.
     pub fn step(&self, start: &Flow, guess: &Point, elapsed: f64, h: f64) -> Option<Step> {
-        let probe = self.stage(start, elapsed + PROBE * h, PROBE * h).solve(guess)?;
+        let probe = self.equations(start, elapsed + PROBE * h, PROBE * h).solve(guess)?;
         let mut rates = [Flow::default(); STAGES];
         let (mut flow, mut point) = (*start, probe);
         let mut top: f64 = 0.0;
@@ -112,7 +113,7 @@ impl Exponential<'_> {
             for (rate, weight) in rates[..i].iter().zip(BELOW[i]) {
                 flow.add(rate, h * weight);
             }
-            point = self.stage(&flow, elapsed + NODES[i] * h, GAMMA * h).solve(&point)?;
+            point = self.equations(&flow, elapsed + NODES[i] * h, GAMMA * h).solve(&point)?;
             rates[i] = self.rates(&point);
             flow.add(&rates[i], h * GAMMA);
             top = top.max(point.load_voltage);
@@ -141,8 +142,8 @@ impl Exponential<'_> {
         [0, 1].map(|j| self.capacitance[j] + self.rate[j] * t)
     }
 
-    fn stage(&self, flow: &Flow, t: f64, span: f64) -> Stage<'_> {
-        Stage {
+    fn equations(&self, flow: &Flow, t: f64, span: f64) -> NodeEquations<'_> {
+        NodeEquations {
             devices: self.devices,
             count: self.count,
             capacitance: self.capacitances(t),

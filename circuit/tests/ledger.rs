@@ -6,7 +6,7 @@ mod common;
 use approx::assert_relative_eq;
 use common::{Ramp, moved, run};
 use proptest::prelude::*;
-use videg_circuit::{Circuit, Error, Parameters, Release, Topology};
+use videg_circuit::{Circuit, DiodeParameters, Diodes, Error, Parameters, Release, Topology};
 
 const START: [f64; 2] = [15e-12, 12e-12];
 
@@ -101,8 +101,13 @@ proptest! {
 
 #[test]
 fn a_restored_state_goes_on_to_the_last_bit() {
-    for topology in [Topology::SharedNode, Topology::Isolated] {
-        let parameters = Parameters { topology, ..Parameters::default() };
+    let exponential = Diodes::Exponential(DiodeParameters::default());
+    for (topology, diodes) in [
+        (Topology::SharedNode, Diodes::Ideal),
+        (Topology::Isolated, Diodes::Ideal),
+        (Topology::SharedNode, exponential),
+    ] {
+        let parameters = Parameters { topology, diodes, ..Parameters::default() };
         let mut circuit = Circuit::new(parameters, START).unwrap();
         let first = common::pulse(START, 6e-12, 0.03, 0.04, 20);
         run(&mut circuit, &first[..15]);
@@ -158,33 +163,25 @@ fn an_idle_circuit_does_nothing_for_ever() {
 }
 
 #[test]
-fn a_start_below_the_supply_or_above_a_shorted_zener_is_booked() {
-    let parameters = Parameters { topology: Topology::Isolated, load_resistance: 0.0, ..Parameters::default() };
-    let circuit = Circuit::with_voltages(parameters, [10e-12; 2], [500.0, 3000.0]).unwrap();
-    let ledger = circuit.ledger();
-    for v in circuit.voltage() {
-        assert_relative_eq!(v, 2000.0, max_relative = 1e-15);
+fn a_start_below_the_supply_or_above_the_release_is_recorded() {
+    let isolated = Parameters { topology: Topology::Isolated, ..Parameters::default() };
+    let shorted = Parameters { load_resistance: 0.0, ..isolated };
+    let storage = Parameters { release: Release::Storage, storage_voltage: 2300.0, ..isolated };
+    // Starting voltages, voltages then, and the energies of load, Zener and other diodes with 10 pF.
+    for (parameters, start, voltage, [load, zener, diode]) in [
+        (shorted, [500.0, 3000.0], [2000.0; 2], [0.5e6, 2000.0 * 1000.0, 0.5 * 1500.0 * 1500.0]),
+        (storage, [2100.0, 3300.0], [2100.0, 2300.0], [2300.0 * 1000.0, 0.0, 0.5e6]),
+    ] {
+        let circuit = Circuit::with_voltages(parameters, [10e-12; 2], start).unwrap();
+        let ledger = circuit.ledger();
+        for j in 0..2 {
+            assert_relative_eq!(circuit.voltage()[j], voltage[j], max_relative = 1e-15);
+        }
+        assert_relative_eq!(ledger.load, 10e-12 * load, max_relative = 1e-9);
+        assert_relative_eq!(ledger.zener, 10e-12 * zener, max_relative = 1e-12);
+        assert_relative_eq!(ledger.diode, 10e-12 * diode, max_relative = 1e-12);
+        assert!(ledger.residual().abs() < 1e-12 * (ledger.supply + ledger.load));
     }
-    assert_relative_eq!(ledger.diode, 0.5 * 10e-12 * 1500.0 * 1500.0, max_relative = 1e-12);
-    assert_relative_eq!(ledger.zener, 2000.0 * 10e-12 * 1000.0, max_relative = 1e-12);
-    assert_relative_eq!(ledger.load, 0.5 * 10e-12 * 1e6, max_relative = 1e-9);
-    assert!(ledger.residual().abs() < 1e-12 * ledger.supply);
-}
-
-#[test]
-fn a_start_above_a_storage_is_booked() {
-    let parameters = Parameters {
-        topology: Topology::Isolated,
-        release: Release::Storage,
-        storage_voltage: 2300.0,
-        ..Parameters::default()
-    };
-    let circuit = Circuit::with_voltages(parameters, [10e-12; 2], [2100.0, 3300.0]).unwrap();
-    let ledger = circuit.ledger();
-    assert_eq!(circuit.voltage(), [2100.0, 2300.0]);
-    assert_relative_eq!(ledger.load, 2300.0 * 10e-12 * 1000.0, max_relative = 1e-12);
-    assert_relative_eq!(ledger.diode, 0.5 * 10e-12 * 1e6, max_relative = 1e-12);
-    assert!(ledger.residual().abs() < 1e-12 * ledger.load);
 }
 
 #[test]
