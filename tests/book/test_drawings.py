@@ -1,0 +1,22 @@
+"""The drawings in git are those that `docs/drawings` makes."""
+
+from xml.etree import ElementTree
+
+import draw
+from harness import ROOT
+
+FIGURES = ROOT / "docs" / "figures"
+
+
+def test_every_drawing_is_in_git_as_it_is_drawn():
+    drawings = draw.drawings()
+    assert {path.name for path in FIGURES.glob("*.svg")} == set(drawings)
+    changed = [name for name, svg in drawings.items() if (FIGURES / name).read_text() != svg]
+    assert changed == [], "run .venv/bin/python docs/drawings/draw.py and look at the pictures"
+
+
+def test_every_drawing_has_a_title_and_paper_behind_it():
+    for name, svg in draw.drawings().items():
+        root = ElementTree.fromstring(svg)
+        tags = [child.tag.split("}")[1] for child in root]
+        assert tags[:2] == ["title", "rect"], name
