@@ -1,4 +1,4 @@
-//! Prints the table of the README's section on speed from what the benchmarks measured last:
+//! Prints the table of ratios in docs/speed.md from the last measurements of the benchmarks:
 //! `cargo bench && cargo run --release --example ratios`.
 //!
 //! Exit code 1 if a row is missing: a benchmark has not run, or ran so long before or after its baseline that the

@@ -12,6 +12,9 @@ fn targets(page: &str) -> Vec<String> {
     let events = Parser::new_ext(page, Options::ENABLE_TABLES);
     let target = |event| match event {
         Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => Some(dest_url.to_string()),
+        Event::Html(tag) | Event::InlineHtml(tag) => {
+            tag.split_once("src=\"").and_then(|(_, rest)| Some(rest.split_once('"')?.0.to_owned()))
+        }
         _ => None,
     };
     events.filter_map(target).collect()
@@ -91,6 +94,12 @@ fn every_link_leads_somewhere_and_those_of_chapters_stay_in_the_book() {
         wrong.extend(targets(&page.text).into_iter().filter_map(why));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn pictures_in_html_are_targets_as_others_are() {
+    let page = "[a](b.md) <img src=\"c.svg\" width=\"9\"> ![d](e.svg)\n\n<img src=\"f.svg\">\n<img src=\"g.svg\">\n";
+    assert_eq!(targets(page), ["b.md", "c.svg", "e.svg", "f.svg", "g.svg"]);
 }
 
 #[test]
