@@ -18,7 +18,7 @@ built=${CARGO_TARGET_DIR:-target}
 
 # build SUBCOMMAND TARGET: Cargo's subcommand, for its name of the target.
 build() {
-    cargo "$1" --release --locked ${2:+--target "$2"} -p videg-fmu-harvester -p videg-fmu-circuit
+    cargo "$1" --profile dist --locked ${2:+--target "$2"} -p videg-fmu-harvester -p videg-fmu-circuit
 }
 
 case $platform in
@@ -45,9 +45,9 @@ esac
 for fmu in "${FMUS[@]}"; do
     name=$(library_name "$place" "$fmu")
     if [[ ${#parts[@]} -eq 1 ]]; then
-        cp "$built/${parts[0]}/release/$name" "$folder/"
+        cp "$built/${parts[0]}/dist/$name" "$folder/"
     else
-        lipo -create -output "$folder/$name" "$built/${parts[0]}/release/$name" "$built/${parts[1]}/release/$name"
+        lipo -create -output "$folder/$name" "$built/${parts[0]}/dist/$name" "$built/${parts[1]}/dist/$name"
     fi
     echo "$folder/$name"
 done

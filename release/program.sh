@@ -19,32 +19,32 @@ built=${CARGO_TARGET_DIR:-target}
 
 # build SUBCOMMAND TARGET: Cargo's subcommand, for its name of the target.
 build() {
-    cargo "$1" --release --locked ${2:+--target "$2"} -p videg --bin videg --features embedded-fmus
+    cargo "$1" --profile dist --locked ${2:+--target "$2"} -p videg --bin videg --features embedded-fmus
 }
 
 case $1 in
     linux-x86_64)
         export VIDEG_FMUS
         build zigbuild x86_64-unknown-linux-gnu.2.17
-        cp "$built/x86_64-unknown-linux-gnu/release/videg" "$folder/"
+        cp "$built/x86_64-unknown-linux-gnu/dist/videg" "$folder/"
         ;;
     windows-x86_64)
         # The compiler wants a path of Windows, this shell uses its own.
         VIDEG_FMUS=$(cygpath -m "$VIDEG_FMUS")
         export VIDEG_FMUS RUSTFLAGS="-C target-feature=+crt-static"
         build build x86_64-pc-windows-msvc
-        cp "$built/x86_64-pc-windows-msvc/release/videg.exe" "$folder/"
+        cp "$built/x86_64-pc-windows-msvc/dist/videg.exe" "$folder/"
         ;;
     macos-universal)
         export VIDEG_FMUS MACOSX_DEPLOYMENT_TARGET=10.12
         build build x86_64-apple-darwin
         build build aarch64-apple-darwin
-        lipo -create -output "$folder/videg" "$built"/{x86_64,aarch64}-apple-darwin/release/videg
+        lipo -create -output "$folder/videg" "$built"/{x86_64,aarch64}-apple-darwin/dist/videg
         ;;
     host)
         export VIDEG_FMUS
         build build ""
-        cp "$built/release/videg" "$folder/"
+        cp "$built/dist/videg" "$folder/"
         ;;
     *) fail "no program is called \"$1\"; there are linux-x86_64, windows-x86_64 and macos-universal" ;;
 esac
