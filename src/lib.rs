@@ -1,11 +1,32 @@
 //! Vibro-impact dielectric elastomer generator: the harness around the FMUs `VibroImpactHarvester` and
 //! `HarvestingCircuit`.
 //!
+//! A program couples harvester and circuit like this:
+//!
+//! ```
+//! use fmu_import::Fmu;
+//! use videg::scenario::{Request, Setting};
+//! use videg::{cosim, package};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let fmus = package::build_all(&package::Options::default())?;
+//! let harvester = Fmu::open(&fmus[0])?;
+//! let settings = vec![Setting::new("load.resistance", "1e10")];
+//! let request = Request { case: Some("fig14".to_owned()), settings, until: Some(2.0), ..Request::default() };
+//! let results = cosim::run(&cosim::Options::new(&harvester, &request.resolve()?), &())?;
+//! for circuit in &results.circuits {
+//!     println!("{}: {:.3} mJ", circuit.label, 1e3 * circuit.summary.energy.surplus);
+//! }
+//! # assert!(results.mechanics.impacts > 0 && results.circuits.len() == 4);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! - [`package`] puts the FMUs together; [`fmu_import`] loads them or any other FMU for FMI 2.0 co-simulation;
-//! - [`scenario`] says what to run: a case of the paper, settings, duration;
-//! - [`cosim`] couples the harvester FMU with a circuit and records what happens;
+//! - [`scenario`] describes a run: a case of the paper, settings, duration;
+//! - [`cosim`] couples the harvester FMU with a circuit; [`simulate`] runs the harvester alone;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
-//! - [`crosscheck`] holds both, and the closed forms of the paper, against each other;
+//! - [`crosscheck`] compares both with each other and with the closed forms of the paper;
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`cli`] is the command-line tool.
@@ -24,5 +45,6 @@ pub mod package;
 pub mod paper;
 pub mod progress;
 pub mod scenario;
+pub mod simulate;
 pub mod sweep;
 pub(crate) mod threads;

@@ -23,7 +23,7 @@ pub trait Progress: Sync {
     /// An item is complete.
     fn end(&self, _name: &str, _took: Duration) {}
 
-    /// Whether the caller wants the run to stop. A run that stops returns what it has.
+    /// Whether the caller wants the run to stop. A run that stops returns what it has, or an error if that is no result.
     fn is_stopped(&self) -> bool {
         false
     }

@@ -27,12 +27,13 @@ const PACKAGES: [(&str, &[&str]); 10] = [
 const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 11] = [
+const DOWNWARDS: [&str; 12] = [
     "cli",
     "paper",
     "crosscheck",
     "sweep",
     "package",
+    "simulate",
     "cosim",
     "ngspice",
     "scenario",

@@ -1,5 +1,7 @@
 //! Errors of the circuit: each names the thing, its value and the bound that it breaks.
 
+use crate::parameters::names;
+
 /// What can go wrong when a circuit is built, advanced or restored.
 ///
 /// A circuit whose [`advance`](crate::Circuit::advance) returned an error is unchanged by that call.
@@ -112,6 +114,18 @@ pub enum Error {
         /// What failed.
         failure: Failure,
     },
+}
+
+impl Error {
+    /// Names of the variables whose values the error is about.
+    pub fn variables(&self) -> Vec<&'static str> {
+        match self {
+            Self::NotFinite { name, .. } | Self::NotPositive { name, .. } | Self::Negative { name, .. } => vec![name],
+            Self::ZenerBelowSupply { .. } => vec![names::ZENER_VOLTAGE, names::SUPPLY_VOLTAGE],
+            Self::StorageBelowSupply { .. } => vec![names::STORAGE_VOLTAGE, names::SUPPLY_VOLTAGE],
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Why the integrator of the exponential diodes stopped.

@@ -3,7 +3,7 @@
 use clap::Args;
 use clap_complete::Shell;
 
-use super::{Verdict, command, output};
+use super::{Exit, command, output};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -13,9 +13,9 @@ pub struct Arguments {
 }
 
 /// Prints the completions.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command(), "videg", &mut script);
     output::put(&String::from_utf8_lossy(&script))?;
-    Ok(Verdict::Passed)
+    Ok(Exit::Passed)
 }

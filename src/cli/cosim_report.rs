@@ -1,9 +1,10 @@
 //! The energy table of a co-simulation, as text and in the HTML report, and why its rows differ.
 
-use super::cosim::{Compared, Finished};
-use super::{format, output, simulate};
-use crate::cosim::{CouplingSummary, EnergyBalance};
-use videg_report::{self, Column, Report, ReportError, Section, Table};
+use super::format::{Sheet, significant};
+use super::run_output;
+use crate::cosim::{CouplingSummary, EnergyBalance, LabelledCircuit, Results};
+use crate::scenario::Scenario;
+use videg_report::{self, ReportError, Section};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
 pub const EXPLANATION: [&str; 10] = [
@@ -20,7 +21,7 @@ pub const EXPLANATION: [&str; 10] = [
 ];
 
 /// A row of the energy table: its name and how to read it from a circuit, in J.
-type EnergyRow = (&'static str, fn(&Compared) -> f64);
+type EnergyRow = (&'static str, fn(&LabelledCircuit) -> f64);
 
 const ENERGIES: [EnergyRow; 8] = [
     ("W, Eq. (13)", |c| c.summary.energy.eq13),
@@ -36,48 +37,28 @@ const ENERGIES: [EnergyRow; 8] = [
 /// Significant digits of energies.
 const DIGITS: usize = 5;
 
-/// Cells of the table, row by row: energies in mJ and the charge moved against `U_in` dC.
-fn cells(finished: &Finished) -> Vec<Vec<String>> {
-    let mut rows: Vec<Vec<String>> = ENERGIES
-        .iter()
-        .map(|(name, value)| {
-            let values = finished.circuits.iter().map(|circuit| format::significant(1e3 * value(circuit), DIGITS));
-            std::iter::once((*name).to_owned()).chain(values).collect()
-        })
-        .collect();
-    let ratio = |circuit: &Compared| format::significant(circuit.summary.charge.supply / finished.cycle_charge, DIGITS);
-    let charge = std::iter::once("supply charge / (U_in dC)".to_owned()).chain(finished.circuits.iter().map(ratio));
-    if finished.cycle_charge > 0.0 {
-        rows.push(charge.collect());
+/// The energy table: energies in mJ and the charge moved against `U_in` dC.
+pub fn energies(results: &Results) -> Sheet {
+    let row = |name: &str, value: &dyn Fn(&LabelledCircuit) -> f64| {
+        let values = results.circuits.iter().map(|circuit| significant(value(circuit), DIGITS));
+        std::iter::once(name.to_owned()).chain(values).collect()
+    };
+    let mut rows: Vec<_> = ENERGIES.iter().map(|(name, value)| row(name, &|circuit| 1e3 * value(circuit))).collect();
+    if results.cycle_charge > 0.0 {
+        rows.push(row("supply charge / (U_in dC)", &|circuit| circuit.summary.charge.supply / results.cycle_charge));
     }
-    rows
+    let labels = results.circuits.iter().map(|circuit| circuit.label.clone());
+    Sheet::new(std::iter::once("energy over the whole run, mJ".to_owned()).chain(labels), &[0], rows)
 }
 
-fn headings(finished: &Finished) -> Vec<String> {
-    std::iter::once("energy over the whole run, mJ".to_owned())
-        .chain(finished.circuits.iter().map(|circuit| circuit.label.clone()))
-        .collect()
-}
-
-/// The energy table as text.
-pub fn energy_table(finished: &Finished) -> String {
-    let headings: Vec<_> = headings(finished).iter().map(|heading| heading.replace(", ", "\n")).collect();
-    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    let mut table = format::table(&headings);
-    for cells in cells(finished) {
-        table.add_row(format::row(&cells));
-    }
-    table.to_string()
-}
-
-/// What the coupling with the first circuit came to, and where the energy of both went.
-pub fn coupling_lines(finished: &Finished) -> String {
-    let balance = finished.balance.as_ref().map(balance_line);
-    std::iter::once(coupling_line(&finished.coupling)).chain(balance).collect::<Vec<_>>().join("\n")
+/// The coupling with the first circuit, and the energy balance.
+pub fn coupling_lines(results: &Results) -> String {
+    let balance = results.balance.as_ref().map(balance_line);
+    std::iter::once(coupling_line(&results.coupling)).chain(balance).collect::<Vec<_>>().join("\n")
 }
 
 fn balance_line(balance: &EnergyBalance) -> String {
-    let work = |joule: f64| format::significant(1e3 * joule, DIGITS);
+    let work = |joule: f64| significant(1e3 * joule, DIGITS);
     let EnergyBalance { wall, kinetic, elastic, impact_loss, converted, residual, relative_residual, .. } = *balance;
     format!(
         "balance: the walls gave {} mJ = kinetic {} + elastic {} + lost in impacts {} + to the circuit {} mJ; residual \
@@ -91,7 +72,7 @@ fn balance_line(balance: &EnergyBalance) -> String {
 }
 
 fn coupling_line(coupling: &CouplingSummary) -> String {
-    let work = |joule: f64| format::significant(1e3 * joule, DIGITS);
+    let work = |joule: f64| significant(1e3 * joule, DIGITS);
     let CouplingSummary { steps, rejected, circuit_work, harvester_work, residual, relative_residual, .. } = *coupling;
     format!(
         "coupling: {steps} communication steps, {rejected} undone; work -1/2 U^2 dC booked by the circuit {} mJ, by the \
@@ -105,33 +86,14 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
 pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
     of the run; (d) energies of the first circuit since its start.";
 
-/// The energy table in an HTML report.
-pub fn table(finished: &Finished) -> Table {
-    let columns = headings(finished).into_iter().enumerate();
-    let columns = columns.map(|(k, heading)| if k == 0 { Column::words(heading) } else { Column::numbers(heading) });
-    cells(finished).into_iter().fold(Table::new(columns), Table::row)
-}
-
 /// The HTML report.
-pub fn html(finished: &Finished) -> Result<String, ReportError> {
-    let scenario = &finished.scenario;
-    let [from, to] = scenario.window;
-    let mut result = Section::new("Result").table(simulate::report_table(scenario, &finished.mechanics));
-    for warning in &finished.warnings {
-        result = result.warning(warning.clone());
-    }
-    let report = Report::new(
-        format!("Co-simulation of {}", scenario.name),
-        format!("{}; 0 to {} s, averages over {from} to {to} s.", scenario.description, scenario.until),
-    )
-    .command(output::command_line())
-    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
-    .section(result)
-    .section(Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(table(finished)))
-    .section(Section::new("Coupling").text(coupling_lines(finished)))
-    .section(
-        Section::new("Motion, capacitances, voltages and energies")
-            .figure(finished.drawing.svg.clone(), FIGURE_CAPTION),
-    );
+pub fn html(scenario: &Scenario, results: &Results, svg: String) -> Result<String, ReportError> {
+    let mechanics = run_output::mechanics(scenario, &results.mechanics);
+    let energies = Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies(results).html());
+    let report = run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
+        .section(run_output::result(&results.warnings).table(mechanics.html()))
+        .section(energies)
+        .section(Section::new("Coupling").text(coupling_lines(results)))
+        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, FIGURE_CAPTION));
     videg_report::render_html(&report)
 }

@@ -7,10 +7,8 @@ use serde::Serialize;
 use videg_circuit::{Settings, names};
 
 use super::options::RunOptions;
-use super::simulate::{RunOutput, file_list, heading};
-use super::{
-    Verdict, crosscheck_files as files, crosscheck_report as page, crosscheck_solve as solve, output, packaging,
-};
+use super::run_output::{RunOutput, file_list, heading};
+use super::{Exit, crosscheck_files as files, crosscheck_report as page, crosscheck_solve as solve, output, packaging};
 use crate::cosim::{Charges, CircuitSummary, Energies};
 use crate::crosscheck::{Case, Check, Compared, Pulses, Repeat, Solver, Stop, Sweep};
 use crate::ngspice::{Ngspice, Waveforms};
@@ -136,7 +134,7 @@ struct Output<'a> {
 const TOP_LEVEL: Solver = Solver::Exponential;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = options.scenario_with(arguments.settings())?;
     if let Some(folder) = &arguments.export {
@@ -158,7 +156,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
         output::print(&text(&finished, &written))?;
     }
     output::warn(&finished.warnings);
-    Ok(if finished.passed() { Verdict::Passed } else { Verdict::Failed })
+    Ok(if finished.passed() { Exit::Passed } else { Exit::Failed })
 }
 
 /// `C_2` of the left membrane and the `C_3` of the largest impact, F; a pulse by a half where there is none.

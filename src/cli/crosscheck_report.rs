@@ -2,7 +2,7 @@
 
 use super::crosscheck::Finished;
 use super::crosscheck_picture::{OVERLAY_CAPTION, SWEEP_CAPTION};
-use super::{format, output, simulate};
+use super::{format, output, run_output};
 use crate::cosim::Energies;
 use crate::crosscheck::{Agreement, Check, Claim, Compared, Solver};
 use videg_report::{self, Column, Report, ReportError, Section, Table};
@@ -219,7 +219,7 @@ pub fn sections(finished: &Finished, figures: Vec<String>) -> Vec<Section> {
         Section::new("Claim by claim").text(LEGEND).table(checks),
         Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(compared),
         Section::new("Embedded solver and ngspice").figure(figures.next().unwrap_or_default(), OVERLAY_CAPTION),
-        Section::new("Mechanics").table(simulate::report_table(&finished.scenario, &finished.case.mechanics)),
+        Section::new("Mechanics").table(run_output::mechanics(&finished.scenario, &finished.case.mechanics).html()),
     ];
     if let Some((rows, figure)) = sweep_rows(finished).zip(figures.next()) {
         let section = Section::new("Net gain over voltage of release and load").table(html_table(&SWEEP, &[0], rows));

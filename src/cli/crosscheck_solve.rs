@@ -3,11 +3,9 @@
 use anyhow::Context as _;
 use videg_circuit::{Release, Settings, Topology};
 
-use super::cosim::{label, voltage_warning};
 use super::crosscheck::{Finished, capacitances};
 use super::progress::{TaskBar, TimeBar};
-use super::{electrical, settings};
-use crate::cosim::CircuitSummary;
+use crate::cosim::{CircuitRequest, CircuitSummary, TimeProgress, best_release_voltage, label, voltage_warning};
 use crate::crosscheck::{
     Agreement, Bench, Case, Check, Compared, Findings, Pulses, Repeat, Solver, Stop, Sweep, Task, Values, checks,
     common, comparison_checks, conclusion, export, limited, pulse_checks,
@@ -19,13 +17,13 @@ use fmu_import::Fmu;
 
 /// Runs the mechanics of `scenario`, and its circuit in every solver.
 pub fn follow(fmu: &Fmu, scenario: Scenario, ngspice: &Ngspice, sweep: bool) -> anyhow::Result<Finished> {
-    let (mechanical, electrical) = settings::split(fmu.description(), &scenario)?;
-    let mut bar = TimeBar::new(format!("{}: mechanics", scenario.name), scenario.until);
-    let case = Case::new(fmu, &scenario, &mechanical, &mut bar)?;
+    let (mechanical, request) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
+    let bar = TimeBar::new(format!("{}: mechanics", scenario.name));
+    let case = Case::new(fmu, &scenario, &mechanical, &mut TimeProgress::new(&bar, scenario.until))?;
     bar.finish();
-    let circuit = electrical::resolve(&electrical, case.bias_voltage, case.best_ratio())?;
+    let circuit = request.resolve(case.bias_voltage, case.best_ratio());
     let elements = Elements::new(&Settings { exponential: true, ..circuit }.parameters(), case.table.growth());
-    elements.map_err(|error| settings::placed(&electrical, error))?;
+    elements.map_err(|error| request.located(error, &circuit))?;
     solve(scenario, case, circuit, ngspice, sweep)
 }
 
@@ -296,7 +294,7 @@ fn others(asked: &Settings, ratio: f64) -> Vec<Settings> {
     let mut storage = paper;
     storage.circuit.topology = Topology::Isolated;
     storage.circuit.release = Release::Storage;
-    storage.circuit.storage_voltage = electrical::best_release_voltage(&storage, ratio);
+    storage.circuit.storage_voltage = best_release_voltage(&storage, ratio);
     let same = |other: &Settings| {
         let [a, b] = [other, asked].map(|settings| settings.circuit);
         (a.topology, a.release, a.release_voltage()) == (b.topology, b.release, b.release_voltage())

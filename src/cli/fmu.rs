@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::isolation::IsolationOptions;
 use super::progress::spinner;
-use super::{Verdict, fmu_check, format, output, packaging};
+use super::{Exit, fmu_check, format, output, packaging};
 use crate::package::{self, AddedBinary, Options};
 use fmu_import::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 
@@ -64,13 +64,13 @@ enum Task {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match &arguments.task {
         Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
         Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
-    Ok(Verdict::Passed)
+    Ok(Exit::Passed)
 }
 
 fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::isolation::IsolationOptions;
 use super::message::one_line;
-use super::{Verdict, output};
+use super::{Exit, output};
 use fmu_import::{FmiError, Fmu, Instance, Kind, Logging};
 
 /// Step of the trial run if the FMU proposes none, s.
@@ -51,7 +51,7 @@ struct Output<'a> {
 ///
 /// # Errors
 /// An FMU that cannot be opened, or that took its process down.
-pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Result<Verdict> {
+pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Result<Exit> {
     let fmu = isolation.open(file)?;
     let (checks, end) = checks(&fmu);
     let passed = checks.iter().all(|check| check.passed);
@@ -66,7 +66,7 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
     }
     match end {
         Some(error) => Err(error.into()),
-        None => Ok(if passed { Verdict::Passed } else { Verdict::Failed }),
+        None => Ok(if passed { Exit::Passed } else { Exit::Failed }),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Numbers and tables as people read them.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use videg_report::Column;
 
 /// A rule above, below the heading and below the table; nothing between rows.
 const RULE: LineStyle = LineStyle::none().fill('\u{2500}').junction('\u{2500}');
@@ -27,7 +28,7 @@ pub fn deviation(found: f64, expected: f64) -> String {
 }
 
 /// An empty table with a heading; columns but the first are aligned to the right.
-pub fn table(heading: &[&str]) -> Table {
+pub fn table<S: AsRef<str>>(heading: &[S]) -> Table {
     let mut table = Table::new();
     table.load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
     table.set_header(row(heading));
@@ -41,6 +42,52 @@ pub fn row<S: AsRef<str>>(cells: &[S]) -> Vec<Cell> {
         if column == 0 { cell } else { cell.set_alignment(CellAlignment::Right) }
     });
     aligned.collect()
+}
+
+/// A table for terminals and for HTML reports.
+pub struct Sheet {
+    headings: Vec<String>,
+    words: &'static [usize],
+    rows: Vec<Vec<String>>,
+}
+
+impl Sheet {
+    /// A table of `rows` whose columns with the indices `words` hold words; the others hold numbers.
+    pub fn new(
+        headings: impl IntoIterator<Item = impl Into<String>>,
+        words: &'static [usize],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        Self { headings: headings.into_iter().map(Into::into).collect(), words, rows }
+    }
+
+    /// The table as text.
+    pub fn text(&self) -> String {
+        self.filled(&self.headings)
+    }
+
+    /// The table as text, with headings that break at each `separator`.
+    pub fn narrow(&self, separator: &str) -> String {
+        let headings: Vec<_> = self.headings.iter().map(|heading| heading.replace(separator, "\n")).collect();
+        self.filled(&headings)
+    }
+
+    fn filled(&self, headings: &[String]) -> String {
+        let mut text = table(headings);
+        for cells in &self.rows {
+            text.add_row(row(cells));
+        }
+        text.to_string()
+    }
+
+    /// The table in a report.
+    pub fn html(self) -> videg_report::Table {
+        let column = |(index, heading)| {
+            if self.words.contains(&index) { Column::words(heading) } else { Column::numbers(heading) }
+        };
+        let columns = videg_report::Table::new(self.headings.into_iter().enumerate().map(column));
+        self.rows.into_iter().fold(columns, videg_report::Table::row)
+    }
 }
 
 #[cfg(test)]

@@ -14,7 +14,6 @@ mod crosscheck_files;
 mod crosscheck_picture;
 mod crosscheck_report;
 mod crosscheck_solve;
-mod electrical;
 mod fmu;
 mod fmu_check;
 mod format;
@@ -29,11 +28,10 @@ mod progress;
 mod reproduce;
 mod reproduce_files;
 mod reproduce_report;
-mod settings;
+mod run_output;
 mod simulate;
 mod simulate_both;
 mod simulate_both_report;
-mod simulate_contacts;
 mod simulate_law;
 mod ssp;
 mod streams;
@@ -83,7 +81,7 @@ enum Verb {
 }
 
 /// Whether everything that was checked holds.
-pub(crate) enum Verdict {
+pub(crate) enum Exit {
     /// Done, or checked and found right.
     Passed,
     /// A check failed; what was found is printed.
@@ -93,7 +91,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verb {
-    fn run(&self) -> anyhow::Result<Verdict> {
+    fn run(&self) -> anyhow::Result<Exit> {
         let interruption = Interruption::default();
         // These end with the process that they work for.
         if !matches!(self, Self::NgspiceWorker | Self::FmuWorker) {
@@ -129,10 +127,10 @@ pub fn main() -> ExitCode {
     };
     let result = cli.verb.run();
     match result {
-        Ok(Verdict::Passed) => ExitCode::SUCCESS,
-        Ok(Verdict::Failed) => ExitCode::from(1),
+        Ok(Exit::Passed) => ExitCode::SUCCESS,
+        Ok(Exit::Failed) => ExitCode::from(1),
         // As shells say it.
-        Ok(Verdict::Stopped(signal)) => ExitCode::from(128 + signal),
+        Ok(Exit::Stopped(signal)) => ExitCode::from(128 + signal),
         Err(error) => {
             message::say(&format!("{error:#}"));
             ExitCode::from(2)

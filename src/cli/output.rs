@@ -8,6 +8,7 @@ use anyhow::Context as _;
 
 use super::message::{plain, plain_json, say};
 use crate::scenario::Scenario;
+use videg_report::Report;
 use videg_system::atomic_file;
 
 /// The folder for the results of `verb`, made if it is not there.
@@ -48,6 +49,11 @@ pub fn put(text: &str) -> io::Result<()> {
 /// The command as a user would type it.
 pub fn command_line() -> String {
     typed(std::env::args_os().skip(1))
+}
+
+/// An HTML report, with nothing but its heading.
+pub fn report(title: impl Into<String>, subtitle: impl Into<String>) -> Report {
+    Report::new(title, subtitle).command(command_line()).generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
 }
 
 /// These arguments as a user would type them. They need be no text: a file may have any name.

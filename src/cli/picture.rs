@@ -7,9 +7,6 @@ use videg_report::{Drawing, Figure, Panel, ReportError, Series, Style, render_sv
 /// Points of one curve: time and value.
 pub type Points = Vec<(f64, f64)>;
 
-/// Length of the detail, s: some periods of the paper's 2 Hz.
-pub const DETAIL: f64 = 2.0;
-
 /// One curve of a trace.
 pub fn points(trace: &[TracePoint], value: impl Fn(&TracePoint) -> f64) -> Points {
     trace.iter().map(|point| (point.time, value(point))).collect()

@@ -6,26 +6,20 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::message::{plain, say};
-use crate::cosim::{CosimError, Observer, Row};
 use crate::progress::{Progress, Running};
-
-/// Parts into which the bar divides a run.
-const PARTS: u64 = 1000;
 
 /// A bar that follows the simulated time. It draws on stderr, and only if that is a terminal.
 pub struct TimeBar {
     bar: ProgressBar,
-    until: f64,
-    shown: u64,
 }
 
 impl TimeBar {
-    /// A bar up to `until`, s.
-    pub fn new(message: impl Into<String>, until: f64) -> Self {
-        let bar = ProgressBar::new(PARTS).with_message(plain(&message.into()));
+    /// A bar with this text.
+    pub fn new(message: impl Into<String>) -> Self {
+        let bar = ProgressBar::new(1).with_message(plain(&message.into()));
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} %, {eta} left");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
-        Self { bar, until, shown: 0 }
+        Self { bar }
     }
 
     /// Removes the bar.
@@ -34,15 +28,10 @@ impl TimeBar {
     }
 }
 
-impl Observer for TimeBar {
-    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to PARTS
-        let part = (row.time / self.until * PARTS as f64) as u64;
-        if part > self.shown {
-            self.shown = part;
-            self.bar.set_position(part);
-        }
-        Ok(())
+impl Progress for TimeBar {
+    fn advance(&self, done: u64, total: u64, _running: &[Running]) {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
     }
 }
 

@@ -7,15 +7,13 @@ use anyhow::{Context as _, anyhow};
 use clap::Args;
 use serde::Serialize;
 
-use super::cosim::Rest;
 use super::interruption::Interruption;
-use super::isolation::IsolationOptions;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
-use super::{Verdict, cosim, crosscheck_files, crosscheck_solve, format, output, packaging, reproduce_files as files};
-use crate::cosim::Coupling;
+use super::{Exit, crosscheck_files, crosscheck_solve, format, output, packaging, picture, reproduce_files as files};
+use crate::cosim::{Cosimulation, CsvRecorder, Options};
 use crate::ngspice::Ngspice;
-use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Study, Verdict as Of};
+use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
 use crate::progress::Progress;
 use crate::scenario::Request;
 use fmu_import::{Fmu, nearest_name};
@@ -78,7 +76,7 @@ struct Book<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let wanted = Wanted::new(&arguments.names)?;
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
@@ -90,7 +88,7 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
 }
 
 /// Makes what is wanted.
-fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
+fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
     let folder = &arguments.output;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
@@ -111,7 +109,7 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
         during(&bar, CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK)))?;
     }
     bar.finish();
-    let passed = !book.solvers_disagree && !book.findings().any(|finding| finding.verdict == Of::Differs);
+    let passed = !book.solvers_disagree && !book.findings().any(|finding| finding.verdict == Verdict::Differs);
     let report = page::write(folder, &book.chapters, &book.warnings, &fmu, arguments.quick)?;
     files::summary(&folder.join("summary.csv"), book.findings())?;
     let json = serde_json::to_string_pretty(&book.json(arguments.quick, passed, &report))?;
@@ -122,7 +120,7 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Verdict> {
         output::print(&book.text(&report))?;
     }
     output::warn(&book.warnings);
-    Ok(if passed { Verdict::Passed } else { Verdict::Failed })
+    Ok(if passed { Exit::Passed } else { Exit::Failed })
 }
 
 /// Does `work` as an item.
@@ -182,11 +180,20 @@ impl Book<'_> {
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
-        let circuit = (cosim::Backend::Embedded, &IsolationOptions::default());
-        let finished = cosim::couple(circuit, Coupling::default(), fmu, scenario, (&csv, Rest::Removed))?;
-        output::write(&svg, &finished.drawing.svg)?;
-        self.warnings.extend(finished.warnings.iter().cloned());
-        self.chapters.push(Chapter::audit(AUDIT, &finished, vec![csv, svg]));
+        let cosimulation = Cosimulation::new(&Options::new(fmu, &scenario))?;
+        let mut recorder = CsvRecorder::create(&csv, true)?;
+        let results = match cosimulation.run(&mut recorder, &()) {
+            Ok(results) => results,
+            Err(error) => {
+                recorder.discard();
+                return Err(error.into());
+            }
+        };
+        recorder.finish()?;
+        let drawing = picture::cosim(&results.trace, &scenario)?;
+        output::write(&svg, &drawing.svg)?;
+        self.warnings.extend(results.warnings.iter().cloned());
+        self.chapters.push(Chapter::audit(AUDIT, &results, drawing, vec![csv, svg]));
         Ok(())
     }
 

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{cosim, cosim_report, crosscheck, crosscheck_report, format, output};
+use super::{cosim_report, crosscheck, crosscheck_report, format, output};
+use crate::cosim::Results;
 use crate::paper::{Artefact, Finding, Verdict};
 use fmu_import::Fmu;
-use videg_report::{self, Cell, Column, Report, Section, Table, Tone};
+use videg_report::{self, Cell, Column, Drawing, Report, Section, Table, Tone};
 
 /// One table or figure in the report.
 pub struct Chapter {
@@ -34,14 +35,14 @@ impl Chapter {
     }
 
     /// Where the energy goes.
-    pub fn audit(name: &'static str, finished: &cosim::Finished, files: Vec<PathBuf>) -> Self {
+    pub fn audit(name: &'static str, results: &Results, drawing: Drawing, files: Vec<PathBuf>) -> Self {
         let title = "Energy audit of Figure 14";
         let section = Section::new(title)
             .id(name)
             .text(cosim_report::EXPLANATION.join(" "))
-            .text(cosim_report::coupling_lines(finished))
-            .table(cosim_report::table(finished))
-            .drawing(finished.drawing.clone(), cosim_report::FIGURE_CAPTION);
+            .text(cosim_report::coupling_lines(results))
+            .table(cosim_report::energies(results).html())
+            .drawing(drawing, cosim_report::FIGURE_CAPTION);
         Self { name, title, findings: Vec::new(), files, sections: vec![section] }
     }
 

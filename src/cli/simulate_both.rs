@@ -6,12 +6,12 @@ use anyhow::Context as _;
 use serde::Serialize;
 
 use super::options::RunOptions;
-use super::simulate::{Mechanics, RunOutput, file_list, follow, heading};
-use super::simulate_contacts::ContactSummary;
+use super::run_output::{self, RunOutput, file_list, heading};
 use super::simulate_law::Law;
-use super::{Verdict, output, simulate_both_report};
+use super::{Exit, output, simulate, simulate_both_report};
 use crate::cosim::MechanicsSummary;
 use crate::scenario::Scenario;
+use crate::simulate::{ContactSummary, Results};
 use fmu_import::Fmu;
 
 /// What a law comes to.
@@ -26,8 +26,8 @@ pub struct LawResult {
 }
 
 impl LawResult {
-    fn new(run: &Mechanics) -> Self {
-        Self { mechanics: run.summary, contacts: run.contacts.summary() }
+    fn new(run: &Results) -> Self {
+        Self { mechanics: run.mechanics, contacts: run.contacts.summary() }
     }
 }
 
@@ -49,42 +49,34 @@ struct Output<'a> {
 }
 
 /// Runs both laws of the harvester `fmu`.
-pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<Verdict> {
+pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<Exit> {
     let folder = output::folder(options.output.as_deref(), "simulate", scenario)?;
     let (impulsive, impulsive_csv) = under(Law::Impulsive, fmu, scenario, &folder)?;
     let (compliant, compliant_csv) = under(Law::Compliant, fmu, scenario, &folder)?;
     let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
     let warnings = warnings([&impulsive, &compliant], &laws);
-    let (figure, html) = (folder.join("figure.svg"), folder.join("report.html"));
     let svg = simulate_both_report::figure([&impulsive, &compliant], scenario)?;
-    output::write(&figure, &svg)?;
-    output::write(&html, &simulate_both_report::html(scenario, &laws, &warnings, svg)?)?;
-    let files = [impulsive_csv, compliant_csv, figure, html, folder.join("result.json")];
-    let run = RunOutput::new(scenario, impulsive.summary, &warnings, &files);
-    let json = serde_json::to_string_pretty(&Output { run, laws: &laws })?;
-    output::write(&folder.join("result.json"), &json)?;
-    if options.json {
-        output::print_json(&json)?;
-    } else {
-        let table = simulate_both_report::text_table(&laws);
-        let words = simulate_both_report::words(scenario, &laws).join("\n");
-        output::print(&[heading("simulate", scenario), table, words, file_list(&files)].join("\n\n"))?;
-    }
-    output::warn(&warnings);
-    Ok(Verdict::Passed)
+    let html = simulate_both_report::html(scenario, &laws, &warnings, svg.clone())?;
+    let files = run_output::write(&folder, &[impulsive_csv, compliant_csv], &svg, &html)?;
+    let run = RunOutput::new(scenario, impulsive.mechanics, &warnings, &files);
+    let words = simulate_both_report::words(scenario, &laws).join("\n");
+    let table = simulate_both_report::table(&laws).text();
+    let text = [heading("simulate", scenario), table, words, file_list(&files)];
+    run_output::conclude(&folder, options.json, &Output { run, laws: &laws }, &text, &warnings)?;
+    Ok(Exit::Passed)
 }
 
 /// The run under `law`, and its time series.
-fn under(law: Law, fmu: &Fmu, scenario: &Scenario, folder: &Path) -> anyhow::Result<(Mechanics, PathBuf)> {
+fn under(law: Law, fmu: &Fmu, scenario: &Scenario, folder: &Path) -> anyhow::Result<(Results, PathBuf)> {
     let mut scenario = scenario.clone();
     scenario.settings.push(law.setting());
     let csv = folder.join(format!("timeseries-{}.csv", law.name()));
-    let run = follow(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
+    let run = simulate::record(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
     Ok((run, csv))
 }
 
 /// Warnings of both runs, those that they share once, and what durations do not tell.
-fn warnings([impulsive, compliant]: [&Mechanics; 2], laws: &Laws) -> Vec<String> {
+fn warnings([impulsive, compliant]: [&Results; 2], laws: &Laws) -> Vec<String> {
     let new = compliant.warnings.iter().filter(|warning| !impulsive.warnings.contains(warning));
     let shared = impulsive.warnings.iter().chain(new).cloned();
     let overlaps = [("impulsive", &laws.impulsive), ("compliant", &laws.compliant)].map(|(law, found)| {

@@ -1,11 +1,12 @@
 //! What both laws of contact come to, as table, words, figure and page.
 
+use super::format::{self, Sheet};
 use super::picture::{self, Points};
-use super::simulate::Mechanics;
+use super::run_output;
 use super::simulate_both::{LawResult, Laws};
-use super::{format, output};
 use crate::scenario::Scenario;
-use videg_report::{self, Column, Figure, Panel, Report, ReportError, Section, Series, render_svg};
+use crate::simulate::Results;
+use videg_report::{self, Figure, Panel, ReportError, Section, Series, render_svg};
 
 /// A row of the table: quantity, unit, units in one SI unit, and how to read it.
 type Quantity = (&'static str, &'static str, f64, fn(&LawResult) -> Option<f64>);
@@ -34,15 +35,15 @@ const CONTACTS: [&str; 3] = [
 const CAPTION: &str = "(a) Relative displacement and (b) capacitance of one membrane in the last seconds of the run under both \
     laws; (c) the deepest contact of each in (b), from its start.";
 
-/// Cells of the table, row by row.
-fn rows(laws: &Laws) -> Vec<[String; 6]> {
+/// Both laws side by side.
+pub fn table(laws: &Laws) -> Sheet {
     let row = |&(name, unit, scale, value): &Quantity| {
         let [impulsive, compliant] =
             [&laws.impulsive, &laws.compliant].map(|law| value(law).map(|value| value * scale));
         let shown = |value: Option<f64>| value.map_or_else(String::new, |value| number(unit, value));
         let pair = impulsive.zip(compliant);
         let relative = pair.filter(|(impulsive, _)| *impulsive != 0.0);
-        [
+        vec![
             name.to_owned(),
             unit.to_owned(),
             shown(impulsive),
@@ -51,28 +52,12 @@ fn rows(laws: &Laws) -> Vec<[String; 6]> {
             relative.map_or_else(String::new, |(impulsive, compliant)| format::deviation(compliant, impulsive)),
         ]
     };
-    QUANTITIES.iter().map(row).collect()
+    Sheet::new(HEADINGS, &[0, 1], QUANTITIES.iter().map(row).collect())
 }
 
 /// A count as it is, anything else with six digits.
 fn number(unit: &str, value: f64) -> String {
     if unit == "1" { format!("{value}") } else { format::significant(value, 6) }
-}
-
-/// The table as text.
-pub fn text_table(laws: &Laws) -> String {
-    let mut table = format::table(&HEADINGS);
-    for cells in rows(laws) {
-        table.add_row(format::row(&cells));
-    }
-    table.to_string()
-}
-
-fn report_table(laws: &Laws) -> videg_report::Table {
-    let column = |(k, heading)| if k < 2 { Column::words(heading) } else { Column::numbers(heading) };
-    rows(laws)
-        .into_iter()
-        .fold(videg_report::Table::new(HEADINGS.into_iter().enumerate().map(column)), videg_report::Table::row)
 }
 
 /// By how much the laws differ, a sentence each, and what is measured.
@@ -114,7 +99,7 @@ fn change(before: f64, after: f64) -> String {
 }
 
 /// Relative displacement and C(t) of one membrane under both laws, in detail, and a contact of each.
-pub fn figure(runs: [&Mechanics; 2], scenario: &Scenario) -> Result<String, ReportError> {
+pub fn figure(runs: [&Results; 2], scenario: &Scenario) -> Result<String, ReportError> {
     // The membrane that is hit more often.
     let hit = |side: usize| runs.iter().map(|run| run.contacts.ended()[side]).sum::<u32>();
     let side = usize::from(hit(1) > hit(0));
@@ -143,7 +128,7 @@ fn pair<'a>(panel: Panel<'a>, lines: &'a [Points; 2]) -> Panel<'a> {
 }
 
 /// The part of `line` in the contact to show of `side`, over the time since its start, ms.
-fn deepest_contact(run: &Mechanics, side: usize, line: &Points) -> Points {
+fn deepest_contact(run: &Results, side: usize, line: &Points) -> Points {
     let Some([from, to]) = run.contacts.shown(side) else { return Points::new() };
     let within = line.iter().filter(|(time, _)| (from..=to).contains(time));
     within.map(|&(time, value)| (1e3 * (time - from), value)).collect()
@@ -151,16 +136,9 @@ fn deepest_contact(run: &Mechanics, side: usize, line: &Points) -> Points {
 
 /// The HTML report.
 pub fn html(scenario: &Scenario, laws: &Laws, warnings: &[String], svg: String) -> Result<String, ReportError> {
-    let [from, to] = scenario.window;
-    let result = Section::new("Result").text(words(scenario, laws).join(" ")).table(report_table(laws));
-    let result = warnings.iter().fold(result, |result, warning| result.warning(warning.clone()));
-    let page = Report::new(
-        format!("Simulation of {} under both laws of contact", scenario.name),
-        format!("{}; 0 to {} s, averages over {from} to {to} s.", scenario.description, scenario.until),
-    )
-    .command(output::command_line())
-    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
-    .section(result)
-    .section(Section::new("Motion and capacitance").figure(svg, CAPTION));
+    let result = run_output::result(warnings).text(words(scenario, laws).join(" ")).table(table(laws).html());
+    let page = run_output::report(format!("Simulation of {} under both laws of contact", scenario.name), scenario)
+        .section(result)
+        .section(Section::new("Motion and capacitance").figure(svg, CAPTION));
     videg_report::render_html(&page)
 }

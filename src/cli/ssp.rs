@@ -7,8 +7,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::options::CaseOptions;
-use super::{Verdict, electrical, output, packaging, settings};
-use crate::cosim::{EmbeddedCircuit, HarvesterFmu};
+use super::{Exit, output, packaging};
+use crate::cosim::{CapacitanceRatios, CircuitRequest, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
 use crate::package::{Part, SystemPackage};
 use crate::scenario::{Scenario, Setting};
 use fmu_import::{Fmu, Kind};
@@ -38,7 +38,7 @@ struct Packaged<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let scenario = arguments.case.scenario()?;
     let archives = packaging::build()?;
     let [harvester, circuit] = archives.as_slice() else { anyhow::bail!("not two FMUs but {}", archives.len()) };
@@ -66,19 +66,19 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Verdict> {
         output::print(&ssp.display().to_string())?;
     }
     output::warn(&warnings);
-    Ok(Verdict::Passed)
+    Ok(Exit::Passed)
 }
 
 /// What to set in harvester and circuit. They are tried, so that what is packaged can run. The circuit starts with the
 /// capacitances that the harvester starts with.
 fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setting>, Vec<Setting>)> {
-    let (mechanical, asked) = settings::split(fmu.description(), scenario)?;
+    let (mechanical, request) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
     let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
-    let ratio = electrical::capacitance_ratios(fmu, scenario, &mechanical)?.best;
-    let resolved = electrical::resolve(&asked, harvester.bias_voltage(), ratio)?;
+    let ratio = CapacitanceRatios::of(fmu, scenario, &mechanical)?.best;
+    let resolved = request.resolve(harvester.bias_voltage(), ratio);
     let capacitance = harvester.sample()?.capacitance();
-    EmbeddedCircuit::new("circuit", &resolved, capacitance).map_err(|error| settings::placed(&asked, error))?;
-    let mut of_circuit = electrical::every_setting(&resolved);
+    EmbeddedCircuit::new("circuit", &resolved, capacitance).map_err(|error| request.located(error, &resolved))?;
+    let mut of_circuit = FmuCircuit::settings(&resolved);
     for (name, value) in ["left.capacitance", "right.capacitance"].into_iter().zip(capacitance) {
         of_circuit.push(Setting::new(name, format!("{value:?}")));
     }

@@ -11,9 +11,9 @@ use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::message::say;
 use super::progress::RunBar;
-use super::simulate::file_list;
+use super::run_output::file_list;
 use super::sweep_options::What;
-use super::{Verdict, format, output};
+use super::{Exit, format, output};
 use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
 use fmu_import::Fmu;
 
@@ -108,14 +108,14 @@ struct Merged<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     match &arguments.verb {
         Some(Verb::Merge(merge)) => put_together(merge),
         None => carry_out(arguments, interruption),
     }
 }
 
-fn put_together(merge: &Merge) -> anyhow::Result<Verdict> {
+fn put_together(merge: &Merge) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
     let elapsed_s = started.elapsed().as_secs_f64();
@@ -128,11 +128,11 @@ fn put_together(merge: &Merge) -> anyhow::Result<Verdict> {
 }
 
 /// A sweep none of whose runs came to anything has failed.
-fn verdict(runs: u64, failed: u64) -> Verdict {
-    if runs > 0 && failed == runs { Verdict::Failed } else { Verdict::Passed }
+fn verdict(runs: u64, failed: u64) -> Exit {
+    if runs > 0 && failed == runs { Exit::Failed } else { Exit::Passed }
 }
 
-fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Verdict> {
+fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
     let design = arguments.what.design.or(file.design).unwrap_or_default();
@@ -163,10 +163,10 @@ fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     let Report { done, runs, files, .. } = &report;
     let kept = files.first().map(|file| format!(", which are in {}", file.display())).unwrap_or_default();
     say(&format!("interrupted after {done} of {runs} runs{kept}; the same command without --fresh goes on from there"));
-    Ok(Verdict::Stopped(u8::try_from(interruption.signal())?))
+    Ok(Exit::Stopped(u8::try_from(interruption.signal())?))
 }
 
-fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Verdict> {
+fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Exit> {
     let (points, samples, runs) = (sweep.points(), sweep.samples(), sweep.runs());
     if arguments.json {
         let counts = Counts { case: sweep.name(), design, points, samples, runs };
@@ -175,7 +175,7 @@ fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::
         let name = sweep.name();
         output::print(&format!("sweep {name}: {design} of {points} points, {samples} samples each: {runs} runs"))?;
     }
-    Ok(Verdict::Passed)
+    Ok(Exit::Passed)
 }
 
 /// Runs the sweep, with progress.
@@ -193,13 +193,7 @@ fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBo
     report
 }
 
-fn show(
-    arguments: &Arguments,
-    sweep: &Sweep,
-    design: Design,
-    report: &Report,
-    elapsed_s: f64,
-) -> anyhow::Result<Verdict> {
+fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, elapsed_s: f64) -> anyhow::Result<Exit> {
     let result = Output {
         case: sweep.name(),
         design,
@@ -223,7 +217,7 @@ fn show(
         say(&format!("warning: {failed} of {runs} runs failed; the column error says why"));
     }
     // Whether all runs of the sweep failed is seen when the shards are merged.
-    Ok(if arguments.shard.is_some() { Verdict::Passed } else { verdict(report.runs, report.failed) })
+    Ok(if arguments.shard.is_some() { Exit::Passed } else { verdict(report.runs, report.failed) })
 }
 
 fn text(result: &Output<'_>) -> String {

@@ -6,7 +6,8 @@ use anyhow::anyhow;
 use clap::Args;
 
 use super::options::{Window, parse_window};
-use super::{output, settings};
+use super::output;
+use crate::cosim::CircuitRequest;
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Design, Request, SweepFile, Times, Vary};
 use fmu_import::{Bounds, ModelDescription};
@@ -142,10 +143,9 @@ fn own_step(description: &ModelDescription, until: f64) -> anyhow::Result<f64> {
 
 /// The settings of the harvester. Those of a circuit are left out with a warning.
 fn mechanical(description: &ModelDescription, scenario: &Scenario) -> anyhow::Result<Vec<Setting>> {
-    let (mechanical, electrical) = settings::split(description, scenario)?;
-    if !electrical.is_empty() {
-        let names: Vec<_> = electrical.iter().map(|setting| setting.name.as_str()).collect();
-        output::warn(&[format!("{} left out: sweep runs no circuit", names.join(", "))]);
+    let (mechanical, circuit) = CircuitRequest::split(description, &scenario.settings)?;
+    if let Some(names) = circuit.names() {
+        output::warn(&[format!("{names} left out: sweep runs no circuit")]);
     }
     Ok(mechanical)
 }

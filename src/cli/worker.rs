@@ -5,28 +5,28 @@ use std::io::{self, BufReader};
 
 use anyhow::Context as _;
 
-use super::Verdict;
+use super::Exit;
 use super::streams::{take_stdin, take_stdout};
 use crate::ngspice::live;
 use fmu_import::isolated;
 
 /// Serves one instance of an FMU on stdin and stdout.
-pub fn run_fmu() -> anyhow::Result<Verdict> {
+pub fn run_fmu() -> anyhow::Result<Exit> {
     let requests = take_stdin().context("cannot take stdin for the requests")?;
     let replies = take_stdout().context("cannot take stdout for the replies")?;
     unless_gone(isolated::serve(BufReader::new(requests), replies)).context("the process that runs the FMU is gone")
 }
 
 /// Serves one circuit on stdin and stdout.
-pub fn run_ngspice() -> anyhow::Result<Verdict> {
+pub fn run_ngspice() -> anyhow::Result<Exit> {
     let replies = take_stdout().context("cannot take stdout for the replies")?;
     unless_gone(live::serve(replies)).context("the process that couples ngspice is gone")
 }
 
 /// A worker whose process has gone in the middle of a reply has nobody to tell: it ends in silence.
-fn unless_gone(served: io::Result<()>) -> io::Result<Verdict> {
+fn unless_gone(served: io::Result<()>) -> io::Result<Exit> {
     match served {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
-        _ => Ok(Verdict::Passed),
+        _ => Ok(Exit::Passed),
     }
 }

@@ -4,6 +4,7 @@ use super::rollback::Kept;
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::scenario::Setting;
 use fmu_import::{Fmu, Instance, Logging};
+use videg_circuit::Settings;
 
 /// The FMU `HarvestingCircuit`. The capacitances go in with their first derivative, so that they run linearly over each
 /// step as they do for the embedded solver.
@@ -44,6 +45,13 @@ impl FmuCircuit {
         instance.set_real(&inputs, &capacitance)?;
         instance.exit_initialization_mode()?;
         Ok(Self { label: label.to_owned(), instance, inputs, outputs, kept: Kept::default() })
+    }
+
+    /// Every setting as text for the FMU. Numbers read back to the same bits.
+    pub fn settings(settings: &Settings) -> Vec<Setting> {
+        let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
+        let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
+        quantities.chain(choices).map(|(name, value)| Setting::new(name, value)).collect()
     }
 }
 

@@ -74,6 +74,23 @@ pub struct CouplingSummary {
     pub relative_residual: f64,
 }
 
+impl CouplingSummary {
+    /// The warning about a coupling that makes or loses so much energy that its surplus deserves no trust.
+    pub(super) fn warning(&self) -> Option<String> {
+        /// In units of the energy moved.
+        const LARGEST_RESIDUAL: f64 = 1e-2;
+        let residual = self.relative_residual;
+        (residual > LARGEST_RESIDUAL).then(|| {
+            format!(
+                "the coupling makes or loses {:.1} % of the energy moved, more than {:.0} %: a smaller --step, or \
+                 --adaptive, is needed to believe the energies",
+                100.0 * residual,
+                100.0 * LARGEST_RESIDUAL
+            )
+        })
+    }
+}
+
 /// The work of the mechanics, booked on both sides, J.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Books {

@@ -34,7 +34,8 @@ impl EmbeddedCircuit {
     /// A value that is no number, out of bounds, or no item of the choice.
     pub fn apply(settings: &mut Settings, setting: &Setting) -> Result<bool, CosimError> {
         let fail = |bound: String| {
-            Err(CosimError::Setting { name: setting.name.clone(), value: setting.value.clone(), bound })
+            let (name, value) = (setting.name.clone(), setting.value.clone());
+            Err(CosimError::Setting { place: setting.place(), name, value, bound })
         };
         if let Some(quantity) = Settings::QUANTITIES.iter().find(|quantity| quantity.name == setting.name) {
             return match setting.value.parse::<f64>() {
@@ -105,10 +106,10 @@ mod tests {
     #[test]
     fn a_value_that_the_circuit_cannot_take_is_named_with_its_bound() {
         for (text, expected) in [
-            ("topology=star", "topology = star: allowed: sharedNode, isolated"),
-            ("load.resistance=-1", "load.resistance = -1: allowed: 0 to inf Ohm"),
-            ("load.resistance=NaN", "load.resistance = NaN: allowed: 0 to inf Ohm"),
-            ("supply.voltage=much", "supply.voltage = much: not a number [V]"),
+            ("topology=star", "--set topology: topology = star: allowed: sharedNode, isolated"),
+            ("load.resistance=-1", "--set load.resistance: load.resistance = -1: allowed: 0 to inf Ohm"),
+            ("load.resistance=NaN", "--set load.resistance: load.resistance = NaN: allowed: 0 to inf Ohm"),
+            ("supply.voltage=much", "--set supply.voltage: supply.voltage = much: not a number [V]"),
         ] {
             assert_eq!(apply(text).unwrap_err().to_string(), expected);
         }

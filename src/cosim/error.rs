@@ -58,9 +58,36 @@ pub enum CosimError {
         /// Its error.
         cause: Box<fmu_import::FmiError>,
     },
-    /// A setting names no variable of the embedded circuit, or has a value that it cannot take.
-    #[error("{name} = {value}: {bound}")]
+    /// Neither the harvester nor the circuit has a variable of this name.
+    #[error("{place}: neither the harvester nor the circuit has such a variable; {hint}")]
+    UnknownVariable {
+        /// Where the setting was said.
+        place: String,
+        /// The nearest name, or where to find all.
+        hint: String,
+    },
+    /// A circuit cannot be put into a netlist.
+    #[error(transparent)]
+    Netlist(#[from] NgspiceError),
+    /// An error about variables that the user set.
+    #[error("{cause} ({places})")]
+    Located {
+        /// The error.
+        cause: Box<CosimError>,
+        /// Where the variables were set.
+        places: String,
+    },
+    /// The observer of the run stopped it.
+    #[error("stopped at {time} s")]
+    Stopped {
+        /// The time reached, s.
+        time: f64,
+    },
+    /// A setting has a value that the embedded circuit cannot take.
+    #[error("{place}: {name} = {value}: {bound}")]
     Setting {
+        /// Where the setting was said.
+        place: String,
         /// Name of the variable.
         name: String,
         /// Value given.

@@ -29,6 +29,12 @@ pub trait Observer {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError>;
 }
 
+impl Observer for () {
+    fn observe(&mut self, _row: &Row<'_>) -> Result<(), CosimError> {
+        Ok(())
+    }
+}
+
 /// What a run comes to.
 #[derive(Debug, Clone)]
 pub struct Outcome {

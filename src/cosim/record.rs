@@ -4,6 +4,8 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
+use crate::progress::Progress;
+use crate::scenario::Scenario;
 use videg_system::atomic_file::{AtomicFile, partial};
 
 /// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
@@ -85,9 +87,40 @@ pub struct TracePoint {
     pub circuits: Vec<CircuitSample>,
 }
 
+/// Tells the time reached to a [`Progress`], in thousandths of the run, and ends the run if that wants it.
+pub struct TimeProgress<'a> {
+    progress: &'a dyn Progress,
+    until: f64,
+    told: u64,
+}
+
+impl<'a> TimeProgress<'a> {
+    /// Parts into which a run is divided.
+    const PARTS: u64 = 1000;
+
+    /// Follows a run up to `until`, s.
+    pub fn new(progress: &'a dyn Progress, until: f64) -> Self {
+        Self { progress, until, told: 0 }
+    }
+}
+
+impl Observer for TimeProgress<'_> {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to PARTS
+        let part = (row.time / self.until * Self::PARTS as f64) as u64;
+        if part > self.told {
+            self.told = part;
+            self.progress.advance(part, Self::PARTS, &[]);
+        }
+        if self.progress.is_stopped() { Err(CosimError::Stopped { time: row.time }) } else { Ok(()) }
+    }
+}
+
 /// What a figure shows: the end of the run closely, and the whole of it. Memory does not grow with the number of points.
+#[derive(Debug, Clone)]
 pub struct Trace {
     until: f64,
+    detail_from: f64,
     /// Distance of the points kept, s, and when the next is due: of the detail and of the overview.
     spacing: [f64; 2],
     due: [f64; 2],
@@ -103,10 +136,24 @@ impl Trace {
     /// Points of the overview.
     const OVERVIEW: f64 = 1000.0;
 
+    /// Length of the detail, s: some periods of the paper's 2 Hz.
+    const LENGTH: f64 = 2.0;
+
+    /// A trace of a run of `scenario`.
+    pub fn of(scenario: &Scenario) -> Self {
+        Self::new(scenario.until, Self::LENGTH.min(scenario.until))
+    }
+
+    /// Start of the detail, s.
+    pub fn detail_from(&self) -> f64 {
+        self.detail_from
+    }
+
     /// A trace of a run up to `until`, s, with its last `detail`, s, closely.
     pub fn new(until: f64, detail: f64) -> Self {
         let spacing = [detail / Self::DETAIL, until / Self::OVERVIEW];
-        Self { until, spacing, due: [until - detail, 0.0], detail: Vec::new(), overview: Vec::new() }
+        let detail_from = until - detail;
+        Self { until, detail_from, spacing, due: [detail_from, 0.0], detail: Vec::new(), overview: Vec::new() }
     }
 }
 

@@ -4,14 +4,14 @@ use serde::Serialize;
 
 use crate::cosim::{CosimError, Observer, Row};
 
-/// Deflection that counts as none, m. At the end of a contact rounding leaves some 1e-17 m; what a ball of 1 mm/s goes in
-/// a nanosecond is this much.
-const NONE: f64 = 1e-12;
+/// Smallest deflection that counts, m: the way of a ball of 1 mm/s in a nanosecond. At the end of a contact rounding leaves
+/// some 1e-17 m.
+const SMALLEST: f64 = 1e-12;
 
 /// Watches the deflections. A contact lasts from the communication point before a membrane is deflected to the one at which
-/// it is flat again: the master lands on impacts and ends of pulses, so both are exact where they are foreseen. Under the
-/// impulsive law that is the pulse, under the compliant law the time for which the ball is in the membrane. Impacts within
-/// a pulse make one contact.
+/// it is flat again: the master lands on impacts and ends of pulses, so both are exact where the harvester announces them.
+/// Under the impulsive law that is the pulse, under the compliant law the time for which the ball is in the membrane.
+/// Impacts within a pulse make one contact.
 #[derive(Debug, Default)]
 pub struct Contacts {
     shown_from: f64,
@@ -47,7 +47,7 @@ struct Shown {
     ends: [f64; 2],
 }
 
-/// What the contacts of a run come to. Field names are the keys of `--json`; units are SI.
+/// The contacts of a run. Field names are the keys of `--json`; units are SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactSummary {
     /// Contacts of both membranes that have ended.
@@ -111,7 +111,7 @@ impl Observer for Contacts {
 impl Side {
     /// Takes the `deflection`, m, at the second of two communication points, s.
     fn observe(&mut self, [before, now]: [f64; 2], deflection: f64, shown_from: f64) {
-        if deflection > NONE {
+        if deflection > SMALLEST {
             self.since.get_or_insert(before);
             self.deflection = self.deflection.max(deflection);
         } else if let Some(since) = self.since.take() {

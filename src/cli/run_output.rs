@@ -1,0 +1,123 @@
+//! Output that the verbs with a run share: JSON, tables, report and files.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use videg_report::{Report, Section};
+
+use super::format::{Sheet, deviation, significant};
+use super::output;
+use crate::cosim::MechanicsSummary;
+use crate::scenario::{Scenario, Setting};
+
+/// The keys of `--json` for every run: scenario and mechanics.
+#[derive(Serialize)]
+pub struct RunOutput<'a> {
+    case: &'a str,
+    description: &'a str,
+    until: f64,
+    step: f64,
+    window: [f64; 2],
+    #[serde(flatten)]
+    mechanics: MechanicsSummary,
+    paper: Paper,
+    settings: &'a [Setting],
+    warnings: &'a [String],
+    files: &'a [PathBuf],
+}
+
+/// Values that the paper prints; null where it prints none.
+#[derive(Serialize)]
+struct Paper {
+    /// `<U>`, V/s.
+    average_voltage_gain: Option<f64>,
+    /// P, W.
+    average_power: Option<f64>,
+}
+
+impl<'a> RunOutput<'a> {
+    /// The output of a run of `scenario`.
+    pub fn new(
+        scenario: &'a Scenario,
+        mechanics: MechanicsSummary,
+        warnings: &'a [String],
+        files: &'a [PathBuf],
+    ) -> Self {
+        let Scenario { name, description, settings, until, step, window, paper, .. } = scenario;
+        let (until, step, window) = (*until, *step, *window);
+        let paper = Paper { average_voltage_gain: paper.voltage_gain, average_power: paper.power };
+        Self { case: name, description, until, step, window, mechanics, paper, settings, warnings, files }
+    }
+}
+
+/// The table of the mechanics beside the paper's values.
+pub fn mechanics(scenario: &Scenario, mechanics: &MechanicsSummary) -> Sheet {
+    let compared = |quantity: &str, unit: &str, paper: Option<f64>, found: f64, scale: f64| {
+        let printed = paper.map_or_else(String::new, |paper| significant(paper * scale, 4));
+        let difference = paper.map_or_else(String::new, |paper| deviation(found, paper));
+        vec![quantity.to_owned(), unit.to_owned(), printed, significant(found * scale, 6), difference]
+    };
+    let count = |quantity: &str, number: i32| {
+        vec![quantity.to_owned(), "1".to_owned(), String::new(), number.to_string(), String::new()]
+    };
+    let rows = vec![
+        compared("<U>, Eq. (15)", "V/s", scenario.paper.voltage_gain, mechanics.average_voltage_gain, 1.0),
+        compared("P, Eq. (14)", "mW", scenario.paper.power, mechanics.average_power_eq13, 1e3),
+        count("impacts, whole run", mechanics.impacts),
+        count("events computed", mechanics.events),
+    ];
+    Sheet::new(["quantity", "unit", "paper", "videg", "deviation"], &[0, 1], rows)
+}
+
+/// The line above the tables.
+pub fn heading(verb: &str, scenario: &Scenario) -> String {
+    let [from, to] = scenario.window;
+    let Scenario { name, description, until, .. } = scenario;
+    format!("{verb} {name}: {description}\n0 to {until} s, averages over {from} to {to} s")
+}
+
+/// An HTML report of a run, with nothing but its heading.
+pub fn report(title: String, scenario: &Scenario) -> Report {
+    let [from, to] = scenario.window;
+    let subtitle = format!("{}; 0 to {} s, averages over {from} to {to} s.", scenario.description, scenario.until);
+    output::report(title, subtitle)
+}
+
+/// The section of a report with the `warnings` of a run.
+pub fn result(warnings: &[String]) -> Section {
+    warnings.iter().cloned().fold(Section::new("Result"), Section::warning)
+}
+
+/// The list of files written.
+pub fn file_list(files: &[PathBuf]) -> String {
+    let shown: Vec<_> = files.iter().map(|file| format!("  {}", file.display())).collect();
+    format!("written:\n{}", shown.join("\n"))
+}
+
+/// Writes figure and report of a run into `folder`. Returns all files of the run, `series` first and the result, which is
+/// yet to be written, last.
+pub fn write(folder: &Path, series: &[PathBuf], svg: &str, html: &str) -> anyhow::Result<Vec<PathBuf>> {
+    let [figure, report, result] = ["figure.svg", "report.html", "result.json"].map(|name| folder.join(name));
+    output::write(&figure, svg)?;
+    output::write(&report, html)?;
+    Ok([series, &[figure, report, result]].concat())
+}
+
+/// Writes the `result` of a run into `folder` and prints it, or the parts of its `text`; then shows the warnings.
+pub fn conclude(
+    folder: &Path,
+    is_json: bool,
+    result: &impl Serialize,
+    text: &[String],
+    warnings: &[String],
+) -> anyhow::Result<()> {
+    let json = serde_json::to_string_pretty(result)?;
+    output::write(&folder.join("result.json"), &json)?;
+    if is_json {
+        output::print_json(&json)?
+    } else {
+        output::print(&text.join("\n\n"))?
+    }
+    output::warn(warnings);
+    Ok(())
+}

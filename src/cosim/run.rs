@@ -1,0 +1,173 @@
+//! A run: the harvester of a scenario coupled with a circuit, and with circuits to compare it with.
+
+use std::path::Path;
+
+use fmu_import::Fmu;
+use serde::Serialize;
+use videg_circuit::{Release, Settings, Topology};
+
+use super::ratios::{CapacitanceRatios, best_release_voltage};
+use super::settings::{CircuitRequest, label, voltage_warning};
+use super::{
+    CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, EmbeddedCircuit, EnergyBalance, FmuCircuit,
+    HarvesterFmu, Master, MechanicsSummary, NgspiceCircuit, Observer, Outcome, TimeProgress, Trace,
+};
+use crate::ngspice::{self, Elements};
+use crate::progress::Progress;
+use crate::scenario::Scenario;
+
+/// What to run.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// The FMU `VibroImpactHarvester`.
+    pub harvester: &'a Fmu,
+    /// The case with its settings, those of the circuit included.
+    pub scenario: &'a Scenario,
+    /// What solves the circuit.
+    pub solver: CircuitSolver<'a>,
+    /// How harvester and circuit are coupled.
+    pub coupling: Coupling,
+}
+
+/// What solves the circuit.
+#[derive(Clone, Copy)]
+pub enum CircuitSolver<'a> {
+    /// The exact solver, called directly.
+    Embedded,
+    /// The shared library of ngspice; the program is the command-line tool of this crate, which runs it.
+    Ngspice(&'a Path),
+    /// The FMU `HarvestingCircuit`.
+    Fmu(&'a Fmu),
+}
+
+impl<'a> Options<'a> {
+    /// `scenario` with the embedded solver and the default coupling.
+    pub fn new(harvester: &'a Fmu, scenario: &'a Scenario) -> Self {
+        Self { harvester, scenario, solver: CircuitSolver::Embedded, coupling: Coupling::default() }
+    }
+}
+
+/// Energies and charges of one circuit of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LabelledCircuit {
+    /// Name of the circuit.
+    pub label: String,
+    /// Energies and charges.
+    #[serde(flatten)]
+    pub summary: CircuitSummary,
+}
+
+/// Results of a run.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// The mechanics.
+    pub mechanics: MechanicsSummary,
+    /// The circuit asked for, then those to compare it with.
+    pub circuits: Vec<LabelledCircuit>,
+    /// The coupling of the harvester with the circuit asked for.
+    pub coupling: CouplingSummary,
+    /// The energy balance, with electrostatic feedback.
+    pub balance: Option<EnergyBalance>,
+    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C.
+    pub cycle_charge: f64,
+    /// What the user should know before believing the numbers.
+    pub warnings: Vec<String>,
+    /// What a figure shows.
+    pub trace: Trace,
+}
+
+/// Runs the co-simulation.
+///
+/// # Errors
+/// A setting that neither harvester nor circuit takes; what a subsystem says.
+pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Results, CosimError> {
+    Cosimulation::new(options)?.run(&mut (), progress)
+}
+
+/// A co-simulation, initialised and ready to run.
+pub struct Cosimulation<'a> {
+    master: Master,
+    scenario: &'a Scenario,
+    circuits: [Settings; 4],
+    bias_voltage: f64,
+}
+
+impl<'a> Cosimulation<'a> {
+    /// Initialises harvester and circuits, with a run of the mechanics alone ahead.
+    ///
+    /// # Errors
+    /// As [`run`], before the first step.
+    pub fn new(options: &Options<'a>) -> Result<Self, CosimError> {
+        let &Options { harvester: fmu, scenario, solver, coupling } = options;
+        let (mechanical, request) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
+        let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
+        let bias_voltage = harvester.bias_voltage();
+        let ratios = CapacitanceRatios::of(fmu, scenario, &mechanical)?;
+        let asked = request.resolve(bias_voltage, ratios.best);
+        let circuits = compared(&asked, ratios.best);
+        let capacitance = harvester.sample()?.capacitance();
+        let slaves = slaves(solver, &circuits, scenario.until, ratios.largest, capacitance);
+        let slaves = slaves.map_err(|error| request.located(error, &asked))?;
+        Ok(Self { master: Master::new(harvester, slaves, scenario, coupling)?, scenario, circuits, bias_voltage })
+    }
+
+    /// Runs to the end and shows each communication point to `recorder`.
+    ///
+    /// # Errors
+    /// What a subsystem or the recorder says.
+    pub fn run(self, recorder: &mut dyn Observer, progress: &dyn Progress) -> Result<Results, CosimError> {
+        let Self { master, scenario, circuits, bias_voltage } = self;
+        let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));
+        let outcome = master.run(&mut [recorder, &mut trace, &mut time])?;
+        let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
+        warnings.extend(voltage_warning(&circuits[0], bias_voltage));
+        warnings.extend(coupling.warning());
+        let labelled = circuits.iter().zip(&samples).map(|(settings, sample)| LabelledCircuit {
+            label: label(settings),
+            summary: CircuitSummary::new(sample, mechanics.energy_eq13),
+        });
+        // W of Eq. (13) is 1/2 U_b^2 dC, with the bias voltage of the harvester.
+        let cycle_charge = 2.0 * mechanics.energy_eq13 / bias_voltage.powi(2) * circuits[0].circuit.supply_voltage;
+        let circuits = labelled.collect();
+        Ok(Results { mechanics, circuits, coupling, balance, cycle_charge, warnings, trace })
+    }
+}
+
+/// The circuit `asked` for, and three to compare it with: the same with an ideal switch, and two that gain, with isolated
+/// membranes and the voltage of release that gains most: a switch, and a storage in place of the load.
+fn compared(asked: &Settings, ratio: f64) -> [Settings; 4] {
+    let mut switch = Settings { exponential: false, ..*asked };
+    switch.circuit.release = Release::Switch;
+    let mut better = switch;
+    better.circuit.topology = Topology::Isolated;
+    better.circuit.zener_voltage = best_release_voltage(&better, ratio);
+    let mut storage = better;
+    storage.circuit.release = Release::Storage;
+    storage.circuit.storage_voltage = better.circuit.zener_voltage;
+    [*asked, switch, better, storage]
+}
+
+/// The first of `circuits` in `solver`, the others in the embedded one, at `capacitance`, F, which grows by at most `growth`.
+fn slaves(
+    solver: CircuitSolver<'_>,
+    circuits: &[Settings],
+    until: f64,
+    growth: f64,
+    capacitance: [f64; 2],
+) -> Result<Vec<Box<dyn CircuitSlave>>, CosimError> {
+    let slave = |(index, settings): (usize, &Settings)| -> Result<Box<dyn CircuitSlave>, CosimError> {
+        let label = label(settings);
+        Ok(match solver {
+            CircuitSolver::Ngspice(program) if index == 0 => {
+                let elements = Elements::new(&settings.parameters(), growth)?;
+                let run = ngspice::Run::new(until, growth);
+                Box::new(NgspiceCircuit::new(&label, program, &elements, capacitance, &run)?)
+            }
+            CircuitSolver::Fmu(fmu) if index == 0 => {
+                Box::new(FmuCircuit::new(&label, fmu, &FmuCircuit::settings(settings), capacitance, until)?)
+            }
+            _ => Box::new(EmbeddedCircuit::new(&label, settings, capacitance)?),
+        })
+    };
+    circuits.iter().enumerate().map(slave).collect()
+}
