@@ -1,13 +1,13 @@
-//! What a run tells its caller while it goes on: the one trait that every long run takes.
+//! Progress of a long run: the trait through which every long run tells its caller how far it is.
 
 use std::time::Duration;
 
-/// A task that runs at present.
+/// A task in work.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Running {
     /// Its name.
     pub name: String,
-    /// How much of it is done, if that is known, %.
+    /// The part that is done, if it is known, %.
     pub percent: Option<u8>,
 }
 

@@ -18,7 +18,7 @@ use crate::cosim::{
 use crate::scenario::Scenario;
 use videg_system::atomic_file;
 
-/// What the circuit is at where nothing is set: not the start values of its FMU.
+/// Values of the circuit that nobody set: not the start values of its FMU.
 const DEFAULTS: &str = "Unless set: supply.voltage is biasVoltage, zener.voltage is supply.voltage (both as in the paper), \
     storage.voltage is what gains most over the impacts of a run of the mechanics ahead. The FMU HarvestingCircuit alone \
     starts at fixed values.";

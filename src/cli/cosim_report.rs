@@ -1,4 +1,4 @@
-//! The energy table of a co-simulation, as text and in the HTML report, and why its rows differ.
+//! The energy table of a co-simulation, the reasons why its rows differ, and the HTML report.
 
 use super::format::{Sheet, significant};
 use super::run_output;
@@ -82,7 +82,7 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
     )
 }
 
-/// What the figure shows.
+/// Caption of the figure.
 pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
     of the run; (d) energies of the first circuit since its start.";
 

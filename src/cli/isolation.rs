@@ -1,4 +1,4 @@
-//! Which FMUs run in processes of their own, and what they may take there.
+//! Which FMUs run in processes of their own, with which limits.
 
 use std::path::Path;
 use std::time::Duration;
@@ -48,7 +48,7 @@ impl IsolationOptions {
         let fmu = Fmu::open_isolated_unless(path, &self.isolation()?, is_trusted)?;
         if let Some(limit) = self.limit().filter(|_| !fmu.is_isolated()) {
             let path = path.display();
-            // Not an error: who checks many FMUs bounds those of others.
+            // Not an error: the same limits may be given for many FMUs.
             output::warn(&[format!(
                 "{limit} does not bind {path}: it is one of videg's, which run in its own process; add --isolate"
             )]);
@@ -63,7 +63,7 @@ impl IsolationOptions {
         if self.isolate { Ok(Fmu::open_isolated(path, &self.isolation()?)?) } else { Ok(Fmu::open(path)?) }
     }
 
-    /// That nothing is asked of the model or the FMUs of this project that would be without effect.
+    /// Checks that no limit was given that would have no effect on the FMUs of this project.
     pub fn check_own(&self) -> anyhow::Result<()> {
         let limit = self.limit().filter(|_| !self.isolate).unwrap_or_default();
         ensure!(
@@ -73,7 +73,7 @@ impl IsolationOptions {
         Ok(())
     }
 
-    /// Whether even what is of this project is to run in processes of its own.
+    /// Whether the FMUs of this project run in processes of their own, too.
     pub fn is_forced(&self) -> bool {
         self.isolate
     }
@@ -86,14 +86,14 @@ impl IsolationOptions {
 
     fn isolation(&self) -> anyhow::Result<Isolation> {
         if cfg!(any(windows, target_vendor = "apple")) && self.memory_limit.is_some_and(|mib| mib > 0) {
-            // Not an error: the same script runs on Linux, where it is bound.
+            // Not an error: on Linux the same script has the limit.
             output::warn(&["--memory-limit binds nothing on this system".to_owned()]);
         }
         let program = std::env::current_exe().context("cannot find this program's own file")?;
         Ok(Isolation { program, bounds: self.bounds() })
     }
 
-    /// What an FMU of the user may take, or those of this project if there is none; nothing is said if it is not isolated.
+    /// Limits of the FMU of the user, or of those of this project if there is none; none if it is not isolated.
     pub fn bounds_of(&self, fmu: Option<&Fmu>) -> Option<Bounds> {
         fmu.map_or(self.isolate, Fmu::is_isolated).then(|| self.bounds())
     }

@@ -1,5 +1,4 @@
-//! Text from elsewhere on its way to a terminal: no characters that control it, reorder or hide text, and of an error one line
-//! that can be read.
+//! Text of others for a terminal: without characters that control it, reorder or hide text; an error is one readable line.
 
 use std::io::Write as _;
 
@@ -18,13 +17,13 @@ pub fn one_line(text: &str) -> String {
     format!("{begin}... (and {} more characters)", count - LONGEST)
 }
 
-/// `text` with what [`is_hidden`] spelled out, but for ends of lines: none reaches the terminal as a command.
+/// `text` with the characters that [`is_hidden`] finds spelled out, except ends of lines.
 pub fn plain(text: &str) -> String {
     let spell = |c: char| if is_hidden(c) && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
     text.chars().map(spell).collect()
 }
 
-/// Whether a character controls the terminal, or text around it: ends a line, changes the direction, takes no place.
+/// Whether a character controls the terminal or the text around it: ends a line, changes the direction, has no width.
 fn is_hidden(c: char) -> bool {
     // Not U+200C and U+200D, which are letters of some scripts and stand in emoji.
     let formats = ['\u{61c}', '\u{180e}', '\u{200b}', '\u{200e}', '\u{200f}', '\u{feff}'];
@@ -32,18 +31,18 @@ fn is_hidden(c: char) -> bool {
     c.is_control() || formats.contains(&c) || ranges.iter().any(|range| range.contains(&c))
 }
 
-/// The same of a JSON document, which stays one: of its own it has ends of lines and no others.
+/// The same for a JSON document, which stays valid: of these characters it contains only ends of lines itself.
 pub fn plain_json(json: &str) -> String {
     let spell = |c: char| if is_hidden(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
     json.chars().map(spell).collect()
 }
 
-/// Says `message` on stderr in one line. Where nobody listens any more, the program goes on all the same.
+/// Writes `message` on stderr in one line. A closed stderr is no failure.
 pub fn say(message: &str) {
     show(&format!("videg: {}", one_line(message)));
 }
 
-/// Writes a line of this project's own on stderr, as it is.
+/// Writes a line of this program on stderr, as it is.
 pub fn show(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -3,7 +3,7 @@
 //! Data goes to stdout, messages and progress to stderr. Exit codes: 0 done; 1 checked, and a check failed; 2 could not
 //! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal. A reader of either
 //! that has gone changes none of them.
-// `output` and `message` write on both: these two panic where a reader has gone.
+// `output` and `message` write on both: these macros panic if a reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod completions;
@@ -30,9 +30,6 @@ mod reproduce_files;
 mod reproduce_report;
 mod run_output;
 mod simulate;
-mod simulate_both;
-mod simulate_both_report;
-mod simulate_law;
 mod ssp;
 mod streams;
 mod sweep;
@@ -80,11 +77,11 @@ enum Verb {
     FmuWorker,
 }
 
-/// Whether everything that was checked holds.
+/// How a verb ended.
 pub(crate) enum Exit {
-    /// Done, or checked and found right.
+    /// Done, or all checks passed.
     Passed,
-    /// A check failed; what was found is printed.
+    /// A check failed; the findings are printed.
     Failed,
     /// Ended early and in order by a signal of this number.
     Stopped(u8),

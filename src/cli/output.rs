@@ -1,4 +1,4 @@
-//! The folder into which a verb writes, what it writes there, and what it prints.
+//! Output of a verb: its folder, its files, and stdout.
 
 use std::ffi::OsString;
 use std::io::{self, Write as _};
@@ -11,9 +11,9 @@ use crate::scenario::Scenario;
 use videg_report::Report;
 use videg_system::atomic_file;
 
-/// The folder for the results of `verb`, made if it is not there.
+/// The folder for the results of `verb`. Creates it if needed.
 pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::Result<PathBuf> {
-    // A case file may have any name; what goes into a path is letters, digits, dot, dash and underscore.
+    // A case file may have any name; a path gets letters, digits, dot, dash and underscore only.
     let safe = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
     let name: String = scenario.name.chars().map(safe).collect();
     let folder = asked.map_or_else(|| Path::new("out").join(format!("{verb}-{name}")), Path::to_owned);
@@ -21,12 +21,12 @@ pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::
     Ok(folder)
 }
 
-/// Writes a file that appears whole or not at all.
+/// Writes a file atomically.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     atomic_file::write(path, content).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Prints `text` and an end of line on stdout, with control characters spelled out, whoever has put them there.
+/// Prints `text` and an end of line on stdout, with control characters spelled out.
 pub fn print(text: &str) -> io::Result<()> {
     put(&(plain(text) + "\n"))
 }
@@ -36,8 +36,7 @@ pub fn print_json(json: &str) -> io::Result<()> {
     put(&(plain_json(json) + "\n"))
 }
 
-/// Writes `text` on stdout as it is. That a reader has seen enough (`videg ... | head`) is no failure, and changes nothing in
-/// how the verb ends.
+/// Writes `text` on stdout as it is. A reader that closes early (`videg ... | head`) is no failure.
 pub fn put(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -56,7 +55,7 @@ pub fn report(title: impl Into<String>, subtitle: impl Into<String>) -> Report {
     Report::new(title, subtitle).command(command_line()).generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
 }
 
-/// These arguments as a user would type them. They need be no text: a file may have any name.
+/// These arguments as a user would type them. A file name may be no valid text.
 fn typed(arguments: impl Iterator<Item = OsString>) -> String {
     let arguments = arguments.map(|argument| {
         let argument = plain(&argument.to_string_lossy());

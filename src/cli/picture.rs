@@ -1,4 +1,4 @@
-//! The figure of a run: the last cycles in detail, energies over the whole run.
+//! The figure of a run: the last cycles in detail, energies since its start.
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
 use crate::scenario::Scenario;
@@ -20,8 +20,8 @@ fn column(name: &str) -> impl Fn(&TracePoint) -> f64 + use<> {
 /// Communication points further apart than this, s, are joined by a curve, not by a line.
 const COARSE: f64 = 2e-3;
 
-/// The relative displacement, mm. An adaptive master steps over whole flights: there the curve also has the velocities at both
-/// ends; where an impact ends it, the velocity before that is not known, and the one at the beginning has to do.
+/// The relative displacement, mm. An adaptive master steps over flights: there the curve also has the velocities at both
+/// ends. If an impact ends the flight, the velocity before it is not known, and the curve is a parabola.
 fn displacement(trace: &[TracePoint]) -> Points {
     let [cylinder, ball, impact] = ["cylinder.velocity", "ball.velocity", "impact.lastVelocity"].map(column);
     let state = |point: &TracePoint| {
@@ -120,7 +120,7 @@ pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError>
     } else {
         voltages.series(Series::points("left membrane", &left)).series(Series::points("right membrane", &right))
     };
-    // Of two that lie on each other the upper one is dashed, and both show.
+    // Two curves may coincide: the upper one is dashed, so that both show.
     let energies = Panel::new("(d)", "time (s)", "energy (mJ)")
         .height(150.0)
         .series(Series::points("supply", &supply).color(0))

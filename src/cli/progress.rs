@@ -1,4 +1,4 @@
-//! Progress on a terminal; silence elsewhere.
+//! Progress bars on stderr. They draw only if that is a terminal.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::message::{plain, say};
 use crate::progress::{Progress, Running};
 
-/// A bar that follows the simulated time. It draws on stderr, and only if that is a terminal.
+/// A bar that follows the simulated time.
 pub struct TimeBar {
     bar: ProgressBar,
 }
@@ -16,9 +16,7 @@ pub struct TimeBar {
 impl TimeBar {
     /// A bar with this text.
     pub fn new(message: impl Into<String>) -> Self {
-        let bar = ProgressBar::new(1).with_message(plain(&message.into()));
-        let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} %, {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        let bar = styled("{msg} [{bar:40}] {percent:>3} %, {eta} left").with_message(plain(&message.into()));
         Self { bar }
     }
 
@@ -30,12 +28,11 @@ impl TimeBar {
 
 impl Progress for TimeBar {
     fn advance(&self, done: u64, total: u64, _running: &[Running]) {
-        self.bar.set_length(total);
-        self.bar.set_position(done);
+        show(&self.bar, done, total);
     }
 }
 
-/// A bar that follows tasks and names those that run. It draws on stderr, and only if that is a terminal.
+/// A bar that follows tasks and names those that run.
 pub struct TaskBar {
     bar: ProgressBar,
     name: String,
@@ -44,9 +41,7 @@ pub struct TaskBar {
 impl TaskBar {
     /// A bar for the tasks of `name`.
     pub fn new(name: String) -> Self {
-        let bar = ProgressBar::new(1);
-        let style = ProgressStyle::with_template("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        let bar = styled("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
         tick(&bar, Duration::from_millis(500));
         Self { bar, name }
     }
@@ -64,14 +59,13 @@ impl Progress for TaskBar {
             None => task.name.clone(),
         };
         self.bar.set_prefix(self.name.clone());
-        self.bar.set_length(total);
-        self.bar.set_position(done);
+        show(&self.bar, done, total);
         self.bar.set_message(running.iter().map(task).collect::<Vec<_>>().join(" | "));
     }
 }
 
-/// A bar that follows items of unlike length, and the parts of the present one. Where nobody looks at a terminal, a line
-/// for each item that is done goes to stderr: it may take minutes.
+/// A bar that follows items of unlike length, and the parts of the present one. Without a terminal, a line for each complete
+/// item goes to stderr, since it may take minutes.
 pub struct ItemBar {
     bar: ProgressBar,
     items: usize,
@@ -81,9 +75,7 @@ pub struct ItemBar {
 impl ItemBar {
     /// A bar for so many items.
     pub fn new(items: usize) -> Self {
-        let bar = ProgressBar::new(1);
-        let style = ProgressStyle::with_template("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        let bar = styled("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
         tick(&bar, Duration::from_millis(500));
         Self { bar, items, begun: AtomicUsize::new(0) }
     }
@@ -99,8 +91,7 @@ impl Progress for ItemBar {
         let number = self.begun.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_prefix(format!("{number}/{}", self.items));
         self.bar.set_message(format!("{name}: {title}"));
-        self.bar.set_length(1);
-        self.bar.set_position(0);
+        show(&self.bar, 0, 1);
     }
 
     fn end(&self, name: &str, took: Duration) {
@@ -113,8 +104,7 @@ impl Progress for ItemBar {
     }
 
     fn advance(&self, done: u64, total: u64, _running: &[Running]) {
-        self.bar.set_length(total);
-        self.bar.set_position(done);
+        show(&self.bar, done, total);
     }
 }
 
@@ -128,11 +118,8 @@ pub struct RunBar<'a> {
 impl<'a> RunBar<'a> {
     /// A bar for the runs of `name`, which end early when `stop` is set.
     pub fn new(name: &str, stop: &'a AtomicBool) -> Self {
-        let bar = ProgressBar::new(1).with_message(plain(name));
-        let style = ProgressStyle::with_template(
-            "{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left",
-        );
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+        let bar = styled("{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left")
+            .with_message(plain(name));
         Self { bar, has_begun: AtomicBool::new(false), stop }
     }
 
@@ -144,8 +131,7 @@ impl<'a> RunBar<'a> {
 
 impl Progress for RunBar<'_> {
     fn advance(&self, done: u64, total: u64, _running: &[Running]) {
-        self.bar.set_length(total);
-        self.bar.set_position(done);
+        show(&self.bar, done, total);
         if !self.has_begun.swap(true, Ordering::Relaxed) {
             // Runs that were there from the beginning took no time.
             self.bar.reset_eta();
@@ -157,6 +143,17 @@ impl Progress for RunBar<'_> {
     }
 }
 
+/// A bar with a style that holds the form of its line.
+fn styled(template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(1).with_style(style.progress_chars("=> "))
+}
+
+fn show(bar: &ProgressBar, done: u64, total: u64) {
+    bar.set_length(total);
+    bar.set_position(done);
+}
+
 /// A spinner for work of unknown length.
 pub fn spinner(message: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
@@ -164,7 +161,7 @@ pub fn spinner(message: &str) -> ProgressBar {
     spinner
 }
 
-/// Has a bar that is seen move by itself, where the system gives a thread for that: if not, the library would panic.
+/// Redraws a visible bar at intervals, if the system gives a thread for that: without one the library would panic.
 fn tick(bar: &ProgressBar, every: Duration) {
     if !bar.is_hidden() && std::thread::Builder::new().spawn(|| ()).is_ok() {
         bar.enable_steady_tick(every);

@@ -114,9 +114,9 @@ pub fn conclude(
     let json = serde_json::to_string_pretty(result)?;
     output::write(&folder.join("result.json"), &json)?;
     if is_json {
-        output::print_json(&json)?
+        output::print_json(&json)?;
     } else {
-        output::print(&text.join("\n\n"))?
+        output::print(&text.join("\n\n"))?;
     }
     output::warn(warnings);
     Ok(())

@@ -1,5 +1,9 @@
 //! `videg simulate`: the harvester FMU alone.
 
+mod both;
+mod both_report;
+mod law;
+
 use std::path::Path;
 
 use clap::Args;
@@ -8,12 +12,12 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading};
-use super::simulate_law::{self, Law};
-use super::{Exit, output, picture, simulate_both, time_series};
+use super::{Exit, output, picture, time_series};
 use crate::cosim::CsvRecorder;
 use crate::scenario::Scenario;
 use crate::simulate::{Options, Results, Simulation};
 use fmu_import::Fmu;
+use law::Law;
 use videg_report::Section;
 
 /// Arguments of the verb.
@@ -32,10 +36,10 @@ pub struct Arguments {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = &arguments.run;
-    let scenario = simulate_law::scenario(arguments.law, options)?;
+    let scenario = law::scenario(arguments.law, options)?;
     let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
     if arguments.law == Some(Law::Both) {
-        return simulate_both::run(options, &fmu, &scenario);
+        return both::run(options, &fmu, &scenario);
     }
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
@@ -57,7 +61,7 @@ const CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) velociti
     of the voltage gains U_DE4 - U_in since its start.";
 
 /// Runs the harvester alone and writes the time series to `csv`.
-pub fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
+fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
     let simulation = Simulation::new(&Options { harvester: fmu, scenario })?;
     output::warn(time_series::warning(scenario, false).as_slice());
     let mut recorder = CsvRecorder::create(csv, false)?;

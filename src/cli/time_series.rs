@@ -1,14 +1,13 @@
-//! How large a time series will be, said before it is written.
+//! A warning before a large time series is written.
 
 use crate::scenario::Scenario;
 
 /// Bytes of a row without and with a circuit, as `simulate --until 20` and `cosim --until 20` write them.
 const ROW: [f64; 2] = [240.0, 475.0];
-/// Size above which it is said, bytes.
+/// Size above which the user is warned, bytes.
 const LARGE: f64 = 1e9;
 
-/// What the user should know before the run of `scenario` if its time series, in which a circuit may be, fills more than
-/// 1 GB.
+/// The warning if the time series of `scenario`, with or without a circuit, fills more than 1 GB.
 pub fn warning(scenario: &Scenario, circuit: bool) -> Option<String> {
     let points = (scenario.until / scenario.step).ceil() + 1.0;
     let bytes = points * ROW[usize::from(circuit)];

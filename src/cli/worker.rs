@@ -1,5 +1,5 @@
-//! `videg ngspice-worker` and `videg fmu-worker`: processes in which a shared library runs that may take its process down:
-//! that of ngspice, for `--circuit ngspice`, and those of isolated FMUs.
+//! `videg ngspice-worker` and `videg fmu-worker`: processes for shared libraries that may crash: that of ngspice, for
+//! `--circuit ngspice`, and those of isolated FMUs.
 
 use std::io::{self, BufReader};
 
@@ -23,7 +23,7 @@ pub fn run_ngspice() -> anyhow::Result<Exit> {
     unless_gone(live::serve(replies)).context("the process that couples ngspice is gone")
 }
 
-/// A worker whose process has gone in the middle of a reply has nobody to tell: it ends in silence.
+/// A worker whose client has gone in the middle of a reply ends without a message.
 fn unless_gone(served: io::Result<()>) -> io::Result<Exit> {
     match served {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),

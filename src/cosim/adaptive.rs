@@ -9,9 +9,9 @@ pub(super) struct StepControl {
 }
 
 impl StepControl {
-    /// Longest step, in units of the regular one: what happens between is to be seen in a time series, too.
+    /// Longest step, in units of the regular one. It bounds the gaps in a time series.
     const LONGEST: f64 = 100.0;
-    /// Part of the step at which the error would just be tolerated, so that the next one is seldom undone.
+    /// Fraction of the step at the tolerance that is tried, so that few steps are undone.
     const SAFETY: f64 = 0.9;
     /// Bounds of the change from one step to the next.
     const CHANGE: [f64; 2] = [0.01, 5.0];
@@ -26,14 +26,14 @@ impl StepControl {
         self.step
     }
 
-    /// Takes note of the `error` of a `step`, s, that may have been shorter than the one proposed; says whether it is small
-    /// enough. Errors grow with the square of the step.
+    /// Whether the `error` of a `step`, s, is small enough; adapts the next step. The step may have been shorter than the one
+    /// proposed. Errors grow with the square of the step.
     pub(super) fn accepts(&mut self, step: f64, error: f64) -> bool {
         let [least, most] = Self::CHANGE;
         let factor = Self::SAFETY * (self.tolerance / error).sqrt();
         let accepted = error <= self.tolerance;
         let next = step * if factor.is_nan() { least } else { factor.clamp(least, most) };
-        // A step cut short by a knot says nothing against a longer one.
+        // A step that a knot cut short does not shorten the next one.
         self.step = if accepted && step < self.step { next.max(self.step) } else { next };
         self.step = self.step.min(self.longest);
         accepted

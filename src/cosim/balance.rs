@@ -1,4 +1,4 @@
-//! Where the energy of the whole system went: harvester and first circuit, over the whole run.
+//! Energy balance of harvester and first circuit over a run.
 
 use serde::Serialize;
 use videg_circuit::Ledger;
@@ -10,7 +10,7 @@ pub struct MechanicalEnergies {
     pub kinetic: f64,
     /// Kinetic energy of the cylinder.
     pub cylinder_kinetic: f64,
-    /// What the membranes can give back.
+    /// Elastic energy of the membranes.
     pub elastic: f64,
     /// Lost in the membranes so far.
     pub impact_loss: f64,
@@ -38,11 +38,11 @@ impl MechanicalEnergies {
     }
 }
 
-/// The energy balance of the system over the whole run. Field names are the keys of `--json`; J.
+/// The energy balance of the system over the run, J. Field names are the keys of `--json`.
 ///
-/// It closes only with `contact.electrostaticFeedback`: otherwise the circuit takes from the mechanics what nobody gives.
-/// With `contact.reaction` the walls hand on what the excitation gave, excitation = change of the cylinder's kinetic energy
-/// + wall; without it they give the ball energy that the cylinder does not lose.
+/// It closes only with `contact.electrostaticFeedback`: without it the circuit takes energy that the mechanics does not lose.
+/// With `contact.reaction`, excitation = change of the cylinder's kinetic energy + wall; without it the walls give the ball
+/// energy that the cylinder does not lose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EnergyBalance {
     /// Work of excitation and external force on the cylinder.
@@ -53,20 +53,20 @@ pub struct EnergyBalance {
     pub kinetic: f64,
     /// Change of the kinetic energy of the cylinder.
     pub cylinder_kinetic: f64,
-    /// Change of what the membranes can give back mechanically.
+    /// Change of the elastic energy of the membranes.
     pub elastic: f64,
     /// Lost in the membranes.
     pub impact_loss: f64,
-    /// Into load, Zener, diodes and the field of the membranes, less what the supply gave.
+    /// Energy into load, Zener, diodes and the field of the membranes, minus that from the supply.
     pub converted: f64,
-    /// What the walls gave and is nowhere: wall - kinetic - elastic - impact loss - converted.
+    /// wall - kinetic - elastic - impact loss - converted.
     pub residual: f64,
-    /// The same over the energy that went through: lost in the membranes, and from the supply.
+    /// The residual over the sum of impact loss and supply.
     pub relative_residual: f64,
 }
 
 impl EnergyBalance {
-    /// The balance between `start` and `end` with a circuit that books `ledger`.
+    /// The balance between `start` and `end` with the `ledger` of a circuit.
     pub(super) fn new(start: &MechanicalEnergies, end: &MechanicalEnergies, ledger: &Ledger) -> Self {
         let change = |energy: fn(&MechanicalEnergies) -> f64| energy(end) - energy(start);
         let excitation = change(|e| e.excitation);

@@ -4,7 +4,7 @@ use super::{CircuitSample, CosimError};
 
 /// A circuit that the master can step. To add one, implement this in a file of its own.
 pub trait CircuitSlave {
-    /// What the circuit is called in tables.
+    /// Name of the circuit in tables.
     fn label(&self) -> &str;
 
     /// Steps from `time` by `step`, s, while the capacitances (left, right), F, run linearly from `start` to `end`.

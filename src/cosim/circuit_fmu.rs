@@ -1,6 +1,6 @@
 //! The FMU `HarvestingCircuit`, or any that speaks the same names, as a circuit that the master can step.
 
-use super::rollback::Kept;
+use super::instance::{SavedState, read, references};
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::scenario::Setting;
 use fmu_import::{Fmu, Instance, Logging};
@@ -13,7 +13,7 @@ pub struct FmuCircuit {
     instance: Instance,
     inputs: [u32; 2],
     outputs: [u32; CircuitSample::NAMES.len()],
-    kept: Kept,
+    saved: SavedState,
 }
 
 impl FmuCircuit {
@@ -36,15 +36,11 @@ impl FmuCircuit {
             |it| fmu.description().is_input(&it.name),
             |instance, setting| instance.set_by_name(&setting.name, &setting.value),
         )?;
-        let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
-        let inputs = [reference("left.capacitance")?, reference("right.capacitance")?];
-        let mut outputs = [0; CircuitSample::NAMES.len()];
-        for (slot, name) in outputs.iter_mut().zip(CircuitSample::NAMES) {
-            *slot = reference(name)?;
-        }
+        let inputs = references(fmu, ["left.capacitance", "right.capacitance"])?;
+        let outputs = references(fmu, CircuitSample::NAMES)?;
         instance.set_real(&inputs, &capacitance)?;
         instance.exit_initialization_mode()?;
-        Ok(Self { label: label.to_owned(), instance, inputs, outputs, kept: Kept::default() })
+        Ok(Self { label: label.to_owned(), instance, inputs, outputs, saved: SavedState::default() })
     }
 
     /// Every setting as text for the FMU. Numbers read back to the same bits.
@@ -68,9 +64,7 @@ impl CircuitSlave for FmuCircuit {
     }
 
     fn sample(&self) -> Result<CircuitSample, CosimError> {
-        let mut row = [0.0; CircuitSample::NAMES.len()];
-        self.instance.get_real(&self.outputs, &mut row)?;
-        Ok(CircuitSample::from_columns(row))
+        read(&self.instance, &self.outputs).map(CircuitSample::from_columns)
     }
 
     fn can_roll_back(&self) -> bool {
@@ -78,10 +72,10 @@ impl CircuitSlave for FmuCircuit {
     }
 
     fn save(&mut self) -> Result<(), CosimError> {
-        self.kept.save(&self.instance)
+        self.saved.save(&self.instance)
     }
 
     fn restore(&mut self) -> Result<(), CosimError> {
-        self.kept.restore(&mut self.instance)
+        self.saved.restore(&mut self.instance)
     }
 }

@@ -1,10 +1,10 @@
-//! How harvester and circuits are coupled, and what the coupling comes to.
+//! Coupling of harvester and circuits, and its error.
 
 use serde::Serialize;
 
 use super::CosimError;
 
-/// What the subsystems know of each other during a step.
+/// Signals that the subsystems exchange for a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
@@ -15,15 +15,15 @@ pub enum Method {
     /// All step from the same communication point: the circuits with C(t) extrapolated at dC/dt, the harvester with the
     /// voltages extrapolated. Second order.
     Jacobi,
-    /// What a tool does that hands on values and no more: all step from the same communication point of a regular grid that
-    /// no impact disturbs, and C(t) runs behind by a step. First order.
+    /// The master of a tool that passes on values only: all step from the same communication point of a regular grid without
+    /// points at impacts, and C(t) lags by a step. First order.
     Plain,
 }
 
 /// How to couple.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Coupling {
-    /// The order of things.
+    /// The method.
     pub method: Method,
     /// Largest error of a signal within a step, relative to its value, to which the communication step adapts; none keeps
     /// to the step given.
@@ -34,7 +34,7 @@ impl Coupling {
     /// Bounds of the tolerance: below, signals have no digits left; above, a pulse of C(t) is not noticed.
     const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-12..=0.1;
 
-    /// Whether these go together.
+    /// Checks that method and tolerance go together.
     ///
     /// # Errors
     /// A tolerance out of bounds, or one for the plain method.
@@ -52,25 +52,25 @@ impl Coupling {
     }
 }
 
-/// What the coupling comes to. Field names are the keys of `--json`; units are SI.
+/// Steps and error of the coupling. Field names are the keys of `--json`; units are SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CouplingSummary {
     /// The method.
     pub master: Method,
     /// Tolerance of the communication step; null if it is fixed.
     pub tolerance: Option<f64>,
-    /// Communication steps in the whole run.
+    /// Communication steps of the run.
     pub steps: u64,
     /// Steps tried and undone.
     pub rejected: u64,
-    /// Work of the mechanics on the first circuit, -1/2 U^2 dC, J, as the circuit books it: with its own U and the C(t) that
-    /// the master made up for it.
+    /// Work of the mechanics on the first circuit, -1/2 U^2 dC, J, as the circuit sums it: with its own U and the C(t) from
+    /// the master.
     pub circuit_work: f64,
-    /// The same as the harvester books it: with its own C(t) and the U that the master made up for it.
+    /// The same as the harvester sums it: with its own C(t) and the U from the master.
     pub harvester_work: f64,
-    /// What the coupling makes out of nothing: the difference, J.
+    /// Energy that the coupling makes or loses: the difference, J.
     pub residual: f64,
-    /// The difference over all the energy that went to and fro.
+    /// The difference over the energy moved in both directions.
     pub relative_residual: f64,
 }
 
@@ -91,7 +91,7 @@ impl CouplingSummary {
     }
 }
 
-/// The work of the mechanics, booked on both sides, J.
+/// The work of the mechanics as both sides sum it, J.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Books {
     /// By the circuit.

@@ -1,4 +1,4 @@
-//! What can go wrong in a co-simulation.
+//! Errors of a co-simulation.
 
 use std::path::PathBuf;
 
@@ -36,9 +36,9 @@ pub enum CosimError {
         /// The circuit.
         label: String,
     },
-    /// No state was kept to which an FMU could go back.
-    #[error("{instance}: no earlier state is kept to go back to")]
-    NothingKept {
+    /// An FMU was to go back to a state and none is saved.
+    #[error("{instance}: no earlier state is saved to go back to")]
+    NothingSaved {
         /// The instance.
         instance: String,
     },

@@ -2,7 +2,7 @@
 
 use super::CosimError;
 use super::balance::MechanicalEnergies;
-use super::rollback::Kept;
+use super::instance::{SavedState, read, references};
 use crate::scenario::{Scenario, Setting};
 use fmu_import::{Fmu, Instance, Logging, Status};
 
@@ -26,10 +26,10 @@ const REALS: [&str; 16] = [
     "pulse.nextKnot",
 ];
 
-/// Of those, how many make a row of a time series: all but the two that look ahead.
+/// How many of them make a row of a time series: all but the two that look ahead.
 const RECORDED: usize = 14;
 
-/// Integral of 1/2 U^2 dC so far, J: what the force of the connected voltages did to the ball. Only a harvester on which
+/// Integral of 1/2 U^2 dC so far, J: work of the force of the connected voltages on the ball. Only a harvester on which
 /// voltages act has it.
 const ELECTRICAL_WORK: &str = "energy.electrical";
 
@@ -87,7 +87,7 @@ pub struct HarvesterFmu {
     voltages: [u32; 2],
     bias_voltage: f64,
     feedback: Option<Feedback>,
-    kept: Kept,
+    saved: SavedState,
 }
 
 /// How voltages act on a harvester with `contact.electrostaticFeedback`.
@@ -96,7 +96,7 @@ struct Feedback {
     /// The voltages may be given with their first derivatives.
     takes_rates: bool,
     /// Reference of the electrical work, if the FMU sums it up.
-    work: Option<u32>,
+    work: Option<[u32; 1]>,
     /// References of the mechanical energies, if the FMU has them.
     energies: Option<[u32; MechanicalEnergies::NAMES.len()]>,
 }
@@ -118,24 +118,18 @@ impl HarvesterFmu {
                 set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
             },
         )?;
-        let reference = |name: &str| Ok::<_, CosimError>(fmu.description().variable(name)?.value_reference);
-        let mut reals = [0; REALS.len()];
-        for (slot, name) in reals.iter_mut().zip(REALS) {
-            *slot = reference(name)?;
-        }
-        let counts = [reference("impact.count")?, reference("solver.events")?];
-        let voltages = [reference("left.voltage")?, reference("right.voltage")?];
-        let bias = [reference("biasVoltage")?];
+        let reals = references(fmu, REALS)?;
+        let counts = references(fmu, ["impact.count", "solver.events"])?;
+        let voltages = references(fmu, ["left.voltage", "right.voltage"])?;
+        let bias = references(fmu, ["biasVoltage"])?;
         instance.exit_initialization_mode()?;
-        let mut bias_voltage = [0.0];
-        instance.get_real(&bias, &mut bias_voltage)?;
+        let [bias_voltage] = read(&instance, &bias)?;
         let feedback = Feedback::of(fmu, &instance, &voltages)?;
-        let bias_voltage = bias_voltage[0];
-        Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, kept: Kept::default() })
+        Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, saved: SavedState::default() })
     }
 
-    /// What the FMU warned of so far.
-    pub fn warnings(&self) -> Vec<String> {
+    /// Warnings of the FMU so far.
+    pub(super) fn warnings(&self) -> Vec<String> {
         let messages = self.instance.messages().into_iter();
         messages.filter(|record| record.status == Status::Warning).map(|record| record.message).collect()
     }
@@ -149,77 +143,52 @@ impl HarvesterFmu {
     }
 
     /// Connects the membranes to `voltage` (left, right), V, from the communication point on.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn set_voltage(&mut self, voltage: [f64; 2]) -> Result<(), CosimError> {
+    pub(super) fn set_voltage(&mut self, voltage: [f64; 2]) -> Result<(), CosimError> {
         Ok(self.instance.set_real(&self.voltages, &voltage)?)
     }
 
-    /// Has the voltages run on at `rate` (left, right), V/s, over the next step.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn set_voltage_rate(&mut self, rate: [f64; 2]) -> Result<(), CosimError> {
+    /// Sets the rate (left, right), V/s, of the voltages over the next step.
+    pub(super) fn set_voltage_rate(&mut self, rate: [f64; 2]) -> Result<(), CosimError> {
         Ok(self.instance.set_real_input_derivatives(&self.voltages, &[1, 1], &rate)?)
     }
 
     /// Whether the voltages act on the ball.
-    pub fn feels_voltage(&self) -> bool {
+    pub(super) fn feels_voltage(&self) -> bool {
         self.feedback.is_some()
     }
 
     /// Whether [`HarvesterFmu::set_voltage_rate`] works and is of use.
-    pub fn takes_voltage_rates(&self) -> bool {
+    pub(super) fn takes_voltage_rates(&self) -> bool {
         self.feedback.is_some_and(|feedback| feedback.takes_rates)
     }
 
-    /// What the mechanics gave to the membranes so far, J, as the harvester sums it up; none if it does not.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn electrical_work(&self) -> Result<Option<f64>, CosimError> {
-        let Some(reference) = self.feedback.and_then(|feedback| feedback.work) else { return Ok(None) };
-        let mut work = [0.0];
-        self.instance.get_real(&[reference], &mut work)?;
-        Ok(Some(-work[0]))
+    /// Energy that the mechanics gave to the membranes so far, J, as the harvester sums it up; none if it does not.
+    pub(super) fn electrical_work(&self) -> Result<Option<f64>, CosimError> {
+        let work = self.feedback.and_then(|feedback| feedback.work);
+        work.map(|reference| read(&self.instance, &reference).map(|[work]| -work)).transpose()
     }
 
     /// Mechanical energies, if the voltages act on the harvester and it has them.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn energies(&self) -> Result<Option<MechanicalEnergies>, CosimError> {
-        let Some(references) = self.feedback.and_then(|feedback| feedback.energies) else { return Ok(None) };
-        let mut values = [0.0; MechanicalEnergies::NAMES.len()];
-        self.instance.get_real(&references, &mut values)?;
-        Ok(Some(MechanicalEnergies::new(values)))
+    pub(super) fn energies(&self) -> Result<Option<MechanicalEnergies>, CosimError> {
+        let energies = self.feedback.and_then(|feedback| feedback.energies);
+        energies.map(|references| read(&self.instance, &references).map(MechanicalEnergies::new)).transpose()
     }
 
     /// dC/dt of the membranes, left and right, F/s, at the communication point.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn capacitance_rate(&self) -> Result<[f64; 2], CosimError> {
+    pub(super) fn capacitance_rate(&self) -> Result<[f64; 2], CosimError> {
         let mut rate = [0.0; 2];
         self.instance.get_real_output_derivatives(&self.reals[..2], &[1, 1], &mut rate)?;
         Ok(rate)
     }
 
-    /// Keeps the state, in place of one that was kept before.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn save(&mut self) -> Result<(), CosimError> {
-        self.kept.save(&self.instance)
+    /// Saves the state in place of the one before.
+    pub(super) fn save(&mut self) -> Result<(), CosimError> {
+        self.saved.save(&self.instance)
     }
 
-    /// Goes back to the state kept.
-    ///
-    /// # Errors
-    /// What the FMU says, or that no state was kept.
-    pub fn restore(&mut self) -> Result<(), CosimError> {
-        self.kept.restore(&mut self.instance)
+    /// Goes back to the state saved.
+    pub(super) fn restore(&mut self) -> Result<(), CosimError> {
+        self.saved.restore(&mut self.instance)
     }
 
     /// Outputs at the communication point.
@@ -227,9 +196,7 @@ impl HarvesterFmu {
     /// # Errors
     /// What the FMU says.
     pub fn sample(&self) -> Result<HarvesterSample, CosimError> {
-        let mut values = [0.0; REALS.len()];
-        self.instance.get_real(&self.reals, &mut values)?;
-        Ok(HarvesterSample(values))
+        read(&self.instance, &self.reals).map(HarvesterSample)
     }
 
     /// Impacts, and events computed, so far.
@@ -248,34 +215,23 @@ impl HarvesterFmu {
     }
 
     /// Ends the run.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn terminate(&mut self) -> Result<(), CosimError> {
+    pub(super) fn terminate(&mut self) -> Result<(), CosimError> {
         Ok(self.instance.terminate()?)
     }
 }
 
 impl Feedback {
-    /// None for a harvester that feels no voltage. What FMI 2.0 says of input derivatives holds for the FMU as a whole, so
-    /// another instance tries those of `voltages`: a refusal would end a run.
+    /// None for a harvester that feels no voltage. FMI 2.0 declares input derivatives for an FMU, not for a variable. So a
+    /// second instance tries those of `voltages`: a refusal would end a run.
     fn of(fmu: &Fmu, instance: &Instance, voltages: &[u32]) -> Result<Option<Self>, CosimError> {
-        let description = fmu.description();
         let mut on = [false];
-        instance.get_boolean(&[description.variable("contact.electrostaticFeedback")?.value_reference], &mut on)?;
+        instance.get_boolean(&references(fmu, ["contact.electrostaticFeedback"])?, &mut on)?;
         if !on[0] {
             return Ok(None);
         }
         let mut trial = fmu.instantiate("trial", Logging::default())?;
         let takes_rates = trial.set_real_input_derivatives(voltages, &[1, 1], &[0.0, 0.0]).is_ok();
-        let reference = |name| description.variable(name).ok().map(|variable| variable.value_reference);
-        let mut energies = Some([0; MechanicalEnergies::NAMES.len()]);
-        for (k, name) in MechanicalEnergies::NAMES.into_iter().enumerate() {
-            energies = energies.zip(reference(name)).map(|(mut all, one)| {
-                all[k] = one;
-                all
-            });
-        }
-        Ok(Some(Self { takes_rates, work: reference(ELECTRICAL_WORK), energies }))
+        let work = references(fmu, [ELECTRICAL_WORK]).ok();
+        Ok(Some(Self { takes_rates, work, energies: references(fmu, MechanicalEnergies::NAMES).ok() }))
     }
 }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::scenario::Scenario;
 
-/// What holds at one communication point.
+/// State at one communication point.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'a> {
     /// Time, s.
@@ -22,10 +22,10 @@ pub struct Row<'a> {
 
 /// Watches a run.
 pub trait Observer {
-    /// Takes what holds at a communication point; the first is the start.
+    /// Takes the state at a communication point; the first is the start.
     ///
     /// # Errors
-    /// If it cannot be kept; the run ends.
+    /// Ends the run, e.g. if a file cannot be written.
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError>;
 }
 
@@ -35,7 +35,7 @@ impl Observer for () {
     }
 }
 
-/// What a run comes to.
+/// Result of a run.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// The mechanics.
@@ -46,7 +46,7 @@ pub struct Outcome {
     pub coupling: CouplingSummary,
     /// The energy balance of harvester and first circuit, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
-    /// What the harvester warned of, before and in the run.
+    /// Warnings of the harvester, before and in the run.
     pub warnings: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ pub struct Master {
     rejected: u64,
 }
 
-/// A communication point, and what the master goes on from there with.
+/// A communication point with the data for the next step.
 struct Point {
     time: f64,
     harvester: HarvesterSample,
@@ -71,9 +71,9 @@ struct Point {
     capacitance_rate: [f64; 2],
     impacts: i32,
     circuits: Vec<CircuitSample>,
-    /// What the mechanics gave so far as the harvester books it by itself, if it does, J.
+    /// Energy that the mechanics gave so far, J, if the harvester sums it up.
     electrical_work: Option<f64>,
-    /// What the circuits had of C(t) last, F.
+    /// Last C(t) that the circuits were given, F.
     given: [f64; 2],
     /// Voltages over the step that led here, V.
     voltage: [Line; 2],
@@ -81,8 +81,8 @@ struct Point {
     step: f64,
 }
 
-/// Most times that a step may be longer than the one before if voltages are extrapolated at what they did in that: further
-/// on, the jump of a diode would count as a slope.
+/// Largest ratio of a step to the one before at which voltages are extrapolated: beyond it, the jump of a diode would count
+/// as a slope.
 const REACH: f64 = 10.0;
 
 impl Master {
@@ -118,7 +118,7 @@ impl Master {
         })
     }
 
-    /// Runs to the end, showing each communication point to `observers`, and sums up.
+    /// Runs to the end, showing each communication point to `observers`.
     ///
     /// # Errors
     /// What a subsystem or an observer says.
@@ -171,7 +171,7 @@ impl Master {
         self.point(0.0, harvester.capacitance(), voltage, 0.0)
     }
 
-    /// What holds at `time`, s, after a `step`, s, in which the circuits were given C(t) up to `given`, F, and the harvester
+    /// State at `time`, s, after a `step`, s, in which the circuits were given C(t) up to `given`, F, and the harvester
     /// `voltage`, V.
     fn point(&self, time: f64, given: [f64; 2], voltage: [Line; 2], step: f64) -> Result<Point, CosimError> {
         Ok(Point {
@@ -199,7 +199,7 @@ impl Master {
         loop {
             let next = self.schedule.within(from.time, control.step(), knot);
             let to = self.step(from, next)?;
-            // An impact that was not foreseen may hide a whole pulse.
+            // An impact that was not announced may hide a pulse.
             let surprise = to.impacts > from.impacts && next < knot;
             let error = if surprise { f64::INFINITY } else { self.error(from, &to) };
             let shortest = next <= self.schedule.within(from.time, 0.0, knot);
@@ -236,8 +236,7 @@ impl Master {
         self.point(next, end, voltage, step)
     }
 
-    /// The voltages that the harvester is given for a `step`, s: those of the first circuit, as they went in the last step.
-    /// One that feels none would be given the same.
+    /// The voltages of the harvester for a `step`, s: those of the first circuit, extrapolated from the last step.
     fn voltage(&self, from: &Point, step: f64) -> [Line; 2] {
         let present = from.circuits.first().map_or([0.0; 2], |circuit| circuit.voltage);
         let deaf = self.harvester.feels_voltage() && !self.harvester.takes_voltage_rates();
@@ -287,7 +286,7 @@ fn capacitance(from: &Point, to: &Point, side: usize) -> Curve {
     Curve { step: to.step, value, rate: [from.capacitance_rate[side], to.capacitance_rate[side]] }
 }
 
-/// The larger of two; what is no number is larger than all.
+/// The larger of two; NaN is larger than all numbers.
 fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() || b > a { b } else { a }
 }

@@ -1,28 +1,28 @@
-//! Co-simulation of the harvester FMU with harvesting circuits: the master, its subsystems, and what it records.
+//! Co-simulation of the harvester FMU with harvesting circuits: the master, its subsystems and recorders.
 //!
-//! [`Method`] says what the subsystems know of each other during a step, [`Coupling`] whether the step adapts. The voltages
-//! of the first circuit go back to the harvester; any number of further circuits can listen, which is how circuits are
-//! compared. A circuit is whatever implements [`CircuitSlave`], in a file of its own.
+//! [`run()`] couples a scenario with a circuit. [`Method`] is the coupling scheme, [`Coupling`] adds an adaptive step. The voltages
+//! of the first circuit go back to the harvester; further circuits get the same C(t) for comparison. A circuit implements
+//! [`CircuitSlave`], in a file of its own.
 
 mod adaptive;
 mod balance;
+mod capacitance;
 mod circuit;
 mod circuit_fmu;
 mod coupling;
 mod embedded;
 mod error;
 mod harvester;
+mod instance;
 mod master;
 mod ngspice;
 mod ratios;
 mod record;
-mod rollback;
 mod run;
 mod schedule;
 mod settings;
 mod signal;
 mod summary;
-mod survey;
 
 pub use crate::circuit_sample::CircuitSample;
 pub use balance::{EnergyBalance, MechanicalEnergies};

@@ -8,7 +8,7 @@ use crate::ngspice::live::{Job, Ramp, Worker};
 use crate::ngspice::{Books, CapacitanceSource, Elements, PICO, Run};
 
 /// Real time that ngspice may take from one communication point to the next. It takes some 10 us for a time step of its
-/// own; what lasts as long as this has got stuck.
+/// own; a step of this length hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The circuit in ngspice, which takes its own time steps between the communication points.

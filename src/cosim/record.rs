@@ -1,4 +1,4 @@
-//! Observers that keep a run: all of it in a CSV file, and what a figure needs in memory.
+//! Observers of a run: a CSV file with all points, the data of a figure in memory, and progress.
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,8 @@ use crate::scenario::Scenario;
 use videg_system::atomic_file::{AtomicFile, partial};
 
 /// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
-/// are called as the FMU variables are, units are SI. The file gets its name when it is finished; of a run that ends early,
-/// what is there stays under another one ([`videg_system::atomic_file::partial`]).
+/// are called as the FMU variables are, units are SI. The file gets its name when it is complete; a run that ends
+/// early leaves it under another one ([`videg_system::atomic_file::partial`]).
 pub struct CsvRecorder {
     path: PathBuf,
     writer: csv::Writer<BufWriter<AtomicFile>>,
@@ -33,7 +33,7 @@ impl CsvRecorder {
         Ok(Self { path: path.to_owned(), writer, circuit, row: Vec::new() })
     }
 
-    /// Writes what is left, and gives the file its name.
+    /// Writes the rest, and gives the file its name.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -41,12 +41,12 @@ impl CsvRecorder {
         let Self { path, writer, .. } = self;
         let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
         let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
-        // Of what could not be written nothing stays.
+        // A file that could not be written does not stay.
         let finished = file.and_then(AtomicFile::finish).inspect_err(|_| drop(std::fs::remove_file(partial(&path))));
         finished.map_err(|cause| CosimError::Write { path, cause })
     }
 
-    /// Writes what is left of a run that ended early, under the other name.
+    /// Writes the rest of a run that ended early, under the other name.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -54,9 +54,9 @@ impl CsvRecorder {
         self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
     }
 
-    /// Removes what there is of a run that ended early.
+    /// Removes the file of a run that ended early.
     pub fn discard(self) {
-        // Why it ended is what the user is told.
+        // The user is told why the run ended.
         let _ = std::fs::remove_file(partial(&self.path));
     }
 }
@@ -116,7 +116,7 @@ impl Observer for TimeProgress<'_> {
     }
 }
 
-/// What a figure shows: the end of the run closely, and the whole of it. Memory does not grow with the number of points.
+/// Data of a figure: the end of the run in detail, and an overview of the run. Memory does not grow with the number of points.
 #[derive(Debug, Clone)]
 pub struct Trace {
     until: f64,
@@ -124,9 +124,9 @@ pub struct Trace {
     /// Distance of the points kept, s, and when the next is due: of the detail and of the overview.
     spacing: [f64; 2],
     due: [f64; 2],
-    /// Communication points near the end of the run, but those that lie closer to the one before than could be seen.
+    /// Communication points near the end of the run, without those too close to the one before to be seen.
     pub detail: Vec<TracePoint>,
-    /// Points of the whole run, about evenly spaced.
+    /// Points of the run, about evenly spaced.
     pub overview: Vec<TracePoint>,
 }
 
@@ -149,7 +149,7 @@ impl Trace {
         self.detail_from
     }
 
-    /// A trace of a run up to `until`, s, with its last `detail`, s, closely.
+    /// A trace of a run up to `until`, s, with its last `detail`, s, in detail.
     pub fn new(until: f64, detail: f64) -> Self {
         let spacing = [detail / Self::DETAIL, until / Self::OVERVIEW];
         let detail_from = until - detail;

@@ -9,8 +9,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Shortest step, in units of the regular one, but for an edge of the window. A ball that comes to rest has knots without
-    /// end; those closer to another communication point than this are not landed on.
+    /// Shortest step, in units of the regular one, except before an edge of the window. A ball that comes to rest has endless
+    /// knots; those closer to another communication point than this get no point.
     const CLOSEST: f64 = 1e-3;
 
     /// A grid of `step`, s, up to `until`, s, with the edges of `window`, s.
@@ -48,7 +48,7 @@ impl Schedule {
         self.window.into_iter().filter(|&edge| edge > now).fold(self.until, f64::min)
     }
 
-    /// Length of a step below which no step is made shorter on purpose, s.
+    /// Shortest step that the schedule chooses by itself, s.
     pub fn closest(&self) -> f64 {
         Self::CLOSEST * self.step
     }

@@ -1,4 +1,4 @@
-//! Signals over one step: what a subsystem was given, and what the other one really did.
+//! Signals over one step: the input of a subsystem, and the true output of the other one.
 
 /// A value that runs linearly.
 #[derive(Debug, Clone, Copy, PartialEq)]

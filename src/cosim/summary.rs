@@ -1,25 +1,25 @@
-//! What a run comes to. Field names are the keys of `--json`; units are SI.
+//! Results of a run. Field names are the keys of `--json`; units are SI.
 
 use serde::Serialize;
 
 use super::CircuitSample;
 use crate::ngspice::Waveforms;
 
-/// The mechanics: impacts and what the paper's equations make of them.
+/// The mechanics: impacts and their gains by the paper's equations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MechanicsSummary {
-    /// Impacts in the whole run.
+    /// Impacts of the run.
     pub impacts: i32,
-    /// Events computed in the whole run.
+    /// Events computed in the run.
     pub events: i32,
     /// `<U>`, Eq. (15), over the averaging window, V/s.
     pub average_voltage_gain: f64,
     /// P, Eq. (14), over the averaging window, W.
     pub average_power_eq13: f64,
-    /// Sum of `U_DE4` - `U_in` over the whole run, V.
+    /// Sum of `U_DE4` - `U_in` over the run, V.
     #[serde(skip)]
     pub voltage_gain: f64,
-    /// Sum of W, Eq. (13), over the whole run, J.
+    /// Sum of W, Eq. (13), over the run, J.
     #[serde(skip)]
     pub energy_eq13: f64,
 }
@@ -35,7 +35,7 @@ pub struct Gains {
     pub impacts: i32,
 }
 
-/// What the sums come to over an averaging window.
+/// Averages of the sums over a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Averages {
     /// `<U>`, Eq. (15), V/s.
@@ -59,7 +59,7 @@ impl Averages {
     }
 }
 
-/// A circuit: where energy and charge went over the whole run.
+/// Energies and charges of a circuit over the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CircuitSummary {
     /// Energies, J.
@@ -68,7 +68,7 @@ pub struct CircuitSummary {
     pub charge: Charges,
 }
 
-/// Energies over the whole run, J.
+/// Energies over the run, J.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Energies {
     /// Drawn from the supply.
@@ -79,19 +79,19 @@ pub struct Energies {
     pub zener: f64,
     /// Burnt in the charging diodes.
     pub diode: f64,
-    /// Change of what the membranes store.
+    /// Change of the energy stored in the membranes.
     pub stored: f64,
-    /// What the mechanics gave: load + zener + diode + stored - supply.
+    /// Energy from the mechanics: load + zener + diode + stored - supply.
     pub converted: f64,
     /// The same, summed independently as the work -1/2 U^2 dC.
     pub mechanical: f64,
-    /// What a user gains: load - supply.
+    /// Net gain: load - supply.
     pub surplus: f64,
-    /// What Eq. (13) counts.
+    /// Sum of W, Eq. (13).
     pub eq13: f64,
 }
 
-/// Charges over the whole run, C.
+/// Charges over the run, C.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Charges {
     /// Drawn from the supply.

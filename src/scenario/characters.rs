@@ -1,9 +1,9 @@
-//! Characters of the texts in case and sweep files. What is called or described there is printed, drawn and packaged, and
-//! control characters command a terminal and are in no XML document.
+//! Characters of the texts in case and sweep files. Names and descriptions are printed, drawn and packaged. Control
+//! characters command a terminal, and XML forbids them.
 
 use toml::{Table, Value};
 
-/// That no key and no text of `table` has a control character, but for ends of lines and tabs in the description.
+/// Checks that no key and no text of `table` has a control character, except ends of lines and tabs in the description.
 ///
 /// # Errors
 /// The first one, by key and number.
@@ -16,7 +16,7 @@ pub(crate) fn with_plain_ends(text: &str) -> String {
     text.replace("\r\n", "\n")
 }
 
-/// Checks what is called `name`, with the names of the tables around it, and its `value`.
+/// Checks a key, whose full `name` contains those of the tables around it, and its `value`.
 fn check_entry(name: &str, value: &Value) -> Result<(), String> {
     check_text(name, name, false)?;
     match value {
@@ -41,7 +41,7 @@ fn check_text(name: &str, text: &str, has_lines: bool) -> Result<(), String> {
     }
 }
 
-/// Control characters, and the two numbers that are no characters and in no XML document.
+/// Control characters, and the two code points that are no characters.
 fn is_refused(c: char) -> bool {
     c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }

@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! case = "fig14"                 # start from a case of the paper
-//! name = "softer"                # optional: how the run is called
+//! name = "softer"                # optional: name of the run
 //! description = "softer membrane"
 //! until = 60.0
 //! step = 1e-3
@@ -23,7 +23,7 @@ use toml::{Table, Value};
 use super::{Origin, ScenarioError, Setting, characters};
 use videg_system::input;
 
-/// What a case file says.
+/// Content of a case file.
 #[derive(Debug, Clone, Default)]
 pub struct CaseFile {
     /// Where it was read from, if it was.
@@ -32,7 +32,7 @@ pub struct CaseFile {
     pub case: Option<String>,
     /// Name of the run.
     pub name: Option<String>,
-    /// One line on what it shows.
+    /// Description in one line.
     pub description: Option<String>,
     /// End of the run, s.
     pub until: Option<f64>,
@@ -44,7 +44,7 @@ pub struct CaseFile {
     pub settings: Vec<Setting>,
 }
 
-/// The file as it is laid out; anything else in it is an error.
+/// Layout of the file; any other key is an error.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Layout {
@@ -58,10 +58,10 @@ struct Layout {
     set: Table,
 }
 
-/// What `parse` makes of the text of the file at `path`, and the name of that file without its ending.
+/// The text of the file at `path` as `parse` reads it, and the name of that file without its ending.
 ///
 /// # Errors
-/// An unreadable file; what `parse` finds wrong.
+/// An unreadable file; an error of `parse`.
 pub(crate) fn read_file<T>(
     path: &Path,
     parse: impl FnOnce(&str) -> Result<T, String>,
@@ -74,7 +74,7 @@ pub(crate) fn read_file<T>(
 }
 
 impl CaseFile {
-    /// Reads the file at `path`. The run is called after it unless it says otherwise.
+    /// Reads the file at `path`. The run has the name of the file unless it gives another.
     ///
     /// # Errors
     /// An unreadable file; no TOML; an unknown key; a value that no variable can have.
@@ -87,7 +87,7 @@ impl CaseFile {
     /// Reads the text of a case file.
     ///
     /// # Errors
-    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
+    /// No TOML, an unknown key, a value that no variable can have, a control character; with its place.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
         let text = &characters::with_plain_ends(text);
@@ -96,7 +96,7 @@ impl CaseFile {
         Self::of(layout)
     }
 
-    /// What a table says that is laid out as a case file.
+    /// Reads a table with the layout of a case file.
     ///
     /// # Errors
     /// An unknown key; a value that no variable can have.
@@ -112,7 +112,7 @@ impl CaseFile {
         self
     }
 
-    /// Where a key was said: in the file, unless an option says it.
+    /// Where a key was given: in the file, unless an option gives it.
     #[must_use]
     pub fn origin(&self, is_option: bool) -> Origin {
         self.path.clone().filter(|_| !is_option).map_or(Origin::Option, Origin::File)
@@ -144,7 +144,7 @@ fn read_text(path: &Path) -> Result<String, ScenarioError> {
     }
 }
 
-/// What the reader of TOML says, in one line: the line of the file that it draws, but not how it points there.
+/// The message of the TOML reader in one line: with the line of the file, without the pointer below it.
 pub(crate) fn toml_error(error: &toml::de::Error) -> String {
     const SHOWN: usize = 80;
     let shown = |line: &str| {

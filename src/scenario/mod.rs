@@ -1,4 +1,4 @@
-//! What to run: a case of the paper or a case file, settings on top of it, duration and averaging window.
+//! Scenario of a run: a case of the paper or a case file, settings on top of it, duration and averaging window.
 
 mod characters;
 mod file;
@@ -18,7 +18,7 @@ use thiserror::Error;
 /// Case unless something else is asked for.
 const DEFAULT_CASE: &str = "fig14";
 
-/// Why a scenario makes no sense. Each message names the thing, its value and the bound.
+/// Error of a scenario. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// No case has this name.
@@ -53,7 +53,7 @@ pub enum ScenarioError {
         /// What the system said.
         cause: std::io::Error,
     },
-    /// The case or sweep file says something that it cannot.
+    /// The case or sweep file has a mistake.
     #[error("{path}: {reason}")]
     BadFile {
         /// The file.
@@ -70,7 +70,7 @@ pub struct Setting {
     pub name: String,
     /// Its value.
     pub value: String,
-    /// Where it was said.
+    /// Where the user gave it.
     #[serde(skip)]
     pub origin: Origin,
 }
@@ -81,7 +81,7 @@ impl Setting {
         Self { name: name.into(), value: value.into(), origin: Origin::Program }
     }
 
-    /// Where it was said, for an error about it.
+    /// Where the user gave it, for an error about it.
     #[must_use]
     pub fn place(&self) -> String {
         match self.origin {
@@ -104,7 +104,7 @@ impl Setting {
     }
 }
 
-/// What the paper prints for a case.
+/// Values that the paper prints for a case.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PaperValues {
     /// Average voltage gain, V/s (Table 2).
@@ -113,7 +113,7 @@ pub struct PaperValues {
     pub power: Option<f64>,
 }
 
-/// What a user asks for; what is left out comes from the case file, the case or the defaults.
+/// A user's request. Values left out come from the case file, the case or the defaults.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
     /// Case of the paper.
@@ -128,11 +128,11 @@ pub struct Request {
     pub step: Option<f64>,
     /// Averaging window, s.
     pub window: Option<[f64; 2]>,
-    /// What the end is called in errors, if neither option nor file says it.
+    /// Name of the end in errors, if neither option nor file gives it.
     pub until_place: Option<String>,
 }
 
-/// A complete, checked answer to what is to be run.
+/// A complete, checked description of a run.
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// Name: that of the case, or of the case file.
@@ -147,16 +147,16 @@ pub struct Scenario {
     pub step: f64,
     /// Averaging window, s.
     pub window: [f64; 2],
-    /// What the paper prints, if the case stands as it is in the paper.
+    /// Values that the paper prints, if the case is unchanged.
     pub paper: PaperValues,
     /// How many of the settings are those of the case.
     of_case: usize,
-    /// What the end is called where it was said, for an error about it.
+    /// Name of the end where the user gave it, for an error about it.
     pub until_place: String,
 }
 
 impl Scenario {
-    /// The settings that were asked for, without those of the case.
+    /// The settings of the user, without those of the case.
     pub fn changes(&self) -> &[Setting] {
         &self.settings[self.of_case..]
     }

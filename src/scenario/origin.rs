@@ -1,11 +1,11 @@
-//! Where what a user asks for was said, so that an error can send him there.
+//! Where a user gave a value, so that an error can name the place.
 
 use std::path::PathBuf;
 
-/// Where something was said.
+/// Where a value was given.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Origin {
-    /// Nowhere: it is that of a case of the paper, or of this program.
+    /// In a case of the paper, or in this program.
     #[default]
     Program,
     /// On the command line.
@@ -15,8 +15,8 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// What is called `option` on the command line, as it is called where it was said: `--seed-variable`, or
-    /// `my.toml: seed_variable`. What nobody said can be said by the option.
+    /// Name of the value where it was given; `option` is its name on the command line: `--seed-variable`, or
+    /// `my.toml: seed_variable`. A value that nobody gave has the name of its option.
     #[must_use]
     pub fn key(&self, option: &str) -> String {
         match self {
@@ -32,7 +32,7 @@ impl Origin {
         format!("{}{separator}{value}", self.key(option))
     }
 
-    /// The same of what is said once for each variable: `--set ball.mass`, or `my.toml: set.ball.mass`.
+    /// The same for an entry of a variable: `--set ball.mass`, or `my.toml: set.ball.mass`.
     #[must_use]
     pub fn entry(&self, option: &str, variable: &str) -> String {
         let separator = if matches!(self, Self::File(_)) { '.' } else { ' ' };

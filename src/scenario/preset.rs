@@ -12,15 +12,14 @@ pub(super) fn find(name: &str) -> Result<&'static Case, String> {
     Case::find(name).ok_or_else(|| Case::ALL.iter().map(|case| case.name).collect::<Vec<_>>().join(", "))
 }
 
-/// Whether `setting` is a number that the case has anyway.
+/// Whether the case has the number of `setting` already.
 pub(super) fn has(case: &Case, setting: &Setting) -> bool {
     let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == setting.name);
     let value = setting.value.trim().parse::<f64>().ok();
     quantity.zip(value).is_some_and(|(quantity, value)| (quantity.get)(&(case.parameters)()) == value)
 }
 
-/// What the case sets: every parameter whose value is not the start value. Numbers are written so that reading them
-/// gives the same bits.
+/// Settings of the case: every parameter whose value is not the start value. Numbers read back to the same bits.
 pub(super) fn settings(case: &Case) -> Vec<Setting> {
     let parameters = (case.parameters)();
     let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);

@@ -6,7 +6,7 @@ use super::{CaseFile, Request, ScenarioError};
 const DEFAULT_UNTIL: f64 = 100.0;
 /// Communication step unless something else is asked for, s.
 const DEFAULT_STEP: f64 = 1e-3;
-/// Bounds of the duration, s: below, times differ by nothing that can be drawn; above, they have no digits left.
+/// Bounds of the duration, s: below, a figure cannot show it; above, times lose their digits.
 const SHORTEST: f64 = 1e-6;
 const LONGEST: f64 = 1e9;
 /// Largest number of communication points of the grid: 1e9 rows are 240 to 480 GB of CSV.
@@ -20,7 +20,7 @@ pub(super) struct Times {
     pub step: f64,
     /// Averaging window, s.
     pub window: [f64; 2],
-    /// What the end is called where it was said.
+    /// Name of the end where the user gave it.
     pub until_place: String,
 }
 
@@ -59,7 +59,7 @@ fn check_end(until: f64, place: &str) -> Result<(), ScenarioError> {
     fail(place, until, format!("must lie from {SHORTEST} to {LONGEST:e} s"))
 }
 
-/// That a `step`, s, which nobody asked for divides a run up to `until`, s, into no more parts than it may have.
+/// Checks that a `step`, s, that an FMU proposes divides a run up to `until`, s, into no more parts than allowed.
 ///
 /// # Errors
 /// What is allowed.

@@ -1,12 +1,12 @@
-//! C(t) of a run of the harvester, as the table that other solvers get.
+//! C(t) of a run of the harvester as a table for other solvers.
 
 use super::{HarvesterFmu, HarvesterSample};
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 
 impl CapacitanceTable {
-    /// Runs `harvester` from 0 s to `until`, s, and keeps what C(t) needs: the kinks and extrema that the FMU announces,
-    /// and in between as many points as `error` asks for, the largest error of the linear interpolation relative to the
-    /// height of the largest pulse so far. Outside the pulses there is nothing to keep.
+    /// Runs `harvester` from 0 s to `until`, s, and keeps the kinks and extrema of C(t) that the FMU announces, and in
+    /// between the points that `error` requires, the largest error of the linear interpolation relative to the height of
+    /// the largest pulse so far. Outside the pulses it keeps no points.
     ///
     /// # Errors
     /// What the FMU says; an `error` outside `1e-9` to `0.1`; more than [`Self::MAX_ROWS`] rows.
@@ -21,14 +21,14 @@ impl CapacitanceTable {
         }
         let mut sample = harvester.sample()?;
         let rest = sample.capacitance();
-        let mut survey = Survey { harvester, rest, height: [0.0; 2], error };
+        let mut sampler = Sampler { harvester, rest, height: [0.0; 2], error };
         let mut table = Self::default();
         table.push(0.0, rest)?;
         let mut now = 0.0;
         while now < until {
-            let end = sample.next_knot().clamp(now + Survey::SHORTEST, until.max(now + Survey::SHORTEST)).min(until);
-            let points = survey.interval(now, end, &mut sample)?;
-            thin(&points, survey.tolerance(), &mut table)?;
+            let end = sample.next_knot().clamp(now + Sampler::SHORTEST, until.max(now + Sampler::SHORTEST)).min(until);
+            let points = sampler.interval(now, end, &mut sample)?;
+            thin(&points, sampler.tolerance(), &mut table)?;
             now = end;
         }
         Ok(table)
@@ -39,7 +39,7 @@ impl CapacitanceTable {
 type Point = (f64, [f64; 2]);
 
 /// A run of the harvester from knot to knot.
-struct Survey<'a> {
+struct Sampler<'a> {
     harvester: &'a mut HarvesterFmu,
     /// Capacitances at the start, F.
     rest: [f64; 2],
@@ -48,7 +48,7 @@ struct Survey<'a> {
     error: f64,
 }
 
-impl Survey<'_> {
+impl Sampler<'_> {
     /// Closest knots, s: a ball that comes to rest has knots without end.
     const SHORTEST: f64 = 1e-6;
 

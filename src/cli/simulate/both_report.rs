@@ -1,12 +1,41 @@
-//! What both laws of contact come to, as table, words, figure and page.
+//! Results under both laws of contact, as table, text, figure and report.
 
-use super::format::{self, Sheet};
-use super::picture::{self, Points};
-use super::run_output;
-use super::simulate_both::{LawResult, Laws};
+use serde::Serialize;
+
+use crate::cli::format::{self, Sheet};
+use crate::cli::picture::{self, Points};
+use crate::cli::run_output;
+use crate::cosim::MechanicsSummary;
 use crate::scenario::Scenario;
-use crate::simulate::Results;
+use crate::simulate::{ContactSummary, Results};
 use videg_report::{self, Figure, Panel, ReportError, Section, Series, render_svg};
+
+/// Results under one law.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct LawResult {
+    /// Impacts and gains.
+    #[serde(flatten)]
+    pub mechanics: MechanicsSummary,
+    /// Contacts.
+    #[serde(flatten)]
+    pub contacts: ContactSummary,
+}
+
+impl LawResult {
+    /// The results of `run`.
+    pub fn new(run: &Results) -> Self {
+        Self { mechanics: run.mechanics, contacts: run.contacts.summary() }
+    }
+}
+
+/// Both laws, by name.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Laws {
+    /// Impacts take no time.
+    pub impulsive: LawResult,
+    /// Impacts take time.
+    pub compliant: LawResult,
+}
 
 /// A row of the table: quantity, unit, units in one SI unit, and how to read it.
 type Quantity = (&'static str, &'static str, f64, fn(&LawResult) -> Option<f64>);
@@ -25,7 +54,7 @@ const QUANTITIES: [Quantity; 9] = [
 
 const HEADINGS: [&str; 6] = ["quantity", "unit", "impulsive", "compliant", "difference", "in per cent"];
 
-/// What a contact is, for the reader of the durations.
+/// The definition of a contact, for the reader of the durations.
 const CONTACTS: [&str; 3] = [
     "A contact lasts as long as its membrane is deflected, from communication point to communication point; those include",
     "impacts and ends of pulses. Under the impulsive law that is the pulse after an impact, while the ball is gone already,",
@@ -60,7 +89,7 @@ fn number(unit: &str, value: f64) -> String {
     if unit == "1" { format!("{value}") } else { format::significant(value, 6) }
 }
 
-/// By how much the laws differ, a sentence each, and what is measured.
+/// The differences between the laws, a sentence each, and the definition of a contact.
 pub fn words(scenario: &Scenario, laws: &Laws) -> Vec<String> {
     let phrase = |digits: usize, scale: f64, unit: &str, value: fn(&LawResult) -> f64| {
         let [before, after] = [&laws.impulsive, &laws.compliant].map(|law| scale * value(law));
@@ -87,7 +116,7 @@ pub fn words(scenario: &Scenario, laws: &Laws) -> Vec<String> {
     words
 }
 
-/// How a value changed, in parentheses; nothing where there is nothing to relate it to.
+/// The relative change of a value in parentheses; empty without a reference value.
 fn change(before: f64, after: f64) -> String {
     let per_cent = 100.0 * (after / before - 1.0);
     let part = format::significant(per_cent.abs(), 3);

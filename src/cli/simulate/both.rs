@@ -5,42 +5,17 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use serde::Serialize;
 
-use super::options::RunOptions;
-use super::run_output::{self, RunOutput, file_list, heading};
-use super::simulate_law::Law;
-use super::{Exit, output, simulate, simulate_both_report};
-use crate::cosim::MechanicsSummary;
+use super::both_report::{self, LawResult, Laws};
+use super::law::Law;
+use super::record;
+use crate::cli::options::RunOptions;
+use crate::cli::run_output::{self, RunOutput, file_list, heading};
+use crate::cli::{Exit, output};
 use crate::scenario::Scenario;
-use crate::simulate::{ContactSummary, Results};
+use crate::simulate::Results;
 use fmu_import::Fmu;
 
-/// What a law comes to.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct LawResult {
-    /// Impacts and gains.
-    #[serde(flatten)]
-    pub mechanics: MechanicsSummary,
-    /// Contacts.
-    #[serde(flatten)]
-    pub contacts: ContactSummary,
-}
-
-impl LawResult {
-    fn new(run: &Results) -> Self {
-        Self { mechanics: run.mechanics, contacts: run.contacts.summary() }
-    }
-}
-
-/// Both laws, by name.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Laws {
-    /// Impacts take no time.
-    pub impulsive: LawResult,
-    /// Impacts take time.
-    pub compliant: LawResult,
-}
-
-/// What `--json` says: the run under the impulsive law, and both laws.
+/// The keys of `--json`: the run under the impulsive law, and both laws.
 #[derive(Serialize)]
 struct Output<'a> {
     #[serde(flatten)]
@@ -55,12 +30,12 @@ pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Resu
     let (compliant, compliant_csv) = under(Law::Compliant, fmu, scenario, &folder)?;
     let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
     let warnings = warnings([&impulsive, &compliant], &laws);
-    let svg = simulate_both_report::figure([&impulsive, &compliant], scenario)?;
-    let html = simulate_both_report::html(scenario, &laws, &warnings, svg.clone())?;
+    let svg = both_report::figure([&impulsive, &compliant], scenario)?;
+    let html = both_report::html(scenario, &laws, &warnings, svg.clone())?;
     let files = run_output::write(&folder, &[impulsive_csv, compliant_csv], &svg, &html)?;
     let run = RunOutput::new(scenario, impulsive.mechanics, &warnings, &files);
-    let words = simulate_both_report::words(scenario, &laws).join("\n");
-    let table = simulate_both_report::table(&laws).text();
+    let words = both_report::words(scenario, &laws).join("\n");
+    let table = both_report::table(&laws).text();
     let text = [heading("simulate", scenario), table, words, file_list(&files)];
     run_output::conclude(&folder, options.json, &Output { run, laws: &laws }, &text, &warnings)?;
     Ok(Exit::Passed)
@@ -71,11 +46,11 @@ fn under(law: Law, fmu: &Fmu, scenario: &Scenario, folder: &Path) -> anyhow::Res
     let mut scenario = scenario.clone();
     scenario.settings.push(law.setting());
     let csv = folder.join(format!("timeseries-{}.csv", law.name()));
-    let run = simulate::record(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
+    let run = record(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
     Ok((run, csv))
 }
 
-/// Warnings of both runs, those that they share once, and what durations do not tell.
+/// Warnings of both runs, shared ones once, and those about durations.
 fn warnings([impulsive, compliant]: [&Results; 2], laws: &Laws) -> Vec<String> {
     let new = compliant.warnings.iter().filter(|warning| !impulsive.warnings.contains(warning));
     let shared = impulsive.warnings.iter().chain(new).cloned();

@@ -2,10 +2,10 @@
 
 use clap::ValueEnum;
 
-use super::options::RunOptions;
+use crate::cli::options::RunOptions;
 use crate::scenario::{Scenario, Setting};
 
-/// The variable that the option stands for.
+/// The variable that the option sets.
 const VARIABLE: &str = "contact.law";
 
 /// Laws to choose from.
@@ -44,7 +44,7 @@ impl Law {
     }
 }
 
-/// What the options ask for under `law`; with both laws, what is common to them.
+/// The scenario of the options under `law`; with both laws, their common part.
 ///
 /// # Errors
 /// Whatever in the options makes no sense, or settings that ask for another law.
