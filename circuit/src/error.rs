@@ -120,7 +120,10 @@ impl Error {
     /// Names of the variables whose values the error is about.
     pub fn variables(&self) -> Vec<&'static str> {
         match self {
-            Self::NotFinite { name, .. } | Self::NotPositive { name, .. } | Self::Negative { name, .. } => vec![name],
+            Self::NotFinite { name, .. }
+            | Self::NotPositive { name, .. }
+            | Self::Negative { name, .. }
+            | Self::Bounds { name, .. } => vec![name],
             Self::ZenerBelowSupply { .. } => vec![names::ZENER_VOLTAGE, names::SUPPLY_VOLTAGE],
             Self::StorageBelowSupply { .. } => vec![names::STORAGE_VOLTAGE, names::SUPPLY_VOLTAGE],
             _ => Vec::new(),

@@ -46,7 +46,7 @@ impl FmuCircuit {
     /// Every setting as text for the FMU. Numbers read back to the same bits.
     pub fn settings(settings: &Settings) -> Vec<Setting> {
         let quantities = Settings::QUANTITIES.iter().map(|q| (q.name, format!("{:?}", (q.get)(settings))));
-        let choices = Settings::CHOICES.iter().map(|c| (c.name, c.items[(c.get)(settings)].0.to_owned()));
+        let choices = Settings::CHOICES.iter().map(|c| (c.name, c.chosen(settings).to_owned()));
         quantities.chain(choices).map(|(name, value)| Setting::new(name, value)).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Settings by name: those of the harvester, those of the circuit, and the values of the circuit that nobody set.
 
 use fmu_import::{ModelDescription, nearest_name};
-use videg_circuit::{Settings, names};
+use videg_circuit::{Choice, Settings, names};
 
 use super::ratios::best_release_voltage;
 use super::{CosimError, EmbeddedCircuit};
@@ -92,11 +92,8 @@ fn unknown(harvester: &ModelDescription, setting: &Setting) -> CosimError {
 
 /// Name of a circuit in tables.
 pub fn label(settings: &Settings) -> String {
-    let chosen = |index: usize| {
-        let choice = &Settings::CHOICES[index];
-        choice.items[(choice.get)(settings)].0
-    };
-    format!("{}, {} at {:.0} V", chosen(0), chosen(1), settings.circuit.release_voltage())
+    let [topology, release] = [Choice::TOPOLOGY, Choice::RELEASE].map(|choice| choice.chosen(settings));
+    format!("{topology}, {release} at {:.0} V", settings.circuit.release_voltage())
 }
 
 /// The warning about a supply that is not at the bias voltage of the harvester, V.
