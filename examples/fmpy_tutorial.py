@@ -9,23 +9,23 @@ sys.path.append("examples")
 # # C(t) in FMPy
 #
 # You load the harvester into [FMPy](https://fmpy.readthedocs.io), get its capacitances C(t), change parameters, go back in time,
-# ask for derivatives, and couple it with the circuit. It takes a quarter of an hour, the FMUs, and Python 3.11 or later with FMPy and
-# matplotlib, in the versions that this page was made with:
+# get derivatives, and couple it with the circuit. This takes a quarter of an hour. You need the FMUs and Python 3.11 or later with FMPy and
+# matplotlib, in the versions of this page:
 
 # %% [markdown]
-# `./test.sh setup` makes the same `.venv`, but installs all that the tests need into it, and Debian packages besides.
+# `./test.sh setup` makes the same `.venv`, but installs all packages of the tests into it, and Debian packages as well.
 #
-# The same as a script with cells, for an editor or Jupyter: `examples/fmpy_tutorial.py`. Run either in the root of the source tree.
+# `examples/fmpy_tutorial.py` is the same as a script with cells, for an editor or Jupyter. Run either in the root of the source tree.
 #
 # ## Get the FMUs
 #
-# A release has them. `videg`, of a release or built from the sources (`cargo run --release --` stands for it), writes them into `target/fmu`:
+# A release has them. `videg`, from a release or built from the sources (`cargo run --release --` stands for it), writes them into `target/fmu`:
 
 # %% [markdown]
-# `examples/find_videg.py` takes them from there, or from the folder `VIDEG_FMUS`. If they are not there, it asks the `videg` on the PATH or in
-# `target/release`, and says what to run if there is none.
+# `examples/find_videg.py` takes them from there, or from the folder `VIDEG_FMUS`. If they are not there, it runs the `videg` on the PATH or in
+# `target/release`. If there is none, it prints the command to run.
 #
-# ## Look into one
+# ## Read the variables
 
 # %%
 import os
@@ -50,7 +50,7 @@ for variable in description.modelVariables:
         print(f"  {variable.causality:7} {variable.name:19} [{variable.unit or 1}] {variable.description}")
 
 # %% [markdown]
-# Every variable has its unit, bounds and place in the paper: [Variables](../reference/variables.md).
+# [Variables](../reference/variables.md) has unit, bounds and place in the paper of every variable.
 #
 # ## Simulate
 #
@@ -78,8 +78,8 @@ gain = result["gain.voltage"]
 print(f"{result['impact.count'][-1]} impacts, <U> = {(gain[100_000] - gain[50_000]) / 50:.1f} V/s from 50 to 100 s")
 
 # %% [markdown]
-# The paper prints 8079 V/s in Table 2. `output_interval` decides only how often you look: the motion between events is a closed form,
-# so that another interval gives the same numbers to the last bit.
+# The paper prints 8079 V/s in Table 2. `output_interval` sets only the times of the output. The motion between events is a closed form,
+# so another interval gives the same numbers to the last bit.
 
 # %%
 last = result["time"] >= 98.5
@@ -98,7 +98,7 @@ figure.savefig(figures / "capacitance.svg")
 #
 # ## Change parameters
 #
-# Parameters go by name. What the output does over the restitution r of the membrane:
+# Parameters have names. This is the output over the restitution r of the membrane:
 
 # %%
 restitutions = [0.3, 0.45, 0.6, 0.75, 0.9]
@@ -115,10 +115,10 @@ for restitution in restitutions:
     print(f"r = {restitution:4}: <U> = {gains[-1]:6.0f} V/s from 30 to 60 s")
 
 # %% [markdown]
-# For thousands of runs there is [`videg sweep`](../sweep.md), on all cores.
+# For thousands of runs use [`videg sweep`](../sweep.md), on all cores.
 #
-# An enumeration goes by its number, which stands with its name in [Variables](../reference/variables.md); FMPy takes no names. A contact
-# that takes time, `contact.law = compliant`:
+# FMPy takes the number of an item of an enumeration, not its name; [Variables](../reference/variables.md) has both. A contact
+# with a duration, `contact.law = compliant`:
 
 # %%
 compliant = fmpy.simulate_fmu(
@@ -131,7 +131,7 @@ compliant = fmpy.simulate_fmu(
 print(f"compliant: <U> = {(compliant['gain.voltage'][-1] - compliant['gain.voltage'][-4]) / 30:.0f} V/s from 30 to 60 s")
 
 # %% [markdown]
-# A value that makes no sense is refused, and the message says why:
+# A value out of bounds is refused, and the message gives the reason:
 
 # %%
 try:
@@ -142,7 +142,7 @@ except Exception as error:
 # %% [markdown]
 # ## Go step by step
 #
-# `simulate_fmu` hides the calls. A master of your own makes them one by one; this class keeps names and value references together.
+# `simulate_fmu` hides the calls. A master of your own makes them one by one. This class maps names to value references:
 
 # %%
 import tempfile
@@ -182,14 +182,14 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
     print(f"{name:19} {slave.get(name)[0]:.6f}")
 
 # %% [markdown]
-# `impact.nextTime` and `pulse.nextKnot` say where C(t) will have its next kink, and when a resting ball will be released. They look one
-# period of the excitation ahead and follow the inputs as soon as these are set: a master that sets its inputs, steps to them, and goes no
-# farther than a period at once, sees every impact, peak and release at the end of a step. Phase noise shortens the view, to 256 of its
-# hold intervals, or to the present one: [`impact.nextTime`](../reference/variables.md) says when.
+# `impact.nextTime` and `pulse.nextKnot` are the times of the next kink of C(t) and of the next release of a resting ball. They look one
+# period of the excitation ahead and follow the inputs as soon as these are set. A master that sets its inputs, steps to these times and
+# never takes a step of more than a period has every impact, peak and release at the end of a step. With phase noise they look 256 hold
+# intervals ahead, or only to the end of the present one; the description of [`impact.nextTime`](../reference/variables.md) has the rule.
 #
 # ## Go back in time
 #
-# The whole state can be saved and restored. A master may thus try a step and undo it:
+# The complete state can be saved and restored. A master can therefore try a step and undo it:
 
 # %%
 state = slave.getFMUstate()
@@ -205,12 +205,12 @@ for now, then in zip(times, times[1:]):
 print("and on to the same bits: ", np.array_equal(slave.get("ball.position", "left.capacitance", "gain.voltage"), later))
 
 # %% [markdown]
-# `serializeFMUstate` makes bytes of a state, which a process on another machine may go on from.
+# `serializeFMUstate` converts a state to bytes. A process on another machine can go on from them.
 #
-# ## Ask for derivatives
+# ## Get derivatives
 #
-# How do the outputs at the end of a step depend on the force that acted during it? The harvester knows exactly, through impacts as
-# well. Here over a step of 0.15 s that begins before an impact and ends while the membrane is pressed in, beside a difference of two runs:
+# Directional derivatives tell how the outputs at the end of a step depend on the force during it. They are exact, also through impacts.
+# This step of 0.15 s begins before an impact and ends while the membrane is pressed in. The difference of two runs confirms the result:
 
 # %%
 step, force = 0.15, 1e-6
@@ -240,9 +240,9 @@ slave.freeInstance()
 # %% [markdown]
 # ## Couple it with the circuit
 #
-# The second FMU is the circuit of the paper's Fig. 8(a). This is a Gauss-Seidel master: the harvester steps first, to the next point
-# of the grid or the next kink of C(t), whichever comes first; then the circuit follows with C(t) linear between both ends of the
-# step, which it is told as a value and a rate.
+# The second FMU is the circuit of the paper's Fig. 8(a). This is a Gauss-Seidel master. The harvester steps first, to the next point
+# of the grid or the next kink of C(t), whichever comes first. Then the circuit steps, with C(t) linear between both ends of the
+# step, as a value and a rate.
 
 # %%
 CAPACITANCES = ["left.capacitance", "right.capacitance"]
@@ -273,7 +273,7 @@ for name, values in zip(BOOKS, books):
     print(f"{name:17} {1e3 * values[-1]:7.4f} mJ after {end:.0f} s")
 
 # %% [markdown]
-# The tool itself does the same in one call, and says the same:
+# The tool does the same in one call, with the same result:
 
 # %%
 import json
@@ -285,8 +285,8 @@ if videg := find():
     print({name: round(1e3 * energy[name], 4) for name in ("supply", "load", "zener", "converted")})
 
 # %% [markdown]
-# The load gets less than the supply gives: the Zener diode burns what the paper's Eq. (13) counts as gain.
-# [Circuit and energy](../theory/circuit.md) says why, and which circuit gains.
+# The load gets less than the supply gives: the Zener diode burns the energy that the paper's Eq. (13) counts as gain.
+# [Circuit and energy](../theory/circuit.md) explains this and shows circuits that gain.
 
 # %%
 last = times >= 18.0
@@ -304,4 +304,4 @@ for instance in (harvester, circuit):
     instance.freeInstance()
 
 # %% [markdown]
-# In [The harvester in your own system](system.md) harvester and circuit go into other masters: C, HELICS, system packages.
+# [The harvester in your own system](system.md) uses harvester and circuit in other masters: C, HELICS, system packages.

@@ -8,12 +8,12 @@ sys.path.append("examples")
 # %% [markdown]
 # # C(t) in ngspice
 #
-# You take the capacitances of the harvester into a circuit of your own in ngspice, see what it gains, and hold it against the
-# embedded solver. It takes ngspice (Debian: `apt install ngspice libngspice0`) and, for the sweep at the end, Python with
-# `matplotlib`. The same as a script with cells: `examples/ngspice_coupling.py`. Run either in the root of the source tree, with `videg` on
+# You use the capacitances of the harvester in a circuit of your own in ngspice, compute its gain, and compare it with the
+# embedded solver. You need ngspice (Debian: `apt install ngspice libngspice0`) and, for the sweep at the end, Python with
+# `matplotlib`. `examples/ngspice_coupling.py` is the same as a script with cells. Run either in the root of the source tree, with `videg` on
 # the PATH (`export PATH=$PWD/target/release:$PATH`).
 #
-# The mechanics do not feel the circuit under the paper's contact law, so C(t) can be computed first and the circuit later, as often
+# Under the paper's contact law the circuit does not act on the mechanics. So C(t) can be computed once, and circuits later, as often
 # as you like.
 #
 # ## Get C(t)
@@ -42,8 +42,8 @@ print(f"{len(rows)} rows; both membranes at rest: {1e12 * rest:.6f} pF")
 # %% [markdown]
 # ## A circuit of your own
 #
-# Here the membranes lie between a supply of 2 kV and a storage that is held at 2.2 kV, with a diode on either side. Save this as
-# `out/ngspice/own.cir`:
+# Here the membranes lie between a supply of 2 kV and a storage at 2.2 kV, with a diode on either side
+# ([schematic](../theory/circuit.md)). Save this as `out/ngspice/own.cir`:
 
 # %%
 from pathlib import Path
@@ -87,17 +87,17 @@ quit
 """)
 
 # %% [markdown]
-# Another membrane, or other voltages, go into the line `.param`. The options matter at 2 kV:
+# Set another membrane or other voltages in the line `.param`. The options matter at 2 kV:
 #
-# - `gmin` at its default of 1e-12 would leak 2 nA, some percent of what is harvested.
+# - `gmin` at its default of 1e-12 would leak 2 nA, some percent of the harvested current.
 # - `reltol` times 2 kV must stay well below N Vt (26 mV for `N=1`), over which the current of a diode changes by e. Above that Newton's
-#   iteration stops at false solutions without a word: with `N=0.01` and `reltol=1e-5` the gain at 2050 V is off by 15 %. A run with
-#   a tenth of `reltol` must give the same.
-# - A diode of `N=1` takes some 0.3 V of the 2 kV. One nearer to an ideal one needs a smaller `reltol`, and with that `chgtol` must be larger, as
-#   no step across a corner of C(t) would be short enough: ngspice ends with "Timestep too small", and with exit code 0. `N=0.01`,
-#   `reltol=1e-8`, `method=gear` and for `chgtol` the charge of the membranes, `6e-8`, give 1.76425e-03 and 1.89513e-03.
+#   iteration stops at false solutions without a message: with `N=0.01` and `reltol=1e-5` the gain at 2050 V is off by 15 %. A run with
+#   a tenth of `reltol` must give the same result.
+# - A diode with `N=1` takes about 0.3 V of the 2 kV. A more ideal diode needs a smaller `reltol`, and then a larger `chgtol`: otherwise
+#   no step across a corner of C(t) is short enough, and ngspice ends with "Timestep too small" and exit code 0. `N=0.01`,
+#   `reltol=1e-8`, `method=gear` and `chgtol=6e-8`, the charge of the membranes, give 1.76425e-03 and 1.89513e-03.
 #
-# `ngspice_netlists/README.md` in the source tree says what videg's own netlists do about it.
+# `ngspice_netlists/README.md` in the source tree describes the options of videg's own netlists.
 
 # %%
 from find_videg import run
@@ -105,7 +105,7 @@ from find_videg import run
 run("cd out/ngspice && ngspice -b own.cir 2>/dev/null | grep \"^from\\|^to\"")
 
 # %% [markdown]
-# The storage gets more than the supply gives: the mechanics paid for the rest.
+# The storage gets more than the supply gives. The difference comes from the mechanics.
 #
 # ## The same from videg
 
@@ -115,9 +115,9 @@ from find_videg import run
 run("videg cosim --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'")
 
 # %% [markdown]
-# `supply` and `load` (the storage) are the two numbers of ngspice, in J, to 0.1 %. What counts is their difference, the gain, which is
-# a tenth of either: 0.1307 mJ in ngspice, 0.1309 mJ here, 0.1 % apart. videg also
-# runs ngspice itself, as a shared library that steps along with the harvester, which is what a circuit that acts back on the ball needs:
+# `supply` and `load` (the storage) agree with the two numbers of ngspice, in J, to 0.1 %. Their difference, the gain, is a tenth of
+# either: 0.1307 mJ in ngspice and 0.1309 mJ here, 0.1 % apart. videg also runs ngspice as a shared library that steps together with
+# the harvester. A circuit that acts on the ball needs this:
 
 # %%
 from find_videg import run
@@ -125,8 +125,9 @@ from find_videg import run
 run("videg cosim --circuit ngspice --until 10 --set release=storage --set storage.voltage=2200 --json | grep -m 1 -A 2 '\"energy\"'")
 
 # %% [markdown]
-# And `videg crosscheck` holds closed forms, embedded solver, ngspice as a program and ngspice as a library against each other, claim
-# by claim. With `--export` it leaves a folder for somebody who has ngspice alone: netlists, C(t), and the values to expect.
+# `videg crosscheck` compares closed forms, embedded solver, ngspice as a program and ngspice as a library, claim by claim
+# ([Cross-check with ngspice](../results/crosscheck.md)). With `--export` it writes a folder for a user who has only ngspice: netlists, C(t) and
+# expected values.
 
 # %%
 from find_videg import run
@@ -134,11 +135,11 @@ from find_videg import run
 run("videg crosscheck --until 10 --export out/for-ngspice >/dev/null && ls out/for-ngspice")
 
 # %% [markdown]
-# ## Which storage voltage gains most
+# ## The best storage voltage
 #
 # A quick release gains (C3 U_in - C2 U_out)(U_out - U_in), with C2 + C2 for C2 and C3 + C2 for C3 on one node, as here. So there is a best
-# voltage between U_in and the peak that constant charge reaches ([Circuit and energy](../theory/circuit.md#which-voltage)). In ngspice, and
-# beside it in videg with the diodes of the netlist and with ideal ones:
+# voltage between U_in and the peak at constant charge ([Circuit and energy](../theory/circuit.md#which-voltage)). The script computes the gain in
+# ngspice, and in videg with the diodes of the netlist and with ideal diodes:
 
 # %%
 import json
@@ -175,7 +176,7 @@ for voltage in voltages:
     print(f"storage at {voltage} V  {gain:8.5f}   {same:18.5f}   {ideal:19.5f}")
 
 # %% [markdown]
-# ngspice and videg agree to 0.1 % where both have the same diodes; the rest is what the diodes cost.
+# ngspice and videg agree to 0.1 % with the same diodes. The last column shows the effect of the diodes.
 
 # %%
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
@@ -186,5 +187,5 @@ axes.set_ylabel("gain in 10 s (mJ)")
 figure.savefig(figures / "storage.svg")
 
 # %% [markdown]
-# `videg crosscheck --sweep` and `videg reproduce tuning` draw this map for Zener diodes, switches and storages, over voltage and
+# `videg crosscheck --sweep` and `videg reproduce tuning` make this map for Zener diodes, switches and storages, over voltage and
 # load.

@@ -8,19 +8,19 @@ sys.path.append("examples")
 # %% [markdown]
 # # Use your own membrane
 #
-# You have measured a membrane, and want C(t) of a harvester with it. This page fits what videg needs - $K$, $n$, $r$, $\varepsilon_r$ - and
-# writes a case file. It takes the [Python of the FMPy tutorial](../tutorial/fmpy.md); the same as a script with cells is
-# `examples/own_membrane.py`. Run either in the root of the source tree, with `videg` on the PATH.
+# You have measured a membrane and want C(t) of a harvester with it. This page fits the parameters $K$, $n$, $r$ and $\varepsilon_r$ and
+# writes a case file. It needs the [Python of the FMPy tutorial](../tutorial/fmpy.md). `examples/own_membrane.py` is the same as a script with
+# cells. Run either in the root of the source tree, with `videg` on the PATH.
 #
-# The measurements below are **made up**: a membrane of $K = 1.9\times 10^5$ N/m$^n$, $n = 2.4$, $r = 0.67$, $\varepsilon_r = 4.2$, with noise and
-# 3 pF of stray capacitance, so that you see what the fits find of it. Put yours in their place.
+# The measurements below are **invented**: a membrane of $K = 1.9\times 10^5$ N/m$^n$, $n = 2.4$, $r = 0.67$, $\varepsilon_r = 4.2$, with noise and
+# 3 pF of stray capacitance. So you can compare the fits with the true values. Replace the measurements by yours.
 #
 # ## Measure
 #
-# Measure with the ball and the frame of the harvester. $K$ and $n$ belong to both: the paper's are those of a frame of
-# $R_2 = 6.3$ mm, and it uses them for one of 8 mm and a larger ball in Section 5.3 without saying why that holds.
+# Measure with the ball and the frame of the harvester. $K$ and $n$ depend on both. The paper measured with a frame of
+# $R_2 = 6.3$ mm. In Section 5.3 it uses the same values for 8 mm and a larger ball without giving a reason.
 #
-# - **Force over deflection**: press the ball into the middle, slowly. Go as deep as impacts will, see [below](#is-it-within-what-was-measured).
+# - **Force over deflection**: press the ball slowly into the middle. Go as deep as the impacts, see [below](#check-the-measured-range).
 
 # %%
 from pathlib import Path
@@ -42,7 +42,7 @@ Path("out/membrane/force.csv").write_text(r"""deflection_mm,force_N
 """)
 
 # %% [markdown]
-# - **Capacitance over deflection**: the same with an LCR meter at a low frequency, where electrodes of high resistance still charge.
+# - **Capacitance over deflection**: the same with an LCR meter, at a frequency so low that electrodes of high resistance still charge.
 
 # %%
 from pathlib import Path
@@ -59,7 +59,7 @@ Path("out/membrane/capacitance.csv").write_text(r"""deflection_mm,capacitance_pF
 """)
 
 # %% [markdown]
-# - **Speed of the ball before and after an impact**, by a high-speed camera: on a membrane that stands upright and is held fast.
+# - **Speed of the ball before and after an impact**, by a high-speed camera. The membrane stands upright and its frame is fixed.
 
 # %%
 from pathlib import Path
@@ -75,7 +75,7 @@ Path("out/membrane/rebound.csv").write_text(r"""before_m_per_s,after_m_per_s
 """)
 
 # %% [markdown]
-# What is known from making it: radius and thickness before it was stretched, the pre-stretch, and the ball's radius and mass.
+# Also needed: radius and thickness of the membrane before stretching, the pre-stretch, and radius and mass of the ball.
 
 # %%
 import csv
@@ -96,8 +96,8 @@ radius, thickness = prestretch * initial_radius, initial_thickness / prestretch*
 # %% [markdown]
 # ## Fit K and n, Eq. (2)
 #
-# For each $n$ the best $K$ is a quotient of sums; what is left decides on $n$. A straight line through logarithms would weigh the noise of the
-# smallest forces most.
+# For each $n$ the best $K$ is a quotient of sums. The remaining error decides on $n$. A straight line through logarithms would give the noise of
+# the smallest forces the largest weight.
 
 # %%
 deflection, force = read("out/membrane/force.csv")
@@ -118,12 +118,12 @@ stiffness = best_stiffness(exponent)
 print(f"K = {stiffness:.4g} N/m^n, n = {exponent:.3f}, {1e3 * left_over(exponent):.1f} mN left over on average")
 
 # %% [markdown]
-# $K$ and $n$ err together - a larger $n$ asks for a larger $K$ - so compare forces, not $K$: what counts is the force at the depth of impacts.
+# The errors of $K$ and $n$ are correlated: a larger $n$ needs a larger $K$. So compare forces at the deflection of the impacts, not $K$.
 #
 # ## Fit the permittivity, Eq. (1)
 #
-# $C = C_2 (A_3/A_2)^2$, and wires and meter add a stray capacitance that does not move. So a straight line over $(A_3/A_2)^2$, Eqs. (3) to (5),
-# has the slope $C_2$; the value at rest alone would count the stray capacitance as membrane.
+# $C = C_2 (A_3/A_2)^2$, and wires and meter add a constant stray capacitance. So a straight line over $(A_3/A_2)^2$, Eqs. (3) to (5),
+# has the slope $C_2$. The value at rest alone would include the stray capacitance.
 
 # %%
 def area_ratio(depth):
@@ -140,8 +140,8 @@ permittivity = 1e-12 * rest * thickness / (8.8541878128e-12 * np.pi * radius**2)
 print(f"C_2 = {rest:.1f} pF and {stray:.1f} pF of stray capacitance: epsilon_r = {permittivity:.2f}")
 
 # %% [markdown]
-# If the points leave the line, the membrane is no cone: then C(t) of Eq. (1) is not yours, and a table in place of it is better
-# ([C(t) in ngspice](../tutorial/ngspice.md)). The stray capacitance belongs to your circuit.
+# If the points leave the line, the membrane is no cone. Then Eq. (1) does not apply; use a table of C(t)
+# ([C(t) in ngspice](../tutorial/ngspice.md)). The stray capacitance is a part of your circuit.
 #
 # ## The restitution, Eq. (11)
 
@@ -151,7 +151,7 @@ restitution = np.sum(before * after) / np.sum(before**2)
 print(f"r = {restitution:.3f}; by impact {np.round(after / before, 2)}")
 
 # %% [markdown]
-# videg has one $r$ for all speeds. If yours falls with speed, take it at that of the impacts of your case.
+# videg has one $r$ for all speeds. If your $r$ depends on the speed, take its value at the speed of the impacts of your case.
 #
 # ## Run it
 
@@ -178,12 +178,12 @@ from find_videg import run
 run("videg simulate --case-file out/membrane/own.toml --output out/membrane/run")
 
 # %% [markdown]
-# Mass and length of the cylinder, force and frequency are still those of Fig. 14: [Variables](../reference/variables.md) has their names. The
-# same file goes into `videg cosim`, and with more keys it is a [sweep](../sweep.md).
+# Mass and length of the cylinder, force and frequency are still those of Fig. 14; [Variables](../reference/variables.md) has their names.
+# `videg cosim` takes the same file, and with more keys it is a [sweep](../sweep.md).
 #
-# ## Is it within what was measured?
+# ## Check the measured range
 #
-# A power law fits what was measured, and says nothing beyond:
+# The power law is a fit and holds only within the measured range:
 
 # %%
 with open("out/membrane/run/timeseries.csv", newline="") as file:
@@ -191,5 +191,5 @@ with open("out/membrane/run/timeseries.csv", newline="") as file:
 print(f"deepest impact {1e3 * deepest:.1f} mm, measured to {1e3 * deflection.max():.1f} mm")
 
 # %% [markdown]
-# If impacts go deeper, measure deeper. Warnings of the run say where stretch and field exceed what VHB 4910 stands
-# ([Limits of the material](../theory/membrane.md#limits-of-the-material)); for another material they mean nothing.
+# If impacts go deeper, measure deeper. The run warns if stretch and field exceed the limits of VHB 4910
+# ([Limits of the material](../theory/membrane.md#limits-of-the-material)). For another material ignore these warnings.

@@ -167,7 +167,7 @@ fn row(row: &Row) -> anyhow::Result<String> {
 
 fn main() -> ExitCode {
     let mut complete = true;
-    println!("| what; beside what | ours | baseline | ratio | asked |\n|---|---|---|---|---|");
+    println!("| benchmark; baseline | videg | baseline | ratio | required |\n|---|---|---|---|---|");
     for entry in ROWS {
         match row(entry) {
             Ok(line) => println!("{line}"),

@@ -12,8 +12,8 @@ use videg_golden::Golden;
 const HEAD: &str = "\
 # Model descriptions
 
-`VibroImpactHarvester.xml` and `HarvestingCircuit.xml` are packaged as `modelDescription.xml` of the two FMUs. They
-follow from the variable tables in `fmu/*/src/variables.rs`, and this page follows from them; tests keep all equal.
+`VibroImpactHarvester.xml` and `HarvestingCircuit.xml` are the `modelDescription.xml` of the two FMUs. They
+follow from the variable tables in `fmu/*/src/variables.rs`, and this page follows from them; tests compare all three.
 After a change of a table run `UPDATE_MODEL_DESCRIPTION=1 cargo test --workspace` (twice: the descriptions first).
 
 Symbols, equations, figures, tables and sections are those of the paper, \"Energy harvesting from a DE-based dynamic

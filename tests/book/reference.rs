@@ -31,9 +31,9 @@ fn describe(page: &mut String, command: &clap::Command, path: &str, clone: &Clon
 /// Start values that the command line does not use.
 const CIRCUIT_DEFAULTS: &str = "\nThe start values are those of the FMU. `videg cosim`, `crosscheck` and `ssp` start from others, unless they are \
     set: `supply.voltage` is `biasVoltage` of the harvester, `zener.voltage` is `supply.voltage`, and \
-    `storage.voltage` is [what gains most](../theory/circuit.md#which-voltage) over the impacts of a run of the mechanics ahead. So `--set \
-    supply.voltage=3000` alone runs with a Zener voltage of 3000 V; in other tools the voltage that charge is released at, \
-    `zener.voltage` or with `release = storage` `storage.voltage`, must be set with it: it must be at least `supply.voltage`.\n";
+    `storage.voltage` is the [best voltage](../theory/circuit.md#which-voltage) for the impacts of a run of the mechanics ahead. So `--set \
+    supply.voltage=3000` alone runs with a Zener voltage of 3000 V. In other tools also set the release voltage, `zener.voltage` or with \
+    `release = storage` `storage.voltage`: it must be at least `supply.voltage`.\n";
 
 /// Lists every variable with all that its description says.
 #[test]
@@ -42,9 +42,8 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
         "# Variables\n\n{MADE}\nSymbols and equations are those of the [paper](../bibliography.md). An `enumeration` takes one of the names \
          in `videg` and in a case file, and in FMI its number, from 1: `\"contact.law\": 2`, compliant, in the `start_values` of FMPy. \
          Left is the end that the ball meets at $z_M - z_m = +s/2$ ([drawing](../theory/motion.md)).\n\n\
-         All outputs are Reals: many importers read every output as one, and connect nothing else. What is an integer or a boolean by \
-         nature is a local variable, which any tool reads by its name, and `impact.countReal` and `contact.restingReal` give the same \
-         as Reals.\n"
+         All outputs are Reals, because many importers read every output as a Real and connect no other type. Integers and booleans are local \
+         variables, which every tool can read; `impact.countReal` and `contact.restingReal` give them as Reals.\n"
     );
     for fmu in FMUS {
         let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
@@ -115,9 +114,9 @@ fn scientific(value: f64) -> String {
 #[test]
 fn the_page_of_cases_is_that_of_the_model() {
     let mut page = format!(
-        "# Cases\n\n{MADE}\nA case of the paper is a set of parameters; `--case NAME` starts from it, and so does `case = \
-         \"NAME\"` in a case file. What a case does not set has its start value. The [case file](files.md#case-files) says how \
-         to make others.\n\n| case | what it shows | paper | sets |\n|---|---|---|---|\n"
+        "# Cases\n\n{MADE}\nA case of the paper is a set of parameters. `--case NAME` starts from it, and so does `case = \
+         \"NAME\"` in a case file. All other parameters have their start values. [Case files](files.md#case-files) define \
+         other cases.\n\n| case | description | paper | sets |\n|---|---|---|---|\n"
     );
     for case in Case::ALL {
         let paper = match (case.paper_voltage_gain, case.paper_power) {
@@ -132,8 +131,8 @@ fn the_page_of_cases_is_that_of_the_model() {
         writeln!(page, "| `{}` | {} | {paper} | {} |", case.name, case.description, sets.join("<br>")).unwrap();
     }
     page.push_str(
-        "\nWhat videg gets for them stands beside the paper in the README and in `videg reproduce table2 table3`. The chaotic ones, \
-         `fig11` to `fig13`, agree in the mean over nearby starts, not one by one.\n",
+        "\n[The paper and videg](../results/paper.md) has the results. The chaotic cases, `fig11` to `fig13`, agree with the paper in \
+         the mean over nearby starts, not one by one.\n",
     );
     GOLDEN.file(root().join("docs/reference/cases.md"), &page);
 }

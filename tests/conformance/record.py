@@ -40,15 +40,15 @@ class Record:
 HEADER = """\
 # Conformance of the FMUs
 
-Written by `./test.sh conformance`; do not edit. Checkers must find nothing, neither an error nor a warning, and must
-notice a broken FMU. Importers run the paper's Fig. 14 for {seconds:g} s in steps of {step:g} s, with the capacitances
+Written by `./test.sh conformance`; do not edit. Checkers must report no error and no warning, and must
+detect a broken FMU. Importers run the paper's Fig. 14 for {seconds:g} s in steps of {step:g} s, with the capacitances
 of the harvester connected to the circuit. At every communication point each of the {outputs} outputs must agree with
-videg's own importer within {bound:.0e} of its largest value; one column has the worst of all.
+videg's own importer within {bound:.0e} of its largest value. One column has the largest difference.
 
-Wherever a tool calls the FMU, a library between the two counts what each call returns; anything but `fmi2OK` fails the tool. The
-last column says what they returned, and how many different functions there were.
+A library between tool and FMU counts the return values of all calls; any value except `fmi2OK` fails the tool. The
+last column has these values and the number of different functions.
 
-| tool | version | what it shows | FMU | result | worst difference | status of each call |
+| tool | version | what the test shows | FMU | result | worst difference | status of each call |
 |---|---|---|---|---|---|---|
 """
 
@@ -63,7 +63,7 @@ def table(records: list[Record], **facts) -> str:
         text += f"| {' | '.join(cells)} |\n"
     known = sorted({f"- {record.tool}: {reason}." for record in shown for reason in record.known})
     if known:
-        text += "\nWhat a tool says of itself, not of the FMUs:\n\n" + "\n".join(known) + "\n"
+        text += "\nMessages of tools about themselves, not about the FMUs:\n\n" + "\n".join(known) + "\n"
     return text
 
 

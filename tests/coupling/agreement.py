@@ -75,20 +75,20 @@ def compare() -> list[Comparison]:
 TEXT = """\
 ## Agreement
 
-`videg cosim` with the circuit solved in three ways, and the system package that `videg ssp` writes in two other tools, for
-{seconds:g} s in steps of {step:g} s. Compared are C(t), motion, voltages and energies at every point of the grid, relative to
+The table compares `videg cosim` with three solvers of the circuit, and the system package of `videg ssp` in two other tools, for
+{seconds:g} s in steps of {step:g} s. It compares C(t), motion, voltages and energies at every point of the grid, relative to
 their largest value (energies: to the largest energy).
 
-| what | compared with | result | bound | worst difference | what the bound allows for |
+| run | compared with | result | bound | largest difference | reason for the bound |
 |---|---|---|---|---|---|
 """
 
 REASONS = """
-Rounding: the end of a ramp of C(t) is given as a value or as a rate. Clock: FMPy and Ecos add up their steps, which puts
-communication points off the grid by some 1e-12 s. Diodes: those of ngspice are exponential and nearly ideal.
+Rounding: the end of a ramp of C(t) is given as a value or as a rate. Clock: FMPy and Ecos add up their steps, so their
+communication points are off the grid by some 1e-12 s. Diodes: those of ngspice are exponential and nearly ideal.
 
-FMPy's master for system packages and that of Ecos hand on values once a step and know neither dC/dt nor impacts, so the
-circuit follows C(t) a step behind. `--master plain` does just that; the other masters are compared with it below.
+FMPy's master for system packages and that of Ecos pass on values once a step and know neither dC/dt nor impacts. The
+circuit therefore follows C(t) with a delay of one step. `--master plain` does the same; the next section compares it with the other masters.
 """
 
 

@@ -52,11 +52,11 @@ def measure() -> tuple[Runs, Runs]:
 TEXT = """
 ## Convergence
 
-The energy that the mechanics give in {seconds} s (`energy.converted`) against that of Gauss-Seidel with steps of {reference} s,
-and the residual of the coupling, -1/2 U^2 dC as the circuit books it less what the harvester books, over all the energy that
-went to and fro. Steps include those undone. Gauss-Seidel and Jacobi are of second order in both, plain is of first, once the
-steps are short enough (`cargo test --test masters` compares finer ones). Errors and residuals stand here without their sign. Where
-that changes, a value is small by chance, and what follows need not fall at once:
+The error is that of the energy from the mechanics in {seconds} s (`energy.converted`), relative to Gauss-Seidel with steps of {reference} s.
+The residual is the work -1/2 U^2 dC as computed by the circuit less that of the harvester, relative to all energy
+moved. Steps include those undone. With short steps, Gauss-Seidel and Jacobi are of second order in both, plain is of first
+order (`cargo test --test masters` compares finer steps). The table has errors and residuals without sign. Where the
+sign changes, a value is small by chance, and the next one may be larger:
 
 {changes}
 
@@ -65,8 +65,8 @@ that changes, a value is small by chance, and what follows need not fall at once
 | master | step, s | steps | error | residual |
 |---|---|---|---|---|
 {fixed}
-The adaptive step goes by the error of C(t) within it, estimated from dC/dt at both ends, and lands on impacts and peaks. The
-last column has the steps of the same master with a fixed step that are needed for this error, from a line through the last two
+The adaptive step is chosen by the error of C(t) within it, which is estimated from dC/dt at both ends. Steps end at impacts and peaks. The
+last column has the number of fixed steps that the same master needs for this error, from a line through its last two
 rows above.
 
 | master | tolerance | steps | error | residual | fixed steps for this error |

@@ -18,10 +18,10 @@ BOUND = 90.0
 HEAD = """\
 # Coverage
 
-Lines of the packages that an FMU is made of, reached by the tests of these packages. `./test.sh coverage` measures it and
-writes this page, and fails below {bound:g} % of a package or where a file is below and `tests/coverage/gaps.toml` does not
-say why. Unit tests inside source files are no lines of a package. What the tests of the harness reach through the packaged FMUs
-comes on top and is not counted.
+The page shows how many lines of the packages of the FMUs their own tests reach. `./test.sh coverage` measures this and
+writes the page. It fails if a package is below {bound:g} %, or if a file is below and `tests/coverage/gaps.toml` gives no
+reason. Unit tests inside source files do not count as lines. Lines that the other tests reach through the packaged FMUs are
+not counted.
 """
 
 
@@ -99,7 +99,7 @@ def page(files: list[File], gaps: dict[str, str]) -> tuple[str, list[str]]:
     if not below:
         text += "None.\n"
     failures += [f"tests/coverage/gaps.toml explains {name}, which is not below {BOUND:g} %" for name in gaps]
-    text += "\n## What else is not reached\n\n"
+    text += "\n## Other lines not reached\n\n"
     for file in files:
         if file.missed and file not in below:
             text += f"- `{file.name}`, {file.percent:.1f} %: {file.functions()}\n"

@@ -8,11 +8,11 @@ const GOLDEN: Golden = Golden::new("UPDATE_HOSTILE", "cargo test --test hostile"
 
 const HEAD: &str = "# Hostile inputs
 
-What videg says to inputs that are broken or mean harm: written by `UPDATE_HOSTILE=1 cargo test --test hostile`, which tries each
-of them and fails if one comes to something else. Of all it holds that nothing is written outside of the folder for results,
-that files which are there stay as they are, that no temporary file is left, and that no command which hides in an input is carried
-out. Folders are left out of what is told, and long texts are cut (`[...]`). Random inputs of the same kinds are the business of
-`fuzz/`; what an FMU may do in spite of isolation stands in [isolation.md](isolation.md).
+The tables list broken and hostile inputs with the message of videg. `UPDATE_HOSTILE=1 cargo test --test hostile` writes them. The test tries
+each input and fails if the result differs. For every input it checks that nothing is written outside the folder for results,
+that existing files do not change, that no temporary file stays, and that no command inside an input is executed.
+Messages are shown without folders, and long texts are cut (`[...]`). `fuzz/` tests random inputs of the same kinds. [Isolation](isolation.md)
+lists what an FMU can do in spite of isolation.
 ";
 
 /// Longest cell, characters.
@@ -26,7 +26,7 @@ pub fn row(input: &Input, told: &Told) -> String {
 
 /// A table with its heading.
 pub fn section(kind: &str, rows: &[String]) -> String {
-    format!("\n## {kind}\n\n| input | how given | exit code | what is told |\n|---|---|---|---|\n{}", rows.concat())
+    format!("\n## {kind}\n\n| input | command | exit code | message |\n|---|---|---|---|\n{}", rows.concat())
 }
 
 /// Compares the page with what was found, or writes it.

@@ -8,7 +8,7 @@ import harness
 import job
 
 NAME = "videg"
-PROVES = "loads and runs both FMUs: what the other importers are compared with"
+PROVES = "loads and runs both FMUs: the reference for the other importers"
 
 
 def version() -> str:
