@@ -20,28 +20,32 @@ is_own() {
     return 1
 }
 
+# Puts the inputs chosen of a target into a folder.
 keep() {
     local target=$1 chosen name files=0 bytes=0 size
-    local kept=fuzz/seeds/$target
-    chosen=$(mktemp --directory)
+    local kept=$work/seeds/$target
+    chosen=$work/chosen/$target
+    mkdir -p "$chosen" "$work/keep/$target" "fuzz/corpus/$target"
     # Greedy: libFuzzer writes the input first that covers most of what no input before it does.
-    cargo +nightly fuzz run "$target" -- -set_cover_merge=1 "$chosen" "$kept" "fuzz/corpus/$target" >"$chosen.log" 2>&1 ||
-        { tail -20 "$chosen.log" >&2 && return 1; }
-    find "$kept" -type f ! -name 'seed-*' -delete
+    cargo +nightly fuzz run "$target" -- -set_cover_merge=1 "$chosen" "$kept" "fuzz/corpus/$target" >"$work/log" 2>&1 ||
+        { tail -20 "$work/log" >&2 && return 1; }
     while read -r name; do
         size=$(stat --format=%s "$chosen/$name")
         [[ $files -lt $MOST_FILES ]] || break
         [[ $((bytes + size)) -le $MOST_BYTES ]] || continue
         ! is_own "$chosen/$name" "$kept" || continue
-        cp "$chosen/$name" "$kept/"
+        cp "$chosen/$name" "$work/keep/$target/"
         files=$((files + 1)) bytes=$((bytes + size))
     done < <(find "$chosen" -type f -printf '%T@ %f\n' | sort --numeric-sort | cut --delimiter=' ' --fields=2)
-    rm -r "$chosen" "$chosen.log"
     echo "$target: $files files, $bytes B"
 }
 
+work=$(mktemp --directory)
+trap 'rm -r "$work"' EXIT
+python3 -m zipfile --extract fuzz/seeds.zip "$work/seeds"
 mapfile -t all < <(cargo +nightly fuzz list)
 [[ $# -gt 0 ]] || set -- "${all[@]}"
 for target in "$@"; do
     keep "$target"
 done
+UPDATE_FUZZ_SEEDS=$work/keep cargo test --quiet -p videg-fuzz-targets

@@ -85,11 +85,11 @@ is_quick() {
 
 # Fuzzes a target until the time is over or something is found, and sets code, real, processor and executions.
 run() {
-    local target=$1 ended=$((SECONDS + seconds)) folders=("fuzz/corpus/$1") count user system TIMEFORMAT='%0R %0U %0S'
+    local target=$1 ended=$((SECONDS + seconds)) folders=("fuzz/corpus/$1") kept count user system TIMEFORMAT='%0R %0U %0S'
     local artifacts=fuzz/artifacts/$target/ log=$scratch/$target.log
     mkdir -p "${folders[0]}" "$artifacts"
-    for kind in seeds regressions; do
-        [[ ! -d fuzz/$kind/$target ]] || folders+=("fuzz/$kind/$target")
+    for kept in "$scratch/seeds" fuzz/regressions; do
+        [[ ! -d $kept/$target ]] || folders+=("$kept/$target")
     done
     real=0 processor=0 executions=0
     while [[ $SECONDS -lt $ended ]]; do
@@ -129,6 +129,7 @@ mapfile -t all < <(cargo +nightly fuzz list)
 [[ $# -gt 0 ]] || set -- "${all[@]}"
 commit=$(git rev-parse --short=10 HEAD)
 build "$@"
+python3 -m zipfile --extract fuzz/seeds.zip "$scratch/seeds"
 [[ -s $record ]] || echo date,commit,target,seconds,cpu_seconds,executions,edges,features,findings >"$record"
 for target in "$@"; do
     [[ $(jobs -rp | wc --lines) -lt $jobs ]] || wait -n || true
