@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy scale conformance browser book)
+readonly STAGES=(setup lint unit valgrind fmpy)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -21,19 +21,25 @@ readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 # Setup has installed all tools, so that no test may pass over what it needs.
 export VIDEG_ALL_TOOLS=1
 
-# Not among those that run by default: they take long, install Wine and cross compilers, or need a nightly compiler.
-readonly EXTRA_STAGES=(conformance-slow portability soak fuzz sanitizers release coverage)
+# What the stage slow is made of.
+readonly SLOW_STAGES=(unit-slow scale conformance browser book)
+# These take longer still, install Wine and cross compilers, or need a nightly compiler.
+readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers release coverage)
 
 usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
 
-Runs the stages named, or all of them in this order:
+Runs the stages named, or these in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
-  unit         the tests of all Rust packages
+  unit         the tests of all Rust packages, but for the slow ones
   valgrind     random calls on the FMUs' libraries: no memory error, no leak
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
+
+CI runs this one, too:
+  slow         all of the following, which run alone as well:
+  unit-slow    those tests of the Rust packages that are marked #[ignore = "slow"]
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
@@ -173,7 +179,6 @@ stage_lint() {
     if cargo clippy --version >/dev/null 2>&1; then
         run cargo clippy --quiet --workspace --all-targets -- -D warnings
         run cargo clippy --quiet -p fmu-export --all-targets --all-features -- -D warnings
-        run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     else
         skip "cargo clippy is not installed"
     fi
@@ -212,6 +217,15 @@ stage_unit() {
     run cargo test -p fmu-export --all-features
 }
 
+# Not the doc tests, where the mark means that they do not compile. The stage book runs the book.
+stage_unit-slow() {
+    run cargo test --workspace --tests -- --ignored --skip every_block_of_every_page
+}
+
+stage_slow() {
+    run_stages "${SLOW_STAGES[@]}"
+}
+
 stage_valgrind() {
     run tests/valgrind/run.sh
 }
@@ -225,10 +239,13 @@ build_fmus() {
     run cargo run --quiet --release -- fmu build
 }
 
+# With the program of the profile that the stage unit tests: optimising it would take minutes. FMUs are always optimised.
 stage_fmpy() {
     need_python
-    build_fmus
-    run "$VENV/bin/python" -m pytest tests/fmpy
+    run cargo build
+    local program=${CARGO_TARGET_DIR:-$PWD/target}/debug/videg
+    run "$program" fmu build
+    run env VIDEG="$program" "$VENV/bin/python" -m pytest tests/fmpy
     run "$VENV/bin/python" tests/valgrind/fmpy_run.py
 }
 
@@ -252,6 +269,7 @@ stage_scale() {
 
 stage_conformance() {
     need_python
+    run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     build_fmus
     run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling
     run "$VENV/bin/python" tests/conformance
@@ -267,7 +285,7 @@ stage_browser() {
 # mdBook is built from source once and then kept in target/tools.
 stage_book() {
     need_python
-    run cargo test --test book -- --include-ignored
+    run cargo test --test book -- --ignored
     run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
     run "$VENV/bin/python" -m pytest tests/book
@@ -313,8 +331,18 @@ is_stage() {
     return 1
 }
 
-main() {
+run_stages() {
     local stage started
+    for stage in "$@"; do
+        started=$SECONDS
+        echo "=== $stage"
+        "stage_$stage"
+        echo "=== $stage: passed in $((SECONDS - started)) s"
+    done
+}
+
+main() {
+    local stage
     for stage in "$@"; do
         case $stage in
             -h | --help)
@@ -325,12 +353,7 @@ main() {
         esac
     done
     [[ $# -gt 0 ]] || set -- "${STAGES[@]}"
-    for stage in "$@"; do
-        started=$SECONDS
-        echo "=== $stage"
-        "stage_$stage"
-        echo "=== $stage: passed in $((SECONDS - started)) s"
-    done
+    run_stages "$@"
     echo "=== all passed: $*"
 }
 

@@ -267,7 +267,7 @@ fn what_is_shown_says_something() {
 
 /// `VIDEG_PAGE=docs/theory` runs only the pages whose path contains that.
 #[test]
-#[ignore = "runs all commands of the book, some minutes: ./test.sh book"]
+#[ignore = "slow: ./test.sh book"]
 fn every_block_of_every_page_runs_and_prints_what_is_shown() {
     let only = std::env::var("VIDEG_PAGE").unwrap_or_default();
     let (mut failures, mut left_out) = (String::new(), String::new());

@@ -1,13 +1,16 @@
-"""Rollback by plain C calls: what one process saves, another goes on from, to the last bit; all else is refused."""
+"""What one process saves, another goes on from, to the last bit; all else is refused."""
 
+import json
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 import harness
-from program import Program, steps
 
+FMI2_ERROR = 3
 HARVESTER, CIRCUIT = "VibroImpactHarvester", "HarvestingCircuit"
 STEP = 0.01
 
@@ -37,36 +40,51 @@ REST_CAPACITANCE = 1.501476744842152e-11
 
 
 @pytest.fixture(scope="module")
-def programs(tmp_path_factory) -> dict[str, Program]:
-    folder = tmp_path_factory.mktemp("programs")
-    return {name: Program(fmu, folder) for name, fmu in harness.build_fmus().items()}
+def fmus() -> dict[str, str]:
+    return harness.build_fmus()
 
 
-def start(program: Program, values: dict) -> list[str]:
-    return [program.set(name, value) for name, value in values.items()] + ["initialize 0"]
+def run(fmu: str, commands: list[list]) -> list[list]:
+    """What a new process answers: value, status of an error and log of each command."""
+    command = [sys.executable, Path(__file__).with_name("second_process.py"), fmu]
+    finished = subprocess.run(command, input=json.dumps(commands), stdout=subprocess.PIPE, check=True, text=True)
+    return json.loads(finished.stdout)
+
+
+def values(fmu: str, commands: list[list]) -> list[list]:
+    """The values that a new process reads, to the last bit; no call may fail."""
+    answers = run(fmu, commands)
+    assert [error for _, error, _ in answers if error] == []
+    return [value for value, _, _ in answers if value]
+
+
+def start(values: dict) -> list:
+    return ["start", values]
 
 
 def grid(first: int, last: int) -> list[float]:
     return [STEP * index for index in range(first, last + 1)]
 
 
-def find(harvester: Program, values: dict, wanted) -> int:
+def steps(times: list[float]) -> list[list]:
+    return [["step", now, then - now] for now, then in zip(times, times[1:])]
+
+
+def find(harvester: str, settings: dict, wanted) -> int:
     """Number of the first step after which `wanted` of left and right deflection and rest is true."""
-    names = ("left.deflection", "right.deflection", "contact.resting")
-    commands = [command for step in steps(grid(0, 400)) for command in [step, *harvester.get(*names)]]
-    words = [line.split()[1] for line in harvester.values(start(harvester, values) + commands)]
-    for index in range(0, len(words), 3):
-        left, right = map(float.fromhex, words[index : index + 2])
-        if wanted(left, right, words[index + 2] == "1"):
-            return index // 3 + 1
-    raise AssertionError(f"never in 4 s with {values}")
+    read = ["get", "left.deflection", "right.deflection", "contact.resting"]
+    commands = [command for step in steps(grid(0, 400)) for command in (step, read)]
+    for index, state in enumerate(values(harvester, [start(settings), *commands])):
+        if wanted(*state):
+            return index + 1
+    raise AssertionError(f"never in 4 s with {settings}")
 
 
-def goes_on_alike(program: Program, before: list[str], after: list[str], file: Path) -> None:
+def goes_on_alike(fmu: str, before: list, after: list, file: Path) -> None:
     """One process runs `before`, saves and runs `after`; another loads and runs `after`."""
-    own = program.values([*before, f"save {file}", *program.outputs(), *after])
-    found = program.values([f"load {file}", *program.outputs(), *after])
-    assert len(set(found)) > 100, "too little happens"
+    own = values(fmu, [*before, ["save", str(file)], ["outputs"], *after])
+    found = values(fmu, [["load", str(file)], ["outputs"], *after])
+    assert len({tuple(read) for read in found}) > 100, "too little happens"
     assert found == own[-len(found) :]
 
 
@@ -75,39 +93,35 @@ PRESSED = {"in a pulse": lambda left, right, _: left + right > 0.0, "in flight":
 
 @pytest.mark.parametrize("where", PRESSED)
 @pytest.mark.parametrize("motion", MOTIONS)
-def test_the_harvester_goes_on_to_the_last_bit_in_a_second_process(programs, motion, where, tmp_path):
-    harvester, values = programs[HARVESTER], harness.fig14() | MOTIONS[motion]
-    saved = find(harvester, values, PRESSED[where])
-    check_harvester(harvester, values, saved, tmp_path / "state")
+def test_the_harvester_goes_on_to_the_last_bit_in_a_second_process(fmus, motion, where, tmp_path):
+    check_harvester(fmus[HARVESTER], harness.fig14() | MOTIONS[motion], PRESSED[where], tmp_path / "state")
 
 
-def test_a_resting_harvester_goes_on_to_the_last_bit_in_a_second_process(programs, tmp_path):
-    harvester = programs[HARVESTER]
-    saved = find(harvester, FLASHLIGHT, lambda _left, _right, resting: resting)
-    check_harvester(harvester, FLASHLIGHT, saved, tmp_path / "state")
+def test_a_resting_harvester_goes_on_to_the_last_bit_in_a_second_process(fmus, tmp_path):
+    check_harvester(fmus[HARVESTER], FLASHLIGHT, lambda _left, _right, resting: resting, tmp_path / "state")
 
 
-def check_harvester(harvester: Program, values: dict, saved: int, file: Path) -> None:
-    before = start(harvester, values) + steps(grid(0, saved))
-    push = harvester.set("externalForce", 0.02)
-    later = [command for step in steps(grid(saved, saved + 150)) for command in [step, *harvester.outputs()]]
-    goes_on_alike(harvester, before, later[:120] + [push] + later[120:], file)
+def check_harvester(harvester: str, settings: dict, wanted, file: Path) -> None:
+    saved = find(harvester, settings, wanted)
+    before = [start(settings), *steps(grid(0, saved))]
+    later = [command for step in steps(grid(saved, saved + 150)) for command in (step, ["outputs"])]
+    push = ["set", {"externalForce": 0.02}]
+    goes_on_alike(harvester, before, [*later[:120], push, *later[120:]], file)
 
 
-def squeeze(circuit: Program, first: int, last: int) -> list[str]:
+def squeeze(first: int, last: int) -> list[list]:
     """Steps in which the left membrane swings between half and two and a half times its capacitance at rest."""
     commands = []
     for time, step in zip(grid(first, last), steps(grid(first, last))):
         capacitance = REST_CAPACITANCE * (1.5 + math.sin(5.0 * time))
-        commands += [circuit.set("left.capacitance", capacitance), step, *circuit.outputs()]
+        commands += [["set", {"left.capacitance": capacitance}], step, ["outputs"]]
     return commands
 
 
 @pytest.mark.parametrize("settings", CIRCUITS)
-def test_the_circuit_goes_on_to_the_last_bit_in_a_second_process(programs, settings, tmp_path):
-    circuit = programs[CIRCUIT]
-    before = start(circuit, CIRCUITS[settings]) + squeeze(circuit, 0, 170)
-    goes_on_alike(circuit, before, squeeze(circuit, 170, 300), tmp_path / "state")
+def test_the_circuit_goes_on_to_the_last_bit_in_a_second_process(fmus, settings, tmp_path):
+    before = [start(CIRCUITS[settings]), *squeeze(0, 170)]
+    goes_on_alike(fmus[CIRCUIT], before, squeeze(170, 300), tmp_path / "state")
 
 
 def flipped(state: bytes, offset: int) -> bytes:
@@ -127,27 +141,26 @@ NO_STATES = {
 }
 
 
+@pytest.fixture(scope="module")
+def states(fmus, tmp_path_factory) -> dict[str, bytes]:
+    """A state of each FMU after 0.2 s."""
+    files = {name: tmp_path_factory.mktemp(name) / "state" for name in fmus}
+    for name, file in files.items():
+        values(fmus[name], [start({}), *steps(grid(0, 20)), ["save", str(file)]])
+    return {name: file.read_bytes() for name, file in files.items()}
+
+
 @pytest.mark.parametrize("nonsense", NO_STATES)
 @pytest.mark.parametrize("name", [HARVESTER, CIRCUIT])
-def test_a_state_that_is_none_of_its_own_is_refused_with_a_reason(programs, name, nonsense, tmp_path):
-    states = {}
-    for fmu, program in programs.items():
-        program.values([*start(program, {}), *steps(grid(0, 20)), f"save {tmp_path / fmu}"])
-        states[fmu] = (tmp_path / fmu).read_bytes()
+def test_a_state_that_is_none_of_its_own_is_refused_with_a_reason(fmus, states, name, nonsense, tmp_path):
     make, reason = NO_STATES[nonsense]
     (other,) = states.keys() - {name}
     (tmp_path / "bad").write_bytes(make(states[name], states[other]))
-    program = programs[name]
-    *log, status = program.run([f"load {tmp_path / 'bad'}"])
-    assert status == "status fmi2Error"
-    assert len(log) == 1 and log[0].startswith("log fmi2Error logStatusError") and reason in log[0], log
-
-
-@pytest.mark.parametrize("name", [HARVESTER, CIRCUIT])
-def test_after_a_refused_state_a_good_one_still_loads(programs, name, tmp_path):
-    program, good, bad = programs[name], tmp_path / "good", tmp_path / "bad"
-    own = program.values([*start(program, {}), *steps(grid(0, 20)), f"save {good}", *program.outputs()])
-    bad.write_bytes(good.read_bytes()[:-1])
-    lines = program.run([f"load {bad}", f"load {good}", *program.outputs()])
-    assert lines[1] == "status fmi2Error"
-    assert [line for line in lines if line.startswith("values")] == own
+    (tmp_path / "good").write_bytes(states[name])
+    bad, good, outputs = run(fmus[name], [["load", str(tmp_path / "bad")], ["load", str(tmp_path / "good")], ["outputs"]])
+    _, error, [[status, category, text]] = bad
+    assert [error, status, category] == [FMI2_ERROR, FMI2_ERROR, "logStatusError"] and reason in text
+    # A good state still loads after it.
+    assert [good[1], outputs[1]] == [None, None]
+    own = values(fmus[name], [start({}), *steps(grid(0, 20)), ["outputs"]])
+    assert [outputs[0]] == own

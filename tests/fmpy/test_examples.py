@@ -10,7 +10,8 @@ import pytest
 
 import harness
 
-PROGRAMS = harness.ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
+BUILT = harness.ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
+PROGRAMS = Path(os.environ.get("VIDEG", BUILT / "videg")).parent
 
 
 @pytest.fixture
@@ -26,7 +27,7 @@ def environment(tmp_path):
     places = [str(cargo.parent), os.path.dirname(sys.executable), *others]
     # FMPy leaves what it has unpacked where an FMU refuses a value.
     variables = {"PATH": os.pathsep.join(places), "FIGURES": str(tmp_path / "figures"), "MPLBACKEND": "Agg"}
-    kept = {name: value for name, value in os.environ.items() if name not in ("CARGO", "CARGO_TARGET_DIR", "VIDEG_FMUS")}
+    kept = {name: value for name, value in os.environ.items() if name not in ("CARGO", "CARGO_TARGET_DIR", "VIDEG", "VIDEG_FMUS")}
     yield {**kept, **variables, "TMPDIR": str(tmp_path / "temporary")}
     assert not (tmp_path / "cargo" / "called").exists(), "Cargo was called"
 

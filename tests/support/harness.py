@@ -2,16 +2,20 @@
 
 import json
 import math
+import os
 import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
+VIDEG = [os.environ["VIDEG"]] if "VIDEG" in os.environ else ["cargo", "run", "--quiet", "--release", "--"]
+"""The command-line tool: that of the environment, or that of this tree."""
+
+
 def videg(*arguments: str) -> dict:
     """Run the command-line tool with --json and return the object that it prints."""
-    command = ["cargo", "run", "--quiet", "--release", "--", *arguments, "--json"]
-    run = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True)
+    run = subprocess.run([*VIDEG, *arguments, "--json"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True)
     return json.loads(run.stdout)
 
 
