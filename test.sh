@@ -41,7 +41,7 @@ CI runs this one, too:
   slow         all of the following, which run alone as well:
   unit-slow    those tests of the Rust packages that are marked #[ignore = "slow"]
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
-  conformance  a C program, other importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
+  conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
   browser      reports in headless Chromium: drawn, without errors or requests, on a phone and a desktop, on paper;
                screenshots go to target/screenshots
@@ -318,7 +318,7 @@ stage_coverage() {
 }
 
 stage_soak() {
-    run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --nocapture --test-threads 1
+    run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --include-ignored --nocapture --test-threads 1
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -106,6 +106,7 @@ fn the_solvers_agree_without_impacts_and_at_hundreds_of_kilovolts() {
 /// Half of such circuits ended with "Timestep too small" where steps shrank without end at corners of C(t).
 /// `cargo run --release --example random_crosschecks` does the same with any number of them.
 #[test]
+#[ignore = "slow"]
 fn random_circuits_run_to_their_end_and_agree() {
     if ngspice().is_none() {
         return;
@@ -126,6 +127,7 @@ fn with_json(arguments: &[String]) -> Vec<&str> {
 /// By the trapezoidal rule the current of a diode swings, which a run with a time point on each corner of C(t) pays for
 /// with 1.4e-3 to 4e-3 of its charge here; trapezoidal sums of currents that jump cost another 1e-4.
 #[test]
+#[ignore = "slow"]
 fn ngspice_step_by_step_loses_no_charge_to_quick_loads() {
     if ngspice().is_none() {
         return;
@@ -194,6 +196,7 @@ fn other_circuits_are_checked_by_options_of_their_own() {
 
 /// The circuit has diodes that drop 0.3 V and more; a solver with ideal ones cannot give the same energies.
 #[test]
+#[ignore = "slow"]
 fn real_diodes_fail_the_check_of_the_ideal_ones() {
     if ngspice().is_none() {
         return;
@@ -390,6 +393,7 @@ fn an_export_overwrites_its_own_files_only_and_follows_no_link() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_sweep_finds_the_voltage_of_release_that_the_closed_form_predicts() {
     if ngspice().is_none() {
         return;

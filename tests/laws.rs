@@ -3,6 +3,7 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
 use serde_json::Value;
@@ -12,6 +13,9 @@ fn simulate(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
     command.args(["simulate", "--json", "--until", "5", "--output"]).arg(folder).args(arguments).output().unwrap()
 }
+
+/// The run of both laws, at which several tests look.
+static BOTH: LazyLock<(Value, TempDir)> = LazyLock::new(|| run(&["--law", "both"]));
 
 /// What a run prints, and its folder.
 fn run(arguments: &[&str]) -> (Value, TempDir) {
@@ -36,7 +40,7 @@ fn columns<const N: usize>(folder: &TempDir, file: &str, names: [&str; N]) -> Ve
 
 #[test]
 fn each_law_of_both_is_the_one_that_runs_alone() {
-    let (both, _) = run(&["--law", "both"]);
+    let (both, _) = &*BOTH;
     for law in ["impulsive", "compliant"] {
         let (alone, _) = run(&["--law", law]);
         let (set, _) = run(&["--set", &format!("contact.law={law}")]);
@@ -51,7 +55,7 @@ fn each_law_of_both_is_the_one_that_runs_alone() {
 /// Without a setting of its own the run is the paper's, and so is what stands beside it.
 #[test]
 fn the_run_that_both_reports_at_the_top_is_the_impulsive_one() {
-    let ((both, _), (plain, _)) = (run(&["--law", "both"]), run(&[]));
+    let ((both, _), (plain, _)) = (&*BOTH, run(&[]));
     for (key, value) in plain.as_object().unwrap().iter().filter(|(key, _)| *key != "files") {
         assert_eq!(&both[key], value, "{key}");
     }
@@ -64,9 +68,9 @@ fn the_run_that_both_reports_at_the_top_is_the_impulsive_one() {
 /// alone, so the bound is the rounding of positions (1e-17 m) over the speed at the end of a contact (above 1e-3 m/s).
 #[test]
 fn compliant_contacts_last_as_long_as_the_ball_is_beyond_its_travel() {
-    let (both, folder) = run(&["--law", "both"]);
+    let (both, folder) = &*BOTH;
     let half_travel = 0.5 * (0.042 + 2.0 * 0.006 - 2.0 * 0.005);
-    let series = columns(&folder, "timeseries-compliant.csv", ["time", "relativeDisplacement"]);
+    let series = columns(folder, "timeseries-compliant.csv", ["time", "relativeDisplacement"]);
     let beyond = |row: &[f64; 2]| row[1].abs() > half_travel + 1e-12;
     let intervals = series.windows(2).filter(|pair| beyond(&pair[0]) || beyond(&pair[1]));
     let expected: f64 = intervals.map(|pair| pair[1][0] - pair[0][0]).sum();
@@ -81,13 +85,13 @@ fn compliant_contacts_last_as_long_as_the_ball_is_beyond_its_travel() {
 
 #[test]
 fn the_largest_values_are_those_of_the_time_series() {
-    let (both, folder) = run(&["--law", "both"]);
+    let (both, folder) = &*BOTH;
     for law in ["impulsive", "compliant"] {
         for (key, names) in [
             ("largest_deflection", ["left.deflection", "right.deflection"]),
             ("largest_capacitance", ["left.capacitance", "right.capacitance"]),
         ] {
-            let series = columns(&folder, &format!("timeseries-{law}.csv"), names);
+            let series = columns(folder, &format!("timeseries-{law}.csv"), names);
             let largest = series.into_iter().flatten().fold(0.0, f64::max);
             assert_eq!(number(&both["laws"][law], key), largest, "{law}: {key}");
         }
@@ -97,7 +101,7 @@ fn the_largest_values_are_those_of_the_time_series() {
 /// The FMU sums up the time in contact by itself, without communication points.
 #[test]
 fn time_in_contact_is_what_the_fmu_sums_up() {
-    let (both, _) = run(&["--law", "both"]);
+    let (both, _) = &*BOTH;
     let path = videg::package::build_all(&videg::package::Options::default()).unwrap().remove(0);
     let fmu = fmu_import::Fmu::open(&path).unwrap();
     let mut harvester = fmu.instantiate("harvester", fmu_import::Logging::default()).unwrap();
@@ -120,12 +124,12 @@ fn time_in_contact_is_what_the_fmu_sums_up() {
 
 #[test]
 fn the_folder_holds_both_time_series_one_figure_and_one_report() {
-    let (both, folder) = run(&["--law", "both"]);
+    let (both, folder) = &*BOTH;
     let names = ["timeseries-impulsive.csv", "timeseries-compliant.csv", "figure.svg", "report.html", "result.json"];
     let listed: Vec<_> = both["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
     assert_eq!(listed, names.map(|name| folder.path().join(name).to_str().unwrap().to_owned()));
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    assert_eq!(serde_json::from_str::<Value>(&read("result.json")).unwrap(), both);
+    assert_eq!(serde_json::from_str::<Value>(&read("result.json")).unwrap(), *both);
     for file in ["figure.svg", "report.html"] {
         assert!(read(file).contains("impulsive law") && read(file).contains("compliant law"), "{file}");
     }
@@ -156,7 +160,7 @@ fn pulses_that_overlap_earn_a_warning() {
     let expected = format!("contacts ended in {impacts} impacts");
     assert!(warnings.iter().any(|text| text.starts_with("impulsive law") && text.contains(&expected)), "{warnings:?}");
     assert!(!warnings.iter().any(|text| text.starts_with("compliant law")), "{warnings:?}");
-    assert_eq!(run(&["--law", "both"]).0["warnings"], serde_json::json!([]));
+    assert_eq!(BOTH.0["warnings"], serde_json::json!([]));
 }
 
 #[test]

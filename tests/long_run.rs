@@ -117,6 +117,7 @@ fn assert_streamed(fmu: &Fmu, scenario: &Scenario) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn memory_stays_flat_and_the_books_close_over_a_long_run() {
     let full = std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full");
     let folder = tempfile::tempdir().unwrap();

@@ -51,6 +51,7 @@ fn resident() -> u64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn ten_thousand_cycles_of_loading_running_and_unloading_leave_memory_flat() {
     let folder = tempfile::tempdir().unwrap();
     for (library, description) in libraries(folder.path()) {

@@ -50,6 +50,7 @@ fn columns(path: &Path) -> Vec<Vec<f64>> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn table_3_is_reproduced_and_its_2_hz_row_is_shown_to_be_an_artefact_of_stepping() {
     let folder = tempfile::tempdir().unwrap();
     let run = made(folder.path(), &["table3"]);
@@ -157,6 +158,7 @@ fn without_ngspice_only_the_crosscheck_by_name_fails() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_same_command_gives_the_same_bytes_of_data_on_any_number_of_cores() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
     let items = ["fig11", "fig16", "table1", "--quick"];
@@ -234,6 +236,7 @@ fn a_signal_leaves_nothing_half_written_and_the_last_line_says_so() {
 
 #[test]
 #[cfg(unix)]
+#[ignore = "slow"]
 fn a_failure_leaves_nothing_half_written_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("fig7.csv")).unwrap();

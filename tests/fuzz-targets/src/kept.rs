@@ -47,9 +47,9 @@ fn read_archive(path: &Path) -> io::Result<Inputs> {
     let mut inputs = Inputs::new();
     for index in 0..archive.len() {
         let mut entry = archive.by_index(index)?;
-        let mut input = Vec::new();
+        let (name, mut input) = (entry.name()?.into_owned(), Vec::new());
         entry.read_to_end(&mut input)?;
-        inputs.insert(entry.name().to_owned(), input);
+        inputs.insert(name, input);
     }
     Ok(inputs)
 }
