@@ -151,7 +151,7 @@ impl<'a, T, E> Task<'a, T, E> {
 ///
 /// # Errors
 /// That of the first task that fails; tasks that have not begun by then are left.
-pub fn run<T: Send, E: Send>(tasks: Vec<Task<'_, T, E>>, observer: &dyn Progress) -> Result<Vec<T>, E> {
+pub fn run<T: Send, E: Send>(tasks: &[Task<'_, T, E>], observer: &dyn Progress) -> Result<Vec<T>, E> {
     let mut results = Vec::with_capacity(tasks.len());
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let sharing = Sharing { threads: cores, ahead: u64::MAX, is_stopped: &|| false };
@@ -198,7 +198,8 @@ pub fn map<T: Sync, R: Send, E: Send>(
     work: impl Fn(&T) -> Result<R, E> + Send + Sync,
 ) -> Result<Vec<R>, E> {
     let work = &work;
-    run(items.iter().map(|item| Task::new("", move |_| work(item))).collect(), observer)
+    let tasks: Vec<_> = items.iter().map(|item| Task::new("", move |_| work(item))).collect();
+    run(&tasks, observer)
 }
 
 /// A part, from 0 to 1, in whole percent.
@@ -299,7 +300,7 @@ mod tests {
             (0..=1000_u32).for_each(|k| progress(f64::from(k) / 1000.0));
             Ok::<_, ()>(())
         };
-        run(vec![Task::new("long", work)], &log).unwrap();
+        run(&[Task::new("long", work)], &log).unwrap();
         let expected: Vec<_> = std::iter::once(None).chain((0..=100).map(Some)).collect();
         assert_eq!(*log.0.lock().unwrap(), expected);
     }

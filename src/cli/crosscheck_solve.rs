@@ -39,7 +39,7 @@ fn solve(
     let others = others(&settings, case.best_ratio());
     let mut pulses = Pulses::new(&case, settings.circuit.topology)?;
     let bar = TaskBar::new(scenario.name.clone());
-    let told = threads::run(tasks(&bench, &case, &settings, &others, pulses.as_ref()), &bar)?;
+    let told = threads::run(&tasks(&bench, &case, &settings, &others, pulses.as_ref()), &bar)?;
     let mut found = Gathered::new(told, others.len());
     let sweep = if sweep { Some(Sweep::new(&bench, &case, &settings, &bar)?) } else { None };
     bar.finish();

@@ -132,8 +132,10 @@ impl Sweep {
         let predicted =
             [1.0, 0.0].map(|idle| formulas::best_release_voltage(supply, 1.0 + idle, case.best_ratio() + idle));
         let plans: Vec<Plan> = over_voltage(case, settings, predicted).chain(over_load(settings)).collect();
-        let tasks = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
-        let mut results = threads::run(tasks, observer)?.into_iter();
+        let tasks: Vec<_> = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
+        let results = threads::run(&tasks, observer)?;
+        drop(tasks);
+        let mut results = results.into_iter();
         let (mut stops, mut repeats) = (Vec::new(), Vec::new());
         let mut whole = |visit: Visit| {
             repeats.extend(visit.repeats);

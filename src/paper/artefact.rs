@@ -2,7 +2,9 @@
 
 use serde::{Serialize, Serializer};
 
-use videg_report::{Drawing, Figure, ReportError, Table};
+use videg_report::{Column, Drawing, Figure, Table};
+
+use super::PaperError;
 
 /// A table or figure, reproduced.
 #[derive(Debug, Clone, Default)]
@@ -39,6 +41,32 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// A number of which the paper says nothing.
+    pub(super) fn new(place: impl Into<String>, quantity: impl Into<String>, unit: &str, videg: f64) -> Self {
+        let (place, quantity, unit) = (place.into(), quantity.into(), unit.to_owned());
+        Self { place, quantity, unit, paper: None, videg, verdict: Verdict::Beyond, reason: String::new() }
+    }
+
+    /// With the number that the paper prints.
+    pub(super) fn printed(self, paper: f64) -> Self {
+        Self { paper: Some(paper), ..self }
+    }
+
+    /// How it goes together with what the paper prints or says in words.
+    pub(super) fn judged(self, verdict: Verdict) -> Self {
+        Self { verdict, ..self }
+    }
+
+    /// It agrees with the paper, or differs without a known reason.
+    pub(super) fn agrees_if(self, agrees: bool) -> Self {
+        self.judged(if agrees { Verdict::Agrees } else { Verdict::Differs })
+    }
+
+    /// With a reason.
+    pub(super) fn reason(self, reason: impl Into<String>) -> Self {
+        Self { reason: reason.into(), ..self }
+    }
+
     /// Whether the paper says something that it can be compared with.
     pub fn is_compared(&self) -> bool {
         self.verdict != Verdict::Beyond
@@ -93,6 +121,23 @@ pub struct Sheet {
     pub rows: Vec<Vec<f64>>,
 }
 
+impl Sheet {
+    /// The file `name` with these headings and rows.
+    pub(super) fn new<C: Into<String>>(
+        name: impl Into<String>,
+        columns: impl IntoIterator<Item = C>,
+        rows: impl IntoIterator<Item = Vec<f64>>,
+    ) -> Self {
+        let columns = columns.into_iter().map(Into::into).collect();
+        Self { name: name.into(), columns, rows: rows.into_iter().collect() }
+    }
+}
+
+/// A table with a column of words and columns of numbers.
+pub(super) fn table<C: Into<String>>(words: impl Into<String>, numbers: impl IntoIterator<Item = C>) -> Table {
+    Table::new(std::iter::once(Column::words(words)).chain(numbers.into_iter().map(Column::numbers)))
+}
+
 /// A figure, drawn.
 #[derive(Debug, Clone)]
 pub struct Picture {
@@ -106,10 +151,11 @@ pub struct Picture {
 
 impl Picture {
     /// Draws `figure`.
-    ///
-    /// # Errors
-    /// A figure that makes no sense.
-    pub fn new(name: impl Into<String>, figure: &Figure<'_>, caption: impl Into<String>) -> Result<Self, ReportError> {
+    pub(super) fn new(
+        name: impl Into<String>,
+        figure: &Figure<'_>,
+        caption: impl Into<String>,
+    ) -> Result<Self, PaperError> {
         Ok(Self { name: name.into(), drawing: Drawing::new(figure)?, caption: caption.into() })
     }
 }

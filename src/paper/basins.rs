@@ -1,9 +1,10 @@
 //! Beyond the paper: basins of attraction. Which motion a start leads to, over position and velocity of the ball.
 
+use super::artefact::table;
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study, Verdict};
-use videg_report::{Column, Figure, HeatMap, Panel, Scale, Table};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study};
+use videg_report::{Figure, HeatMap, Panel, Scale, Table};
 
 /// `f_0`, Hz, and A, N, of Figures 11 to 15.
 const FREQUENCY: f64 = 2.0;
@@ -18,17 +19,17 @@ const FASTEST: f64 = 0.5;
 /// Attractors that have a colour of their own.
 const SHOWN: usize = 6;
 
-/// A coefficient of restitution, and where the paper has it.
-struct Case {
+/// Starts at a coefficient of restitution, and where the paper has it.
+struct Plane {
     name: &'static str,
     place: &'static str,
     restitution: f64,
 }
 
-const CASES: [Case; 3] = [
-    Case { name: "basins-fig14", place: "Figure 14, r = 0.6", restitution: 0.6 },
-    Case { name: "basins-fig15", place: "Figure 15, r = 0.3", restitution: 0.3 },
-    Case { name: "basins-r08", place: "r = 0.8", restitution: 0.8 },
+const PLANES: [Plane; 3] = [
+    Plane { name: "basins-fig14", place: "Figure 14, r = 0.6", restitution: 0.6 },
+    Plane { name: "basins-fig15", place: "Figure 15, r = 0.3", restitution: 0.3 },
+    Plane { name: "basins-r08", place: "r = 0.8", restitution: 0.8 },
 ];
 
 /// A motion by its rule: after how many periods it comes back, `<U>`, and where it is at their starts.
@@ -131,46 +132,33 @@ fn by_share(ends: &[Attractor]) -> Vec<(Attractor, f64)> {
 pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let cylinder = Cylinder::new(study)?;
     let mut artefact = Artefact { text: text(), ..Artefact::default() };
-    for case in &CASES {
-        let basins = Basins::new(study, &cylinder, case.restitution)?;
-        artefact.findings.push(finding(case, &basins));
-        artefact.tables.push(table(case, &basins));
-        artefact.pictures.push(picture(case, &basins)?);
-        artefact.sheets.push(sheet(case, &basins));
+    for plane in &PLANES {
+        let basins = Basins::new(study, &cylinder, plane.restitution)?;
+        artefact.findings.push(finding(plane, &basins));
+        artefact.tables.push(attractors(plane, &basins));
+        artefact.pictures.push(picture(plane, &basins)?);
+        artefact.sheets.push(sheet(plane, &basins));
     }
     Ok(artefact)
 }
 
-fn finding(case: &Case, basins: &Basins) -> Finding {
-    let gains: Vec<f64> = basins.attractors.iter().map(|(attractor, _)| attractor.gain).collect();
-    let [low, high] = [f64::min, f64::max].map(|pick| gains.iter().copied().reduce(pick).unwrap_or(f64::NAN));
+fn finding(plane: &Plane, basins: &Basins) -> Finding {
+    let gains = || basins.attractors.iter().map(|(attractor, _)| attractor.gain);
+    let [low, high] = [f64::min, f64::max].map(|pick| gains().reduce(pick).unwrap_or(f64::NAN));
     let never = basins.attractors.iter().filter(|(attractor, _)| attractor.recurrence.is_none());
     let share = never.fold(0.0, |sum, (_, share)| sum + 100.0 * share);
-    // The paper: the difference due to initial conditions becomes almost invisible.
-    let alike = high - low <= 0.01 * high;
-    let reason = format!(
-        "the paper: almost no difference; <U> from {low:.0} to {high:.0} V/s; {share:.1} % of the starts lead to one \
-         that does not come back in {} periods",
-        TAKEN / 2
-    );
-    Finding {
-        place: format!("Basins, {}", case.place),
-        quantity: "motions found".to_owned(),
-        unit: "1".to_owned(),
-        paper: None,
-        videg: gains.len() as f64,
-        verdict: if alike { Verdict::Agrees } else { Verdict::Differs },
-        reason,
-    }
+    Finding::new(format!("Basins, {}", plane.place), "motions found", "1", gains().count() as f64)
+        // The paper: the difference due to initial conditions becomes almost invisible.
+        .agrees_if(high - low <= 0.01 * high)
+        .reason(format!(
+            "the paper: almost no difference; <U> from {low:.0} to {high:.0} V/s; {share:.1} % of the starts lead to one \
+             that does not come back in {} periods",
+            TAKEN / 2
+        ))
 }
 
-fn table(case: &Case, basins: &Basins) -> Table {
-    let columns = [
-        Column::words(format!("{}: motion comes back after", case.place)),
-        Column::numbers("<U> (V/s)"),
-        Column::numbers("mean z_M - z_m (mm)"),
-        Column::numbers("share of starts (%)"),
-    ];
+fn attractors(plane: &Plane, basins: &Basins) -> Table {
+    let numbers = ["<U> (V/s)", "mean z_M - z_m (mm)", "share of starts (%)"];
     let rows = basins.attractors.iter().take(2 * SHOWN).map(|(attractor, share)| {
         [
             attractor.periods(),
@@ -179,10 +167,10 @@ fn table(case: &Case, basins: &Basins) -> Table {
             format!("{:.2}", 100.0 * share),
         ]
     });
-    rows.fold(Table::new(columns), Table::row)
+    rows.fold(table(format!("{}: motion comes back after", plane.place), numbers), Table::row)
 }
 
-fn picture(case: &Case, basins: &Basins) -> Result<Picture, PaperError> {
+fn picture(plane: &Plane, basins: &Basins) -> Result<Picture, PaperError> {
     let millimetres: Vec<f64> = basins.xs.iter().map(|x| 1e3 * x).collect();
     let shown = basins.attractors.len().min(SHOWN);
     let mut kinds: Vec<String> = basins.attractors.iter().take(shown).map(|(attractor, _)| attractor.label()).collect();
@@ -192,18 +180,18 @@ fn picture(case: &Case, basins: &Basins) -> Result<Picture, PaperError> {
     let values: Vec<f64> = basins.ends.iter().map(|end| basins.kind(end).min(shown as f64)).collect();
     let map = HeatMap { xs: &millimetres, ys: &basins.ys, values: &values, scale: Scale::Kinds(kinds) };
     let panel = Panel::new("", "z_M - z_m at 0 s (mm)", "z_M' - z_m' at 0 s (m/s)").height(420.0).map(map);
-    let figure = Figure::new(format!("Basins of attraction, {}", case.place))
+    let figure = Figure::new(format!("Basins of attraction, {}", plane.place))
         .caption("Which motion a start leads to, over relative displacement and velocity at the start.")
         .panel(panel);
     let caption = format!(
         "Which motion a start leads to within {TRANSIENT} periods, A = 0.5 N, f0 = 2 Hz, r = {}: periods after which \
          it comes back, <U> and mean relative displacement at the starts of the periods.",
-        case.restitution
+        plane.restitution
     );
-    Ok(Picture::new(case.name, &figure, caption)?)
+    Picture::new(plane.name, &figure, caption)
 }
 
-fn sheet(case: &Case, basins: &Basins) -> Sheet {
+fn sheet(plane: &Plane, basins: &Basins) -> Sheet {
     let columns = [
         "displacement at 0 s (m)",
         "velocity at 0 s (m/s)",
@@ -217,8 +205,7 @@ fn sheet(case: &Case, basins: &Basins) -> Sheet {
         let recurrence = end.recurrence.map_or(f64::NAN, |n| n as f64);
         vec![x, y, basins.kind(end), recurrence, end.gain, end.displacement]
     };
-    let rows = starts.zip(&basins.ends).map(row).collect();
-    Sheet { name: case.name.to_owned(), columns: columns.map(str::to_owned).to_vec(), rows }
+    Sheet::new(plane.name, columns, starts.zip(&basins.ends).map(row))
 }
 
 fn text() -> Vec<String> {

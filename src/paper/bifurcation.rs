@@ -25,6 +25,13 @@ pub struct Path {
     pub start: fn(&Cylinder, f64) -> Start,
 }
 
+impl Path {
+    /// What stands on the axis, without its unit.
+    pub fn symbol(&self) -> &str {
+        self.axis.split(' ').next().unwrap_or_default()
+    }
+}
+
 /// Distance, mm, of dots that nobody could tell apart.
 const RESOLUTION: f64 = 0.05;
 
@@ -104,7 +111,7 @@ impl Diagram {
 
     /// The longer stretches as a table.
     pub fn table(&self, path: &Path) -> Table {
-        let symbol = path.axis.split(' ').next().unwrap_or_default();
+        let symbol = path.symbol();
         let columns = [
             Column::numbers(format!("{symbol} from")),
             Column::numbers(format!("{symbol} to")),
@@ -157,7 +164,7 @@ impl Diagram {
              differ, several attractors coexist, and the start decides.",
             path.caption
         );
-        Ok(Picture::new(path.name, &figure, caption)?)
+        Picture::new(path.name, &figure, caption)
     }
 
     /// Dots to draw, mm: of those that nobody could tell apart, one.
@@ -185,6 +192,6 @@ impl Diagram {
                 taken.map(move |flash| vec![x, way, flash.displacement, flash.velocity, gain, recurrence])
             })
         });
-        Sheet { name: path.name.to_owned(), columns: columns.map(str::to_owned).to_vec(), rows: rows.collect() }
+        Sheet::new(path.name, columns, rows)
     }
 }

@@ -63,9 +63,6 @@ impl Power {
 
 impl Drive {
     /// Runs the harvester with `circuits`; without circuits, for its impacts alone.
-    ///
-    /// # Errors
-    /// What the FMU or a circuit says.
     pub fn run(&self, study: &Study<'_>, circuits: &[Settings]) -> Result<Driven, PaperError> {
         let [from, to] = self.window;
         let request = Request {
@@ -77,15 +74,21 @@ impl Drive {
         };
         let Coupled { master, rest_capacitance, bias_voltage } =
             Coupled::new(study, request, circuits, self.tolerance)?;
-        let mut books =
-            Books { from, bias_voltage, gain: 0.0, start: None, peaks: vec![0.0; circuits.len()], ratios: Vec::new() };
-        let outcome = master.run(&mut [&mut books])?;
-        let ends = books.start.iter().flatten().zip(&outcome.circuits);
+        let mut recorder = WindowRecorder {
+            from,
+            bias_voltage,
+            gain: 0.0,
+            start: None,
+            peaks: vec![0.0; circuits.len()],
+            ratios: Vec::new(),
+        };
+        let outcome = master.run(&mut [&mut recorder])?;
+        let ends = recorder.start.iter().flatten().zip(&outcome.circuits);
         Ok(Driven {
             time: to - from,
             power: ends.map(|(start, end)| Power::between(start, &end.ledger, to - from)).collect(),
-            peaks: books.peaks,
-            ratios: books.ratios,
+            peaks: recorder.peaks,
+            ratios: recorder.ratios,
             eq14: outcome.mechanics.average_power_eq13,
             rest_capacitance: rest_capacitance[0],
             bias_voltage,
@@ -106,9 +109,6 @@ pub struct Coupled {
 impl Coupled {
     /// Couples what `request` asks for with `circuits`; the largest error of C(t) within a communication step, relative to
     /// its value, is `tolerance`.
-    ///
-    /// # Errors
-    /// What the FMU or a circuit says.
     pub fn new(study: &Study<'_>, request: Request, circuits: &[Settings], tolerance: f64) -> Result<Self, PaperError> {
         let scenario = request.resolve()?;
         let harvester = HarvesterFmu::new(study.fmu, &scenario, &scenario.settings)?;
@@ -166,7 +166,7 @@ pub fn circuit(topology: Topology, release: Release, voltage: f64, resistance: f
 
 /// Notes the ledgers at the start of the window, and voltages and impacts in it; impacts within one communication step
 /// count as one.
-struct Books {
+struct WindowRecorder {
     from: f64,
     bias_voltage: f64,
     gain: f64,
@@ -175,7 +175,7 @@ struct Books {
     ratios: Vec<f64>,
 }
 
-impl Observer for Books {
+impl Observer for WindowRecorder {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
         let gain = row.harvester.voltage_gain();
         if gain > self.gain && row.time > self.from {

@@ -2,7 +2,7 @@
 
 use super::bifurcation::{Diagram, Path};
 use super::stroboscope::Start;
-use super::{Artefact, Finding, PaperError, Study, Verdict, excitation::Cylinder, poincare};
+use super::{Artefact, Finding, PaperError, Study, excitation::Cylinder, poincare};
 
 /// `f_0`, Hz.
 const FREQUENCY: f64 = 2.0;
@@ -58,15 +58,9 @@ fn coexistence(path: &Path, diagram: &Diagram) -> Finding {
         }
         _ => "one <U> wherever the motions are periodic".to_owned(),
     };
-    Finding {
-        place: format!("Bifurcation diagram over {}", path.axis.split(' ').next().unwrap_or_default()),
-        quantity: "values at which two periodic motions of different <U> exist".to_owned(),
-        unit: "1".to_owned(),
-        paper: None,
-        videg: coexisting.len() as f64,
-        verdict: Verdict::Beyond,
-        reason,
-    }
+    let place = format!("Bifurcation diagram over {}", path.symbol());
+    let quantity = "values at which two periodic motions of different <U> exist";
+    Finding::new(place, quantity, "1", coexisting.len() as f64).reason(reason)
 }
 
 fn text() -> Vec<String> {

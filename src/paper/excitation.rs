@@ -21,14 +21,8 @@ pub struct Cylinder {
 
 impl Cylinder {
     /// Reads the start values of the FMU, those of Section 4.2.
-    ///
-    /// # Errors
-    /// An FMU that lacks a variable.
     pub fn new(study: &Study<'_>) -> Result<Self, PaperError> {
-        let references = [study.reference("cylinder.mass")?, study.reference("ball.travel")?];
-        let mut values = [0.0; 2];
-        study.start(&[])?.get_real(&references, &mut values)?;
-        let [mass, travel] = values;
+        let [mass, travel] = study.reals(&study.start(&[])?, ["cylinder.mass", "ball.travel"])?;
         Ok(Self { mass, travel })
     }
 

@@ -91,7 +91,7 @@ impl Half {
         let of_curve = |curve: &Curve| {
             ["mean <U>", "95 % from", "95 % to", "median"].map(|what| format!("{what} at {} (V/s)", curve.label))
         };
-        let columns = std::iter::once(self.axis.to_owned()).chain(curves.iter().flat_map(of_curve)).collect();
+        let columns = std::iter::once(self.axis.to_owned()).chain(curves.iter().flat_map(of_curve));
         let row = |(k, x): (usize, &f64)| {
             let values = curves.iter().filter_map(|curve| curve.points.get(k)).flat_map(|(_, summary)| {
                 let Summary { mean, interval: [low, high], median, .. } = *summary;
@@ -99,7 +99,7 @@ impl Half {
             });
             std::iter::once(*x).chain(values).collect()
         };
-        Sheet { name: format!("fig16{}", self.letter), columns, rows: self.xs.iter().enumerate().map(row).collect() }
+        Sheet::new(format!("fig16{}", self.letter), columns, self.xs.iter().enumerate().map(row))
     }
 }
 
@@ -137,7 +137,7 @@ fn picture(halves: &[(Half, Vec<Curve>)]) -> Result<Picture, PaperError> {
     }
     let caption = "Voltage gain <U> of Eq. (15) over 50 to 100 s, r = 1, zero start: (a) over gamma of Eq. (16), (b) \
                    over f0. Crosses are means over nearby starts, bars their 95 % confidence intervals.";
-    Ok(Picture::new("fig16", &figure, caption)?)
+    Picture::new("fig16", &figure, caption)
 }
 
 /// A correlation from which on a curve rises, but for the scatter of a chaotic motion.
@@ -157,15 +157,11 @@ fn finding(half: &Half, curve: &Curve) -> Finding {
         (true, _) => Verdict::Explained,
         (false, _) => Verdict::Differs,
     };
-    Finding {
-        place: format!("Figure 16({}), {}", half.letter, curve.label),
-        quantity: format!("rank correlation of <U> with {}", half.axis.split(' ').next().unwrap_or_default()),
-        unit: "1".to_owned(),
-        paper: None,
-        videg: correlation,
-        verdict,
-        reason,
-    }
+    let axis = half.axis.split(' ').next().unwrap_or_default();
+    let quantity = format!("rank correlation of <U> with {axis}");
+    Finding::new(format!("Figure 16({}), {}", half.letter, curve.label), quantity, "1", correlation)
+        .judged(verdict)
+        .reason(reason)
 }
 
 /// Neighbouring points of which the later lies lower, and the intervals do not overlap.

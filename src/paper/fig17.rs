@@ -99,31 +99,23 @@ impl Pattern {
     const STEP: f64 = 1e-3;
 
     fn new(study: &Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
-        let reals = [
-            study.reference("gain.voltage")?,
-            study.reference("relativeDisplacement")?,
-            study.reference("biasVoltage")?,
-        ];
-        let count = [study.reference("impact.count")?];
         let mut instance = study.start(settings)?;
         let [from, to] = SHOWN;
         instance.do_step(0.0, from)?;
-        let (mut values, mut impacts) = ([0.0; 3], [0]);
         let mut spikes = [vec![(from, f64::NAN)], vec![(from, f64::NAN)]];
-        let (mut before, mut seen) = (f64::NAN, 0);
+        let mut before = study.gains(&instance)?;
         let mut index = 0.0;
         let mut time = from;
         while time <= to {
-            instance.get_real(&reals, &mut values)?;
-            instance.get_integer(&count, &mut impacts)?;
-            let [gain, displacement, bias] = values;
-            if impacts[0] > seen && before.is_finite() {
-                let peak = bias + (gain - before) / f64::from(impacts[0] - seen);
+            let gains = study.gains(&instance)?;
+            if gains.impacts > before.impacts {
+                let [displacement, bias] = study.reals(&instance, ["relativeDisplacement", "biasVoltage"])?;
+                let peak = bias + (gains.voltage - before.voltage) / f64::from(gains.impacts - before.impacts);
                 // Left is the end that the ball meets when z_M - z_m = +s/2.
                 let spikes = &mut spikes[usize::from(displacement < 0.0)];
                 spikes.extend([(time, 1e-3 * bias), (time, 1e-3 * peak), (time, f64::NAN)]);
             }
-            (before, seen) = (gain, impacts[0]);
+            before = gains;
             instance.do_step(time, Self::STEP)?;
             index += 1.0;
             time = from + index * Self::STEP;
@@ -151,7 +143,7 @@ fn curve(points: &[Point]) -> Result<Picture, PaperError> {
         "Voltage gain <U> of Eq. (15) over 50 to 100 s against the intensity D of the phase noise: gamma = 5, f0 = 2 \
          Hz, r = 1, zero start, {count} samples a point. Bars: 95 % bootstrap interval of the mean."
     );
-    Ok(Picture::new("fig17", &figure, caption)?)
+    Picture::new("fig17", &figure, caption)
 }
 
 fn voltages(patterns: &[Pattern]) -> Result<Picture, PaperError> {
@@ -178,86 +170,73 @@ fn voltages(patterns: &[Pattern]) -> Result<Picture, PaperError> {
     let caption = "Each line rises from U_in = 2 kV to U_DE4 of an impact, left and right membrane, made from the \
                    steps of the FMU's output gain.voltage. First sample of the point each, 50 to 60 s; the paper does \
                    not say which seconds it shows.";
-    Ok(Picture::new("fig17-voltage", &figure, caption)?)
+    Picture::new("fig17-voltage", &figure, caption)
 }
 
-/// What the paper says holds here, or does not. A tenth of the samples cannot refute it: few fast balls make the mean.
-fn judged(holds: bool, effort: Effort) -> Verdict {
-    match (holds, effort) {
-        (true, _) => Verdict::Agrees,
-        (false, Effort::Quick) => Verdict::Explained,
-        (false, Effort::Full) => Verdict::Differs,
+/// Few fast balls make the mean: a tenth of the samples cannot refute the paper.
+fn judge(finding: Finding, verdict: Verdict, effort: Effort) -> Finding {
+    if verdict == Verdict::Agrees || effort == Effort::Full {
+        return finding.judged(verdict);
     }
+    let reason = format!("{}; too few samples to tell", finding.reason);
+    finding.judged(Verdict::Explained).reason(reason)
 }
 
 fn findings(points: &[Point], effort: Effort) -> Vec<Finding> {
     let at = |d: f64| points.iter().find(|point| point.intensity == d);
-    let finding = |quantity: &str, unit: &str, videg: f64, verdict: Verdict, mut reason: String| {
-        if verdict == Verdict::Explained && effort == Effort::Quick {
-            reason.push_str("; too few samples to tell");
-        }
-        let place = "Figure 17".to_owned();
-        Finding { place, quantity: quantity.to_owned(), unit: unit.to_owned(), paper: None, videg, verdict, reason }
+    let finding = |quantity: &str, unit: &str, videg: f64, reason: String| {
+        Finding::new("Figure 17", quantity, unit, videg).reason(reason)
     };
-    let judged = |holds| judged(holds, effort);
     let mut findings = Vec::new();
     if let Some((pure, best)) = at(0.0).zip(points.iter().max_by(|a, b| a.gain.mean.total_cmp(&b.gain.mean))) {
-        let verdict = if best.intensity == 0.0 {
-            Verdict::Agrees
-        } else if best.gain.interval[0] > pure.gain.interval[1] {
-            judged(false)
-        } else {
-            Verdict::Explained
-        };
         let reason = format!(
             "the paper: most at D = 0; here the largest mean is {:.0} V/s at D = {}, undecided where their intervals \
              overlap; the median falls from {:.0} to {:.0} V/s",
             best.gain.mean, best.intensity, pure.gain.median, best.gain.median
         );
-        findings.push(finding("<U> without noise", "V/s", pure.gain.mean, verdict, reason));
+        let verdict = match best {
+            best if best.intensity == 0.0 => Verdict::Agrees,
+            best if best.gain.interval[0] > pure.gain.interval[1] => Verdict::Differs,
+            _ => Verdict::Explained,
+        };
+        findings.push(judge(finding("<U> without noise", "V/s", pure.gain.mean, reason), verdict, effort));
     }
+    let if_true = |agrees: bool| if agrees { Verdict::Agrees } else { Verdict::Differs };
     for (from, to) in [(0.5, 4.0), (0.0, 10.0)] {
         let Some((weak, strong)) = at(from).zip(at(to)) else { continue };
         let reason = format!(
             "the paper: drops significantly; mean {:.0} to {:.0} V/s, median {:.0} to {:.0} V/s; judged by intervals",
             weak.gain.mean, strong.gain.mean, weak.gain.median, strong.gain.median
         );
-        let quantity = format!("<U> at D = {to} over that at D = {from}");
+        let ratio = strong.gain.mean / weak.gain.mean;
         let drops = strong.gain.interval[1] < weak.gain.interval[0];
-        findings.push(finding(&quantity, "1", strong.gain.mean / weak.gain.mean, judged(drops), reason));
+        let quantity = format!("<U> at D = {to} over that at D = {from}");
+        findings.push(judge(finding(&quantity, "1", ratio, reason), if_true(drops), effort));
     }
-    findings.push(plateau(points, finding));
+    findings.push(plateau(points, effort));
     if let Some((weak, strong)) = at(PATTERNS[0]).zip(at(PATTERNS[1])) {
         let fewer = strong.rate() / weak.rate();
         let reason = format!("the paper: visibly fewer; {:.2} against {:.2} a second", strong.rate(), weak.rate());
-        findings.push(finding("impacts at D = 81 over those at D = 1", "1", fewer, judged(fewer < 1.0), reason));
-        let weaker = strong.gain_per_impact() / weak.gain_per_impact();
+        let rates = finding("impacts at D = 81 over those at D = 1", "1", fewer, reason);
         let [low, high] = [strong, weak].map(Point::gain_per_impact);
         let reason = format!("the paper: significantly weaker; {low:.0} against {high:.0} V an impact");
-        findings.push(finding(
-            "gain of an impact at D = 81 over that at D = 1",
-            "1",
-            weaker,
-            judged(weaker < 1.0),
-            reason,
-        ));
+        let gains = finding("gain of an impact at D = 81 over that at D = 1", "1", low / high, reason);
+        findings.extend([judge(rates, if_true(fewer < 1.0), effort), judge(gains, if_true(low < high), effort)]);
     }
     findings
 }
 
 /// From D = 10 to 100 the paper sees no change: the slope of all samples over D.
-fn plateau(points: &[Point], finding: impl Fn(&str, &str, f64, Verdict, String) -> Finding) -> Finding {
+fn plateau(points: &[Point], effort: Effort) -> Finding {
     let samples = points.iter().filter(|point| point.intensity >= 10.0);
     let all: Vec<_> =
         samples.flat_map(|point| point.samples.iter().map(|sample| (point.intensity, sample.voltage_gain))).collect();
     let (slope, error) = slope(&all);
-    let holds = slope.abs() <= TWO_SIDED * error;
-    let verdict = if holds { Verdict::Agrees } else { Verdict::Explained };
-    let reason = format!(
-        "the paper: almost the same; standard error of the slope {error:.1}, {}",
-        if holds { "no trend beyond 1.96 of them" } else { "a trend beyond that" }
-    );
-    finding("slope of <U> over D, D = 10 to 100", "V/s", slope, verdict, reason)
+    let is_flat = slope.abs() <= TWO_SIDED * error;
+    let trend = if is_flat { "no trend beyond 1.96 of them" } else { "a trend beyond that" };
+    let finding = Finding::new("Figure 17", "slope of <U> over D, D = 10 to 100", "V/s", slope)
+        .reason(format!("the paper: almost the same; standard error of the slope {error:.1}, {trend}"));
+    judge(finding, if is_flat { Verdict::Agrees } else { Verdict::Explained }, effort)
 }
 
 fn sheet(points: &[Point]) -> Sheet {
@@ -274,22 +253,17 @@ fn sheet(points: &[Point]) -> Sheet {
         let Summary { mean, interval: [low, high], standard_error, median } = point.gain;
         vec![point.intensity, mean, low, high, standard_error, median, point.rate()]
     };
-    Sheet {
-        name: "fig17".to_owned(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: points.iter().map(row).collect(),
-    }
+    Sheet::new("fig17", columns, points.iter().map(row))
 }
 
 fn samples_sheet(points: &[Point]) -> Sheet {
-    let columns = ["D (rad^2)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"].map(str::to_owned).to_vec();
     let rows = points.iter().enumerate().flat_map(|(index, point)| {
         point.samples.iter().enumerate().map(move |(sample, averages)| {
             let seed = seed(index, sample) as f64;
             vec![point.intensity, sample as f64, seed, averages.voltage_gain, f64::from(averages.impacts)]
         })
     });
-    Sheet { name: "fig17-samples".to_owned(), columns, rows: rows.collect() }
+    Sheet::new("fig17-samples", ["D (rad^2)", "sample (1)", "seed (1)", "<U> (V/s)", "impacts (1)"], rows)
 }
 
 fn text(samples: usize) -> Vec<String> {

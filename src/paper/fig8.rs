@@ -4,10 +4,10 @@ use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
 use super::coupled::{Coupled, circuit};
 use super::peak::{self, Peak};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, artefact};
 use crate::cosim::{CosimError, Observer, Row};
 use crate::scenario::Request;
-use videg_report::{Column, Figure, Panel, Series, Style, Table};
+use videg_report::{Figure, Panel, Series, Style, Table};
 
 /// Largest error of C(t) within a communication step, relative to its value.
 const TOLERANCE: f64 = 1e-4;
@@ -110,9 +110,9 @@ impl Cycle {
             Request { case: Some(peak::CASE.to_owned()), until: Some(peak.time + AROUND), ..Request::default() };
         let Coupled { master, rest_capacitance, bias_voltage } =
             Coupled::new(study, request, &KINDS.map(|kind| kind.settings()), TOLERANCE)?;
-        let mut course = Course { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
-        master.run(&mut [&mut course])?;
-        let points = course.points;
+        let mut recorder = CycleRecorder { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
+        master.run(&mut [&mut recorder])?;
+        let points = recorder.points;
         let none = || PaperError::NoCycle { case: peak::CASE, time: peak.time, within: AROUND };
         let is_before = |point: &Point| point.time < peak.time && point.deflection <= 0.0;
         let begin = points.iter().rposition(is_before).ok_or_else(none)?;
@@ -163,9 +163,9 @@ fn table(cycle: &Cycle) -> Table {
         ("stored more", |ledger| ledger.stored),
         ("net gain", Ledger::surplus),
     ];
-    let headings = [Column::words("circuit"), Column::numbers("converted by this membrane (uJ)")];
-    let accounts = columns.iter().map(|(name, _)| Column::numbers(format!("{name} (uJ)")));
-    KINDS.iter().enumerate().fold(Table::new(headings.into_iter().chain(accounts)), |table, (index, kind)| {
+    let accounts = columns.iter().map(|(name, _)| format!("{name} (uJ)"));
+    let numbers = std::iter::once("converted by this membrane (uJ)".to_owned()).chain(accounts);
+    KINDS.iter().enumerate().fold(artefact::table("circuit", numbers), |table, (index, kind)| {
         let over_the_cycle = |account: fn(&Ledger) -> f64| match &cycle.points[..] {
             [first, .., last] => account(&last.ledgers[index]) - account(&first.ledgers[index]),
             _ => f64::NAN,
@@ -180,13 +180,13 @@ fn table(cycle: &Cycle) -> Table {
 type Account = (&'static str, fn(&Ledger) -> f64);
 
 /// Notes what happens around the largest deflection.
-struct Course {
+struct CycleRecorder {
     from: f64,
     side: usize,
     points: Vec<Point>,
 }
 
-impl Observer for Course {
+impl Observer for CycleRecorder {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
         if row.time >= self.from {
             let (mut voltages, mut ledgers) = ([0.0; KINDS.len()], [Ledger::default(); KINDS.len()]);
@@ -207,36 +207,26 @@ impl Observer for Course {
 }
 
 fn findings(cycle: &Cycle) -> Vec<Finding> {
-    let beyond = |quantity: String, unit: &str, videg: f64, reason: String| Finding {
-        place: "Figure 8(b)".to_owned(),
-        quantity,
-        unit: unit.to_owned(),
-        paper: None,
-        videg,
-        verdict: Verdict::Beyond,
-        reason,
-    };
+    let finding = |quantity: String, unit: &str, videg: f64| Finding::new("Figure 8(b)", quantity, unit, videg);
     let (eq13, triangle) = (cycle.eq13(), cycle.triangle(0.0));
-    let reason = format!(
+    let enclosed = finding("the cycle 2-3-4 over W, Eq. (13)".to_owned(), "1", triangle / eq13).reason(format!(
         "{:.2} uJ over {:.2} uJ: it is C3/C2 - 1; W is half of what the supply gives in a cycle, not what the cycle encloses",
         1e6 * triangle,
         1e6 * eq13
-    );
-    let mut findings = vec![beyond("the cycle 2-3-4 over W, Eq. (13)".to_owned(), "1", triangle / eq13, reason)];
-    for (index, kind) in KINDS.iter().enumerate() {
+    ));
+    let of_kind = |(index, kind): (usize, &Kind)| {
         let converted = cycle.converted(index);
-        let share = |whole: f64| format!("{:.0} %", 1e2 * converted / whole);
-        let reason = match kind.topology {
-            Topology::Isolated => format!("{} of the cycle 2-3-4", share(triangle)),
-            Topology::SharedNode => format!(
-                "{} of the cycle 2-3-4, {} of what a shared node can convert at most",
-                share(triangle),
-                share(cycle.triangle(1.0))
-            ),
+        let share = |most: f64| format!("{:.0} %", 1e2 * converted / most);
+        let shared = match kind.topology {
+            Topology::Isolated => String::new(),
+            Topology::SharedNode => {
+                format!(", {} of what a shared node can convert at most", share(cycle.triangle(1.0)))
+            }
         };
-        findings.push(beyond(format!("converted in a cycle, {}", kind.name()), "uJ", 1e6 * converted, reason));
-    }
-    findings
+        let reason = format!("{} of the cycle 2-3-4{shared}", share(triangle));
+        finding(format!("converted in a cycle, {}", kind.name()), "uJ", 1e6 * converted).reason(reason)
+    };
+    std::iter::once(enclosed).chain(KINDS.iter().enumerate().map(of_kind)).collect()
 }
 
 fn text(cycle: &Cycle) -> Vec<String> {
@@ -287,16 +277,16 @@ fn picture(cycle: &Cycle) -> Result<Picture, PaperError> {
         peak::CASE,
         cycle.bias_voltage
     );
-    Ok(Picture::new("fig8", &figure, caption)?)
+    Picture::new("fig8", &figure, caption)
 }
 
 fn sheet(cycle: &Cycle) -> Sheet {
     let of_kinds =
         KINDS.iter().flat_map(|kind| ["voltage (V)", "charge (nC)"].map(|what| format!("{}: {what}", kind.name())));
-    let columns = ["time (s)", "capacitance (pF)"].map(str::to_owned).into_iter().chain(of_kinds).collect();
+    let columns = ["time (s)", "capacitance (pF)"].map(str::to_owned).into_iter().chain(of_kinds);
     let row = |point: &Point| {
         let places = (0..KINDS.len()).map(|kind| (point.voltages[kind], point.place(kind).1));
         [point.time, 1e12 * point.capacitance].into_iter().chain(places.flat_map(|(u, q)| [u, q])).collect()
     };
-    Sheet { name: "fig8".to_owned(), columns, rows: cycle.points.iter().map(row).collect() }
+    Sheet::new("fig8", columns, cycle.points.iter().map(row))
 }

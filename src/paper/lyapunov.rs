@@ -12,9 +12,6 @@ const NOTHING: f64 = 1e-17;
 /// logarithm, of the distance to a neighbour, which is brought back along its direction after each period (Benettin's
 /// method). Above 0 the motion is chaotic, below 0 it takes its neighbours in. Where `orbit` rests on a membrane at the
 /// start of a period its neighbour is put there, too.
-///
-/// # Errors
-/// What the FMU says.
 pub fn exponent(
     study: &Study<'_>,
     cylinder: &Cylinder,

@@ -20,7 +20,6 @@ mod fig8;
 mod fixed_step;
 mod lyapunov;
 mod motion;
-mod motion_findings;
 mod orbit;
 mod patterns;
 mod peak;
@@ -33,7 +32,6 @@ mod stroboscope;
 mod study;
 mod table1;
 mod table2;
-mod table2_output;
 mod table3;
 mod tuning;
 

@@ -24,7 +24,7 @@ pub(super) enum Phase {
 
 /// A saw-tooth orbit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Orbit {
+pub(super) struct SawTooth {
     pub(super) phase: Phase,
     /// `f_0`, Hz.
     pub(super) frequency: f64,
@@ -63,7 +63,7 @@ impl Multipliers {
     }
 }
 
-impl Orbit {
+impl SawTooth {
     /// The orbit of a case, its parameters read from the FMU.
     pub(super) fn of(study: &Study<'_>, settings: &[Setting], phase: Phase) -> Result<Self, PaperError> {
         let instance = study.start(settings)?;
@@ -160,9 +160,7 @@ impl Orbit {
     fn after_a_period(&self, study: &Study<'_>, settings: &[Setting], state: [f64; 2]) -> Result<[f64; 2], PaperError> {
         let mut instance = study.start(&[settings, &self.start_in_the_middle(state)].concat())?;
         instance.do_step(0.0, self.period())?;
-        let [displacement, cylinder, ball] =
-            study.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
-        Ok([displacement, cylinder - ball])
+        study.relative_motion(&instance)
     }
 }
 
@@ -191,7 +189,7 @@ mod tests {
     fn the_closed_form_has_the_trace_of_half_a_period() {
         // k = g T / (2 V): multipliers of half a period have the sum 2 + 2 k and the product 1.
         for phase in [Phase::Paper, Phase::Opposite] {
-            let orbit = Orbit { phase, frequency: 2.0, half_travel: 0.022, acceleration: 0.01 / 0.1245 };
+            let orbit = SawTooth { phase, frequency: 2.0, half_travel: 0.022, acceleration: 0.01 / 0.1245 };
             let k = orbit.acceleration * orbit.period() / (2.0 * orbit.speed());
             match orbit.closed_form() {
                 Multipliers::Saddle([large, small]) => {

@@ -28,16 +28,10 @@ const OF_A_MEMBRANE: [[&str; 3]; 2] = [
 pub(super) const CASE: &str = "fig14";
 pub(super) const WHEN: [f64; 2] = [50.0, 60.0];
 
-/// The impact that makes stage 3 of Table 1.
+/// The impact that makes stage 3 of Table 1: the largest deflection of either membrane; peaks are landed on.
 pub(super) fn stage_3(study: &Study<'_>) -> Result<Peak, PaperError> {
-    largest(study, CASE, WHEN)
-}
-
-/// The largest deflection of either membrane between `from` and `to`, s, in a run of a case of the paper; peaks are
-/// landed on.
-pub(super) fn largest(study: &Study<'_>, case: &str, [from, to]: [f64; 2]) -> Result<Peak, PaperError> {
-    let settings = study.case(case)?;
-    let samples = record(study, &settings, [from, to], to - from)?.samples;
+    let ([from, to], settings) = (WHEN, Study::case(CASE)?);
+    let samples = record(study, &settings, WHEN, to - from)?.samples;
     let deflections = samples.iter().flat_map(|sample| {
         DEFLECTIONS.iter().enumerate().map(|(side, output)| (sample.values[*output], sample.time, side))
     });

@@ -23,9 +23,6 @@ pub struct Section {
 }
 
 /// The sections of the elastic and of the inelastic cases.
-///
-/// # Errors
-/// What the FMU says.
 pub fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
     let many = match study.effort {
         Effort::Full => 4000,
@@ -38,7 +35,7 @@ pub fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
         ("fig15", "Figure 15, r = 0.3", 0.3, many),
     ];
     study.each(&cases, |&(case, title, restitution, periods)| {
-        let orbit = Stroboscope::new(study, &study.case(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
+        let orbit = Stroboscope::new(study, &Study::case(case)?, FREQUENCY)?.take(TRANSIENT, periods)?;
         let start = Start::saw_tooth(&cylinder, restitution, cylinder.gamma(FORCE, FREQUENCY), FREQUENCY);
         let exponent = lyapunov::exponent(study, &cylinder, start, &orbit, many / 4)?;
         Ok(Section { case, title, orbit, exponent })
@@ -46,9 +43,6 @@ pub fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
 }
 
 /// Displacement against velocity, mm and m/s.
-///
-/// # Errors
-/// A figure that makes no sense.
 pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
     let dots: Vec<Vec<(f64, f64)>> = sections
         .iter()
@@ -72,7 +66,7 @@ pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
          {TRANSIENT} periods, over so many periods: {}. The panels have scales of their own.",
         periods.join(", ")
     );
-    Ok(Picture::new("poincare", &figure, caption)?)
+    Picture::new("poincare", &figure, caption)
 }
 
 /// Whether the motions come back, and whether they are chaotic.
@@ -95,22 +89,15 @@ impl Section {
             (false, true) => (Verdict::Explained, "; chaos in so narrow a band that the peaks look alike"),
             (false, false) => (Verdict::Differs, ""),
         };
-        Finding {
-            place: self.title.to_owned(),
-            quantity: "largest Lyapunov exponent".to_owned(),
-            unit: "1/s".to_owned(),
-            paper: None,
-            videg: self.exponent,
-            verdict,
-            reason: format!("the paper: {claim}; {comes_back}{judged}"),
-        }
+        Finding::new(self.title, "largest Lyapunov exponent", "1/s", self.exponent)
+            .judged(verdict)
+            .reason(format!("the paper: {claim}; {comes_back}{judged}"))
     }
 }
 
 /// The points.
 pub fn sheet(section: &Section) -> Sheet {
-    let columns = ["period (1)", "displacement (m)", "velocity (m/s)"].map(str::to_owned).to_vec();
     let flashes = section.orbit.flashes.iter().enumerate();
     let rows = flashes.map(|(k, flash)| vec![f64::from(TRANSIENT) + k as f64, flash.displacement, flash.velocity]);
-    Sheet { name: format!("poincare-{}", section.case), columns, rows: rows.collect() }
+    Sheet::new(format!("poincare-{}", section.case), ["period (1)", "displacement (m)", "velocity (m/s)"], rows)
 }

@@ -5,8 +5,8 @@ use videg_circuit::{Release, Topology};
 use videg_model::{Case, Limit, Membrane};
 
 use super::coupled::{Drive, circuit};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, VOLUME, Verdict, WINDOW};
-use videg_report::{Column, Figure, Panel, Series, Table};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, VOLUME, WINDOW, artefact};
+use videg_report::{Figure, Panel, Series, Table};
 
 /// Cases of Table 3, and what the paper calls them.
 const CASES: [(&str, &str); 2] = [("table3-2hz", "2 Hz"), ("table3-5hz", "5 Hz")];
@@ -123,40 +123,25 @@ fn counts(study: &Study<'_>, case: &'static str) -> Result<Vec<Count>, PaperErro
 
 /// What the membranes take from the ball, W: the FMU's own books of (1 - r^2) m v^2 / 2.
 fn loss(study: &Study<'_>, case: &str) -> Result<f64, PaperError> {
-    let energy = [study.reference("energy.impactLoss")?];
-    let mut instance = study.start(&study.case(case)?)?;
+    let mut instance = study.start(&Study::case(case)?)?;
     let [from, to] = WINDOW;
-    let (mut start, mut end) = ([0.0], [0.0]);
     instance.do_step(0.0, from)?;
-    instance.get_real(&energy, &mut start)?;
+    let [start] = study.reals(&instance, ["energy.impactLoss"])?;
     instance.do_step(from, to - from)?;
-    instance.get_real(&energy, &mut end)?;
-    Ok((end[0] - start[0]) / (to - from))
+    let [end] = study.reals(&instance, ["energy.impactLoss"])?;
+    Ok((end - start) / (to - from))
 }
 
 fn findings(case: &str, counts: &[Count], bearable: f64) -> Vec<Finding> {
     let finding = |count: &Count| {
         let over = count.density() / ELECTROMAGNETIC;
         let strength = if count.voltage > 1.001 * bearable { "above" } else { "within" };
-        let times = if over > 0.0 {
-            format!("{over:.1} times the electromagnetic {ELECTROMAGNETIC} mW/cm^3, ")
-        } else {
-            String::new()
-        };
-        let reason = format!(
-            "{times}at up to {:.1} kV, {strength} the {:.1} kV that the film stands",
-            1e-3 * count.voltage,
-            1e-3 * bearable
-        );
-        Finding {
-            place: format!("Section 5.3, {case}"),
-            quantity: format!("power density, {}", count.name),
-            unit: "mW/cm^3".to_owned(),
-            paper: None,
-            videg: count.density(),
-            verdict: Verdict::Beyond,
-            reason,
-        }
+        let times = format!("{over:.1} times the electromagnetic {ELECTROMAGNETIC} mW/cm^3, ");
+        let (times, voltage) = (if over > 0.0 { times } else { String::new() }, 1e-3 * count.voltage);
+        let stands = 1e-3 * bearable;
+        let quantity = format!("power density, {}", count.name);
+        Finding::new(format!("Section 5.3, {case}"), quantity, "mW/cm^3", count.density())
+            .reason(format!("{times}at up to {voltage:.1} kV, {strength} the {stands:.1} kV that the film stands"))
     };
     counts.iter().skip(1).filter(|count| count.name != LOST).map(finding).collect()
 }
@@ -193,10 +178,8 @@ fn text(bearable: &[(&str, f64)], highest: f64) -> Vec<String> {
 
 fn table(counts: &[Vec<Count>]) -> Table {
     let numbers = CASES.iter().flat_map(|(_, case)| {
-        ["power (mW)", "density (mW/cm^3)", "highest voltage (kV)"]
-            .map(|what| Column::numbers(format!("{case}: {what}")))
+        ["power (mW)", "density (mW/cm^3)", "highest voltage (kV)"].map(|what| format!("{case}: {what}"))
     });
-    let columns = std::iter::once(Column::words("counted as")).chain(numbers);
     let rows = (0..counts.first().map_or(0, Vec::len)).map(|row| {
         let name = counts.first().and_then(|counts| counts.get(row)).map_or("", |count| count.name);
         let cells = counts.iter().filter_map(|counts| counts.get(row)).flat_map(|count| {
@@ -207,7 +190,7 @@ fn table(counts: &[Vec<Count>]) -> Table {
     });
     let density = ELECTROMAGNETIC.to_string();
     let electromagnetic = ["electromagnetic harvester, as the paper quotes it", "", &density, "", "", &density, ""];
-    rows.fold(Table::new(columns), Table::row).row(electromagnetic)
+    rows.fold(artefact::table("counted as", numbers), Table::row).row(electromagnetic)
 }
 
 /// Two limits of a bar's area, and the corners of its outline.
@@ -245,20 +228,16 @@ fn picture(counts: &[Vec<Count>]) -> Result<Picture, PaperError> {
                    stands: the paper's into 10 kohm, and isolated membranes with a switch that opens just below the voltage \
                    at which the film breaks down; dashed: the electromagnetic harvester of the paper's comparison, 0.123 \
                    mW/cm^3. The other circuits stand in the table.";
-    Ok(Picture::new("power", &figure, caption)?)
+    Picture::new("power", &figure, caption)
 }
 
 fn sheet(counts: &[Vec<Count>]) -> Sheet {
     let columns = ["f0 (Hz)", "row of the table (1)", "power (W)", "density (mW/cm^3)", "highest voltage (V)"];
-    let row = |frequency: f64, row: usize, count: &Count| {
-        vec![frequency, (row + 1) as f64, count.power, count.density(), count.voltage]
-    };
-    let of_case = |(counts, frequency): (&Vec<Count>, f64)| {
-        counts.iter().enumerate().map(|(index, count)| row(frequency, index, count)).collect::<Vec<_>>()
-    };
-    Sheet {
-        name: "power".to_owned(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: counts.iter().zip([2.0, 5.0]).flat_map(of_case).collect(),
-    }
+    let rows = counts.iter().zip([2.0, 5.0]).flat_map(|(counts, frequency)| {
+        let row = move |(index, count): (usize, &Count)| {
+            vec![frequency, (index + 1) as f64, count.power, count.density(), count.voltage]
+        };
+        counts.iter().enumerate().map(row)
+    });
+    Sheet::new("power", columns, rows)
 }

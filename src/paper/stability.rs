@@ -6,8 +6,7 @@ use videg_model::Case;
 use super::excitation::set;
 use super::fixed_step::{FixedStep, STEP};
 use super::motion;
-use super::motion_findings::Fact;
-use super::orbit::{Multipliers, Orbit, Phase};
+use super::orbit::{Multipliers, Phase, SawTooth};
 use super::statistics::slope;
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study};
 use crate::scenario::Setting;
@@ -53,10 +52,10 @@ impl Track {
 
 /// Everything that is said of the orbit.
 struct Stability {
-    orbit: Orbit,
+    orbit: SawTooth,
     closed_form: Multipliers,
     by_differences: Multipliers,
-    opposite: Orbit,
+    opposite: SawTooth,
     opposite_by_differences: Multipliers,
     /// `<U>` of the orbit of the opposite phase, V/s.
     opposite_gain: f64,
@@ -83,12 +82,12 @@ pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
 
 impl Stability {
     fn of(study: &Study<'_>) -> Result<Self, PaperError> {
-        let settings = study.case(CASE)?;
-        let orbit = Orbit::of(study, &settings, Phase::Paper)?;
-        let opposite = Orbit { phase: Phase::Opposite, ..orbit };
+        let settings = Study::case(CASE)?;
+        let orbit = SawTooth::of(study, &settings, Phase::Paper)?;
+        let opposite = SawTooth { phase: Phase::Opposite, ..orbit };
         let nudged =
             study.each(&NUDGES, |nudge| track(study, &settings, &orbit, *nudge, format!("nudged by {nudge:e} m/s")))?;
-        let at_other_frequency = Orbit { frequency: INEXACT, ..orbit };
+        let at_other_frequency = SawTooth { frequency: INEXACT, ..orbit };
         let window = [50.0, UNTIL];
         let run = Run { settings: [settings.as_slice(), &opposite.at_impact()].concat(), window };
         let gain = study.averages(&[run])?.first().map_or(f64::NAN, |averages| averages.voltage_gain);
@@ -115,48 +114,39 @@ impl Stability {
     }
 
     fn findings(&self) -> Vec<Finding> {
-        let fact = |quantity, unit| Fact { number: 10, quantity, unit };
+        let finding = |quantity: &str, unit: &str, videg: f64, reason: String| {
+            Finding::new("Figure 10", quantity, unit, videg).reason(reason)
+        };
         let closed = self.closed_form.largest();
         let opposite = match self.opposite_by_differences {
             Multipliers::Centre([_, angle]) => format!("a pair at an angle of +-{angle:.3} rad: neutrally stable"),
             Multipliers::Saddle(_) => "real".to_owned(),
         };
+        let multiplier = self.by_differences.largest();
+        let unstable = format!("above 1: the orbit is unstable; closed form {closed:.6}, the other is its inverse");
+        let growth = format!("ln(multiplier) / T is {:.4} 1/s", self.rate());
+        let modulus = self.opposite_by_differences.largest();
         let mut findings = vec![
-            fact("largest multiplier of the orbit over a period", "1").own(
-                self.by_differences.largest(),
-                format!("above 1: the orbit is unstable; closed form {closed:.6}, the other is its inverse"),
-            ),
-            fact("growth of a nudge of 1e-12 m/s", "1/s")
-                .own(self.nudged[0].growth(), format!("ln(multiplier) / T is {:.4} 1/s", self.rate())),
-            fact("modulus of the multipliers with the force of opposite sign", "1")
-                .own(self.opposite_by_differences.largest(), opposite),
-            fact("<U> with the force of opposite sign", "V/s").own(self.opposite_gain, "50 to 100 s"),
+            finding("largest multiplier of the orbit over a period", "1", multiplier, unstable),
+            finding("growth of a nudge of 1e-12 m/s", "1/s", self.nudged[0].growth(), growth),
+            finding("modulus of the multipliers with the force of opposite sign", "1", modulus, opposite),
+            finding("<U> with the force of opposite sign", "V/s", self.opposite_gain, "50 to 100 s".to_owned()),
         ];
-        findings.extend(self.lasting());
-        findings
-    }
-
-    /// How long the orbit lasts where nothing is nudged.
-    fn lasting(&self) -> Vec<Finding> {
-        let of = |track: &Track, quantity, reason| {
-            Fact { number: 10, quantity, unit: "s" }.own(track.leaves().unwrap_or(UNTIL), reason)
+        // How long the orbit lasts where nothing is nudged.
+        let time = |quantity: &str, track: &Track, reason: String| {
+            finding(&format!("time on the orbit {quantity}"), "s", track.leaves().unwrap_or(UNTIL), reason)
         };
-        let exact = format!("of {UNTIL} s: impacts fall on multiples of T/2 = 1/4 s, which doubles hold exactly");
-        let mut findings = vec![
-            of(&self.exact, "time on the orbit from the exact start", exact),
-            of(
-                &self.inexact,
-                "time on the orbit from the exact start at f_0 = 2.1 Hz",
-                "rounding alone: T/2 is no double".to_owned(),
-            ),
-        ];
-        let method = "Runge-Kutta of fourth order at 1e-5 s, Eq. (11) at the end of a step";
-        let stepped = self.stepped.as_ref();
-        findings.extend(stepped.map(|track| of(track, "time on the orbit by the paper's stepping", method.to_owned())));
-        let gain = Fact { number: 10, quantity: "<U> by the paper's stepping from the exact start", unit: "V/s" };
-        findings.extend(
-            self.stepped_gain.map(|value| gain.own(value, "50 to 100 s, off the orbit; the paper prints 1831")),
-        );
+        let exact = format!("of {UNTIL} s: impacts fall on multiples of T/2 = 1/4 s, which doubles represent exactly");
+        let rounding = "rounding alone: T/2 is no double".to_owned();
+        findings.extend([
+            time("from the exact start", &self.exact, exact),
+            time("from the exact start at f_0 = 2.1 Hz", &self.inexact, rounding),
+        ]);
+        let method = "Runge-Kutta of fourth order at 1e-5 s, Eq. (11) at the end of a step".to_owned();
+        findings.extend(self.stepped.as_ref().map(|track| time("by the paper's stepping", track, method)));
+        let quantity = "<U> by the paper's stepping from the exact start";
+        let off = "50 to 100 s, off the orbit; the paper prints 1831".to_owned();
+        findings.extend(self.stepped_gain.map(|gain| finding(quantity, "V/s", gain, off)));
         findings
     }
 
@@ -227,7 +217,7 @@ impl Stability {
         );
         let figure =
             Figure::new("How long the saw-tooth orbit lasts").width(960.0).panel(panel).caption(caption.clone());
-        Ok(Picture::new("fig10-stability", &figure, caption)?)
+        Picture::new("fig10-stability", &figure, caption)
     }
 
     fn sheet(&self) -> Sheet {
@@ -241,7 +231,7 @@ impl Stability {
             let cells = |track: &&Track| track.points.get(index).map_or([f64::NAN; 2], |point| [point.0, point.1]);
             tracks.iter().flat_map(cells).collect()
         };
-        Sheet { name: "fig10-stability".to_owned(), columns: columns.collect(), rows: (0..longest).map(row).collect() }
+        Sheet::new("fig10-stability", columns, (0..longest).map(row))
     }
 }
 
@@ -249,7 +239,7 @@ impl Stability {
 fn track(
     study: &Study<'_>,
     settings: &[Setting],
-    orbit: &Orbit,
+    orbit: &SawTooth,
     nudge: f64,
     label: String,
 ) -> Result<Track, PaperError> {
@@ -260,16 +250,14 @@ fn track(
     for time in middles(orbit) {
         instance.do_step(now, time - now)?;
         now += time - now;
-        let [displacement, cylinder, ball] =
-            study.reals(&instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
-        points.push((time, orbit.distance([displacement, cylinder - ball])));
+        points.push((time, orbit.distance(study.relative_motion(&instance)?)));
     }
     instance.terminate()?;
     Ok(Track { label, points })
 }
 
 /// Times, s, at which the ball passes the middle of the cylinder from the right membrane on.
-fn middles(orbit: &Orbit) -> impl Iterator<Item = f64> + use<> {
+fn middles(orbit: &SawTooth) -> impl Iterator<Item = f64> + use<> {
     let period = orbit.period();
     (0..).map(move |cycle| (f64::from(cycle) + 0.25) * period).take_while(|time| *time < UNTIL)
 }
@@ -281,7 +269,7 @@ fn stepped_gain(window: [f64; 2]) -> Option<f64> {
 }
 
 /// The paper's method from the paper's start.
-fn stepped(orbit: &Orbit) -> Option<Track> {
+fn stepped(orbit: &SawTooth) -> Option<Track> {
     let parameters = (Case::find(CASE)?.parameters)();
     let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity], STEP);
     let points = middles(orbit).filter_map(|time| {

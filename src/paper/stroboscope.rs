@@ -17,34 +17,22 @@ pub struct Flash {
 }
 
 /// A harvester that is looked at once a period.
-pub struct Stroboscope {
+pub struct Stroboscope<'a> {
+    study: &'a Study<'a>,
     instance: Instance,
-    references: [u32; 4],
     /// s.
     period: f64,
     /// Periods so far.
     count: f64,
 }
 
-impl Stroboscope {
+impl<'a> Stroboscope<'a> {
     /// Starts with `settings` under a force of `frequency`, Hz.
-    ///
-    /// # Errors
-    /// What the FMU says.
-    pub fn new(study: &Study<'_>, settings: &[Setting], frequency: f64) -> Result<Self, PaperError> {
-        let references = [
-            study.reference("relativeDisplacement")?,
-            study.reference("cylinder.velocity")?,
-            study.reference("ball.velocity")?,
-            study.reference("gain.voltage")?,
-        ];
-        Ok(Self { instance: study.start(settings)?, references, period: 1.0 / frequency, count: 0.0 })
+    pub fn new(study: &'a Study<'_>, settings: &[Setting], frequency: f64) -> Result<Self, PaperError> {
+        Ok(Self { study, instance: study.start(settings)?, period: 1.0 / frequency, count: 0.0 })
     }
 
     /// Lets `periods` pass.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn pass(&mut self, periods: u32) -> Result<(), PaperError> {
         // Products, not sums, so that the flashes do not drift against the force.
         let (now, next) = (self.count * self.period, (self.count + f64::from(periods)) * self.period);
@@ -54,20 +42,13 @@ impl Stroboscope {
     }
 
     /// The motion now.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn flash(&self) -> Result<Flash, PaperError> {
-        let mut values = [0.0; 4];
-        self.instance.get_real(&self.references, &mut values)?;
-        let [displacement, cylinder, ball, gain] = values;
-        Ok(Flash { displacement, velocity: cylinder - ball, gain })
+        let [displacement, velocity] = self.study.relative_motion(&self.instance)?;
+        let [gain] = self.study.reals(&self.instance, ["gain.voltage"])?;
+        Ok(Flash { displacement, velocity, gain })
     }
 
     /// Lets `transient` periods pass and takes the motion at the ends of `periods` more, and before.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn take(&mut self, transient: u32, periods: u32) -> Result<Orbit, PaperError> {
         self.pass(transient)?;
         let mut flashes = vec![self.flash()?];

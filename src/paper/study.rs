@@ -46,29 +46,12 @@ impl Study<'_> {
     }
 
     /// Settings of a case of the paper.
-    ///
-    /// # Errors
-    /// No such case.
-    pub fn case(&self, name: &str) -> Result<Vec<Setting>, PaperError> {
+    pub(super) fn case(name: &str) -> Result<Vec<Setting>, PaperError> {
         Ok(Request { case: Some(name.to_owned()), ..Request::default() }.resolve()?.settings)
     }
 
-    /// Values of variables of an instance, in the order of `names`.
-    ///
-    /// # Errors
-    /// If the FMU has no such variable, or it is no real number.
-    pub fn reals<const N: usize>(&self, instance: &Instance, names: [&str; N]) -> Result<[f64; N], PaperError> {
-        let references = names.iter().map(|name| self.reference(name)).collect::<Result<Vec<_>, _>>()?;
-        let mut values = [0.0; N];
-        instance.get_real(&references, &mut values)?;
-        Ok(values)
-    }
-
     /// An instance with `settings`, initialised at 0 s.
-    ///
-    /// # Errors
-    /// A setting that the FMU refuses.
-    pub fn start(&self, settings: &[Setting]) -> Result<Instance, PaperError> {
+    pub(super) fn start(&self, settings: &[Setting]) -> Result<Instance, PaperError> {
         let mut instance = self.fmu.instantiate("harvester", Logging::default())?;
         instance.begin_initialization(
             0.0,
@@ -82,18 +65,36 @@ impl Study<'_> {
     }
 
     /// Value reference of the variable called `name`.
-    ///
-    /// # Errors
-    /// If the FMU has no such variable.
-    pub fn reference(&self, name: &str) -> Result<u32, PaperError> {
+    pub(super) fn reference(&self, name: &str) -> Result<u32, PaperError> {
         Ok(self.fmu.description().variable(name)?.value_reference)
     }
 
-    /// Does `work` for each of `tasks` on all cores; the results come in the order of the tasks, whoever did them.
-    ///
-    /// # Errors
-    /// The first that failed, in their order.
-    pub fn each<T: Sync, R: Send>(
+    /// Values of variables of an instance, in the order of `names`.
+    pub(super) fn reals<const N: usize>(&self, instance: &Instance, names: [&str; N]) -> Result<[f64; N], PaperError> {
+        let references = names.iter().map(|name| self.reference(name)).collect::<Result<Vec<_>, _>>()?;
+        let mut values = [0.0; N];
+        instance.get_real(&references, &mut values)?;
+        Ok(values)
+    }
+
+    /// `z_M - z_m`, m, and its rate, m/s.
+    pub(super) fn relative_motion(&self, instance: &Instance) -> Result<[f64; 2], PaperError> {
+        let [displacement, cylinder, ball] =
+            self.reals(instance, ["relativeDisplacement", "cylinder.velocity", "ball.velocity"])?;
+        Ok([displacement, cylinder - ball])
+    }
+
+    /// The sums that averages are made of.
+    pub(super) fn gains(&self, instance: &Instance) -> Result<Gains, PaperError> {
+        let [voltage, energy] = self.reals(instance, ["gain.voltage", "gain.energyEq13"])?;
+        let mut impacts = [0];
+        instance.get_integer(&[self.reference("impact.count")?], &mut impacts)?;
+        Ok(Gains { voltage, energy, impacts: impacts[0] })
+    }
+
+    /// Does `work` for each of `tasks` on all cores; results in the order of the tasks, whoever did them. The error is that of
+    /// the first task that failed.
+    pub(super) fn each<T: Sync, R: Send>(
         &self,
         tasks: &[T],
         work: impl Fn(&T) -> Result<R, PaperError> + Send + Sync,
@@ -104,20 +105,12 @@ impl Study<'_> {
     fn average(&self, run: &Run) -> Result<Averages, PaperError> {
         let [from, to] = run.window;
         let mut instance = self.start(&run.settings)?;
-        let sums = [self.reference("gain.voltage")?, self.reference("gain.energyEq13")?];
-        let impacts = [self.reference("impact.count")?];
-        let read = |instance: &Instance| -> Result<Gains, PaperError> {
-            let (mut values, mut count) = ([0.0; 2], [0]);
-            instance.get_real(&sums, &mut values)?;
-            instance.get_integer(&impacts, &mut count)?;
-            Ok(Gains { voltage: values[0], energy: values[1], impacts: count[0] })
-        };
         if from > 0.0 {
             instance.do_step(0.0, from)?;
         }
-        let before = read(&instance)?;
+        let before = self.gains(&instance)?;
         instance.do_step(from, to - from)?;
-        let after = read(&instance)?;
+        let after = self.gains(&instance)?;
         instance.terminate()?;
         Ok(Averages::over(run.window, &before, &after))
     }

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use videg_model::VACUUM_PERMITTIVITY;
 
 use super::peak::{self, CASE, WHEN};
-use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, Verdict};
-use videg_report::{Column, Figure, Panel, Series, Style, Table};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, artefact};
+use videg_report::{Figure, Panel, Series, Style, Table};
 
 /// A stage in numbers, SI.
 struct Stage {
@@ -22,28 +22,15 @@ struct Stage {
 pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let stages = stages(study)?;
     let [first, second, third, fourth] = &stages;
-    let printed = |quantity: &str, paper: f64, videg: f64| Finding {
-        place: "Section 2.2".to_owned(),
-        quantity: quantity.to_owned(),
-        unit: "mm".to_owned(),
-        paper: Some(paper),
-        videg,
-        verdict: if (videg - paper).abs() < 1e-9 { Verdict::Agrees } else { Verdict::Differs },
-        reason: String::new(),
+    let printed = |quantity: &str, paper: f64, videg: f64| {
+        Finding::new("Section 2.2", quantity, "mm", videg).printed(paper).agrees_if((videg - paper).abs() < 1e-9)
     };
-    let mut findings = vec![
+    let findings = vec![
         printed("R_2 = lambda R_1", 6.3, 1e3 * second.radius.unwrap_or(f64::NAN)),
         printed("h_2 = h_1 / lambda^2", 0.25, 1e3 * second.thickness),
+        Finding::new("Table 1", "largest U_DE4 of fig14, Eq. (12)", "V", fourth.voltage)
+            .reason("the paper's table has symbols only"),
     ];
-    findings.push(Finding {
-        place: "Table 1".to_owned(),
-        quantity: "largest U_DE4 of fig14, Eq. (12)".to_owned(),
-        unit: "V".to_owned(),
-        paper: None,
-        videg: fourth.voltage,
-        verdict: Verdict::Beyond,
-        reason: "the paper's table has symbols only".to_owned(),
-    });
     let volume_kept =
         [second, third].iter().all(|s| (s.area * s.thickness / (first.area * first.thickness) - 1.0).abs() < 1e-9);
     let text = vec![
@@ -70,7 +57,7 @@ pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
 }
 
 fn stages(study: &Study<'_>) -> Result<[Stage; 4], PaperError> {
-    let instance = study.start(&study.case(CASE)?)?;
+    let instance = study.start(&Study::case(CASE)?)?;
     let [r1, h1, r2, h2, c2, permittivity, bias] = study.reals(
         &instance,
         [
@@ -114,9 +101,8 @@ const COLUMNS: [StageColumn; 6] = [
 ];
 
 fn table(stages: &[Stage; 4]) -> Table {
-    let columns = std::iter::once(Column::words("stage")).chain(COLUMNS.iter().map(|(name, _)| Column::numbers(*name)));
     let names = ["1: as made", "2: pre-stretched, at U_in", "3: pressed in, at U_in", "4: recovered, charge kept"];
-    stages.iter().zip(names).fold(Table::new(columns), |table, (stage, name)| {
+    stages.iter().zip(names).fold(artefact::table("stage", COLUMNS.map(|(name, _)| name)), |table, (stage, name)| {
         let cell = |value: f64| if value.is_nan() { String::new() } else { format!("{value:.4}") };
         table.row(std::iter::once(name.to_owned()).chain(COLUMNS.iter().map(|(_, value)| cell(value(stage)))))
     })
@@ -127,11 +113,7 @@ fn sheet(stages: &[Stage; 4]) -> Sheet {
     let row = |(k, stage): (usize, &Stage)| {
         std::iter::once(k as f64 + 1.0).chain(COLUMNS.iter().map(|(_, value)| value(stage))).collect()
     };
-    Sheet {
-        name: "table1".to_owned(),
-        columns: columns.map(str::to_owned).collect(),
-        rows: stages.iter().enumerate().map(row).collect(),
-    }
+    Sheet::new("table1", columns, stages.iter().enumerate().map(row))
 }
 
 fn picture(stages: &[Stage; 4]) -> Result<Picture, PaperError> {
@@ -153,5 +135,5 @@ fn picture(stages: &[Stage; 4]) -> Result<Picture, PaperError> {
         "Thickness, capacitance, voltage and charge of a membrane at the stages of Table 1; stage 3 is the largest impact \
          of {CASE}. Between 3 and 4 the charge is kept, so the voltage rises as the capacitance falls: Eq. (12)."
     );
-    Ok(Picture::new("table1", &figure, caption)?)
+    Picture::new("table1", &figure, caption)
 }

@@ -3,8 +3,8 @@
 use videg_model::Case;
 
 use super::fixed_step::{FixedStep, STEP, Stepped};
-use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study, VOLUME, Verdict, WINDOW};
-use videg_report::{Column, Figure, Panel, Series, Style, Table};
+use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study, VOLUME, Verdict, WINDOW, artefact};
+use videg_report::{Figure, Panel, Series, Style, Table};
 
 /// Steps of the paper's method to show, s.
 const STEPS: [f64; 10] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6];
@@ -105,7 +105,7 @@ fn text_at_5_hz(compared: &Compared) -> String {
 fn compare(study: &Study<'_>) -> Result<Vec<Compared>, PaperError> {
     let runs = PRINTED
         .iter()
-        .map(|printed| Ok(Run { settings: study.case(printed.case)?, window: WINDOW }))
+        .map(|printed| Ok(Run { settings: Study::case(printed.case)?, window: WINDOW }))
         .collect::<Result<Vec<_>, PaperError>>()?;
     let averages = study.averages(&runs)?;
     // The longest first, so that all cores end together.
@@ -142,36 +142,27 @@ fn findings(compared: &Compared) -> Vec<Finding> {
     let finding = |quantity: &str, unit: &str, paper: f64, videg: f64| {
         let (verdict, reason) = verdict(videg, paper);
         let place = format!("Table 3, {}", printed.frequency);
-        Finding {
-            place,
-            quantity: quantity.to_owned(),
-            unit: unit.to_owned(),
-            paper: Some(paper),
-            videg,
-            verdict,
-            reason,
-        }
+        Finding::new(place, quantity, unit, videg).printed(paper).judged(verdict).reason(reason)
     };
-    let mut findings = vec![
+    let stepping = |quantity: &str, unit, paper, videg| {
+        finding(&format!("{quantity} by the paper's stepping at 1e-5 s"), unit, paper, videg)
+            .reason("the method of the paper")
+    };
+    vec![
         finding("P, Eq. (14)", "W", printed.power, *power),
         finding("power density", "mW/cm^3", printed.density, 1e3 * power / VOLUME),
-    ];
-    let stepping = [
-        finding("P by the paper's stepping at 1e-5 s", "W", printed.power, method),
-        finding("power density by the paper's stepping at 1e-5 s", "mW/cm^3", printed.density, 1e3 * method / VOLUME),
-    ];
-    findings.extend(stepping.map(|finding| Finding { reason: "the method of the paper".to_owned(), ..finding }));
-    findings
+        stepping("P", "W", printed.power, method),
+        stepping("power density", "mW/cm^3", printed.density, 1e3 * method / VOLUME),
+    ]
 }
 
 fn table(compared: &[Compared]) -> Table {
-    let columns = [
-        Column::words("device"),
-        Column::numbers("P, paper (W)"),
-        Column::numbers("P, videg (W)"),
-        Column::numbers("P, paper's stepping at 1e-5 s (W)"),
-        Column::numbers("density, paper (mW/cm^3)"),
-        Column::numbers("density, videg (mW/cm^3)"),
+    let numbers = [
+        "P, paper (W)",
+        "P, videg (W)",
+        "P, paper's stepping at 1e-5 s (W)",
+        "density, paper (mW/cm^3)",
+        "density, videg (mW/cm^3)",
     ];
     let rows = compared.iter().map(|c| {
         [
@@ -184,7 +175,7 @@ fn table(compared: &[Compared]) -> Table {
         ]
     });
     let electromagnetic = ["curved electromagnetic system, 2 to 5 Hz [35]", "0.005", "", "", "0.123", ""];
-    rows.fold(Table::new(columns), Table::row).row(electromagnetic)
+    rows.fold(artefact::table("device", numbers), Table::row).row(electromagnetic)
 }
 
 fn sheet(compared: &[Compared]) -> Sheet {
@@ -201,7 +192,7 @@ fn sheet(compared: &[Compared]) -> Sheet {
         let of = |c: &Compared| [c.stepped[k].power, c.stepped[k].impacts as f64, c.power, f64::from(c.impacts)];
         std::iter::once(*step).chain(compared.iter().flat_map(of)).collect()
     };
-    Sheet { name: "table3".to_owned(), columns: columns.collect(), rows: STEPS.iter().enumerate().map(row).collect() }
+    Sheet::new("table3", columns, STEPS.iter().enumerate().map(row))
 }
 
 fn picture(compared: &[Compared]) -> Result<Picture, PaperError> {
@@ -209,27 +200,29 @@ fn picture(compared: &[Compared]) -> Result<Picture, PaperError> {
     let curves: Vec<_> = compared
         .iter()
         .map(|c| {
-            let powers: Vec<_> = STEPS.iter().zip(&c.stepped).map(|(&dt, s)| (dt, s.power)).collect();
-            let impacts: Vec<_> = STEPS.iter().zip(&c.stepped).map(|(&dt, s)| (dt, s.impacts as f64)).collect();
-            (powers, impacts, ends.map(|dt| (dt, c.power)), ends.map(|dt| (dt, f64::from(c.impacts))))
+            let over_steps = |value: fn(&Stepped) -> f64| -> Vec<_> {
+                STEPS.iter().zip(&c.stepped).map(|(&step, stepped)| (step, value(stepped))).collect()
+            };
+            let exact = |value: f64| ends.map(|step| (step, value));
+            let impacts = (over_steps(|stepped| stepped.impacts as f64), exact(f64::from(c.impacts)));
+            ((over_steps(|stepped| stepped.power), exact(c.power)), impacts)
         })
         .collect();
     let mut figure = Figure::new("Table 3: what the step of the paper's method does").columns(2).width(960.0);
-    for (k, (c, (powers, ..))) in compared.iter().zip(&curves).enumerate() {
-        let title = format!("({}) {}", ["a", "b"][k], c.printed.frequency);
+    for (letter, (c, ((powers, exact), _))) in ["a", "b"].into_iter().zip(compared.iter().zip(&curves)) {
         figure = figure.panel(
-            Panel::new(title, "", "P (W)")
+            Panel::new(format!("({letter}) {}", c.printed.frequency), "", "P (W)")
                 .log_x()
                 .share_x_with_next()
                 .line("printed", c.printed.power)
                 .series(Series::points("paper's stepping", powers).color(1))
                 .series(Series::points("", powers).style(Style::Markers).color(1))
-                .series(Series::points("videg, through the FMU", &curves[k].2).color(0)),
+                .series(Series::points("videg, through the FMU", exact).color(0)),
         );
     }
-    for (k, (_, impacts, _, exact)) in curves.iter().enumerate() {
+    for (title, (_, (impacts, exact))) in ["(c)", "(d)"].into_iter().zip(&curves) {
         figure = figure.panel(
-            Panel::new(["(c)", "(d)"][k], "time step of the paper's method (s)", "impacts in 50 s")
+            Panel::new(title, "time step of the paper's method (s)", "impacts in 50 s")
                 .log_x()
                 .log_y()
                 .series(Series::points("", impacts).color(1))
@@ -240,5 +233,5 @@ fn picture(compared: &[Compared]) -> Result<Picture, PaperError> {
     let caption = "Power by Eq. (14), and impacts counted, by the paper's Runge-Kutta with a fixed step against the step, and \
                    by the event-driven FMU, which has none: (a, c) 2 Hz, where the ball rests on the membrane for a part of \
                    each cycle, (b, d) 5 Hz, where it does not. A = 5 N, r = 0.5, U_in = 2000 V, 50 to 100 s.";
-    Ok(Picture::new("table3", &figure, caption)?)
+    Picture::new("table3", &figure, caption)
 }

@@ -3,7 +3,7 @@
 use videg_circuit::{Release, Settings, Topology};
 
 use super::coupled::{Drive, Driven, circuit};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study, Verdict};
+use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Figure, HeatMap, Panel, Scale, Series, Style};
 
 /// Window of the averages, s: Figure 14 is periodic by then.
@@ -99,51 +99,38 @@ pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     })
 }
 
-fn beyond(quantity: &str, unit: &str, videg: f64, reason: String) -> Finding {
-    Finding {
-        place: "Tuning, case of Figure 14".to_owned(),
-        quantity: quantity.to_owned(),
-        unit: unit.to_owned(),
-        paper: None,
-        videg,
-        verdict: Verdict::Beyond,
-        reason,
-    }
-}
-
 fn findings(maps: &[Map; 2], driven: &Driven) -> Vec<Finding> {
+    let finding =
+        |quantity: &str, unit: &str, videg: f64| Finding::new("Tuning, case of Figure 14", quantity, unit, videg);
     let mut findings = Vec::new();
     if let Some(power) = driven.power.first() {
-        let reason = format!(
+        findings.push(finding("net gain of the paper's circuit", "uW", 1e6 * power.surplus()).reason(format!(
             "at U_z = 2000 V and 1 Gohm; P of Eq. (14) is {:.1} uW, but the Zener burns {:.1} uW of the supply's",
             1e6 * driven.eq14,
             1e6 * power.zener
-        );
-        findings.push(beyond("net gain of the paper's circuit", "uW", 1e6 * power.surplus(), reason));
+        )));
     }
     for map in maps {
         let [voltage, load, gain] = map.best;
         let released = if gain > 0.01 { "the best point of the map" } else { "where hardly anything is released" };
-        let reason = format!("at {voltage:.0} V and {load:.1e} ohm, {released}");
-        findings.push(beyond(&format!("largest net gain, {}", map.name), "uW", gain, reason));
+        findings.push(
+            finding(&format!("largest net gain, {}", map.name), "uW", gain)
+                .reason(format!("at {voltage:.0} V and {load:.1e} ohm, {released}")),
+        );
     }
     let [_, better] = maps;
     let best = driven.best_voltage(0.0);
-    let reason = format!(
-        "closed form U_in (C3/C2 + 1)/2: {best:.0} V, where it gives {:.2} uW; the map: {:.2} uW",
-        1e6 * driven.quick_release(best, 0.0),
-        better.quick[2]
-    );
-    findings.push(beyond("best voltage of a quick release, isolated membranes", "V", better.quick[0], reason));
     let largest = 1e6 * driven.largest_gain();
-    let reason =
-        format!("bound: {largest:.1} uW, constant charge up to U_DE4, then slow discharge at C2, for each impact");
-    findings.push(beyond(
-        "largest net gain, isolated, over the bound of the closed form",
-        "1",
-        better.best[2] / largest,
-        reason,
-    ));
+    findings.extend([
+        finding("best voltage of a quick release, isolated membranes", "V", better.quick[0]).reason(format!(
+            "closed form U_in (C3/C2 + 1)/2: {best:.0} V, where it gives {:.2} uW; the map: {:.2} uW",
+            1e6 * driven.quick_release(best, 0.0),
+            better.quick[2]
+        )),
+        finding("largest net gain, isolated, over the bound of the closed form", "1", better.best[2] / largest).reason(
+            format!("bound: {largest:.1} uW, constant charge up to U_DE4, then slow discharge at C2, for each impact"),
+        ),
+    ]);
     findings
 }
 
@@ -195,7 +182,7 @@ fn picture(grid: &Grid, maps: &[Map; 2]) -> Result<Picture, PaperError> {
     }
     let caption = "Net gain, load less supply, of the paper's circuit and of the better one, case of Figure 14, 20 to \
                    60 s. The paper's voltage of release is 2000 V; it gives no load.";
-    Ok(Picture::new("tuning", &figure, caption)?)
+    Picture::new("tuning", &figure, caption)
 }
 
 /// Cuts through the maps beside the closed form.
@@ -226,13 +213,12 @@ fn cuts(grid: &Grid, maps: &[Map; 2], driven: &Driven) -> Result<Picture, PaperE
         .panel(panel);
     let caption = "Net gain over the voltage of release, case of Figure 14, 20 to 60 s. The closed form (C3 U_in - C2 \
                    U_r)(U_r - U_in), summed over the impacts, is that of a load that takes the charge at once.";
-    Ok(Picture::new("tuning-cuts", &figure, caption)?)
+    Picture::new("tuning-cuts", &figure, caption)
 }
 
 fn sheet(grid: &Grid, map: &Map) -> Sheet {
-    let columns = ["voltage of release (V)", "load (ohm)", "net gain (uW)"].map(str::to_owned).to_vec();
     let cells = grid.loads.iter().flat_map(|&load| grid.voltages.iter().map(move |&voltage| (voltage, load)));
-    let rows = cells.zip(&map.gains).map(|((voltage, load), gain)| vec![voltage, load, *gain]).collect();
+    let rows = cells.zip(&map.gains).map(|((voltage, load), gain)| vec![voltage, load, *gain]);
     let kind = if map.topology == Topology::Isolated { "isolated-switch" } else { "paper" };
-    Sheet { name: format!("tuning-{kind}"), columns, rows }
+    Sheet::new(format!("tuning-{kind}"), ["voltage of release (V)", "load (ohm)", "net gain (uW)"], rows)
 }

@@ -1,6 +1,7 @@
 //! Figures 9 to 15: displacements, velocities, relative displacement and voltage against time.
 
-use super::motion_findings::findings;
+mod findings;
+
 use super::patterns::Pattern;
 use super::recording::{
     BALL, BALL_VELOCITY, CYLINDER, CYLINDER_VELOCITY, DISPLACEMENT, Impact, OUTPUTS, Recording, Sample, record,
@@ -39,57 +40,51 @@ pub(super) const FIG14: Shown = Shown { case: "fig14", number: 14, window: STEAD
 pub(super) const FIG15: Shown = Shown { case: "fig15", number: 15, window: STEADY, circled: None };
 
 /// Parameters that a figure depends on, SI units.
-pub(super) struct Setup {
+struct Setup {
     /// M, kg.
-    pub(super) mass: f64,
+    mass: f64,
     /// s, m.
-    pub(super) travel: f64,
+    travel: f64,
     /// A, N.
-    pub(super) amplitude: f64,
+    amplitude: f64,
     /// `f_0`, Hz.
-    pub(super) frequency: f64,
+    frequency: f64,
     /// `U_in`, V.
-    pub(super) bias_voltage: f64,
+    bias_voltage: f64,
     /// `z_M(0)`, `z_M'(0)`, `z_m(0)`, `z_m'(0)`, as given.
-    pub(super) start: [f64; 4],
+    start: [f64; 4],
     caption: String,
 }
 
 impl Setup {
     fn of(study: &Study<'_>, case: &str) -> Result<Self, PaperError> {
-        let instance = study.start(&study.case(case)?)?;
-        let [mass, travel, amplitude, frequency, restitution, bias_voltage] = study.reals(
+        let instance = study.start(&Study::case(case)?)?;
+        let lengths = ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"];
+        let start =
+            ["initial.cylinderPosition", "initial.cylinderVelocity", "initial.ballPosition", "initial.ballVelocity"];
+        let [amplitude, frequency, restitution, bias_voltage, travel] = study.reals(
             &instance,
-            [
-                "cylinder.mass",
-                "ball.travel",
-                "excitation.amplitude",
-                "excitation.frequency",
-                "membrane.restitution",
-                "biasVoltage",
-            ],
+            ["excitation.amplitude", "excitation.frequency", "membrane.restitution", "biasVoltage", "ball.travel"],
         )?;
-        let start = study.reals(
-            &instance,
-            ["initial.cylinderPosition", "initial.cylinderVelocity", "initial.ballPosition", "initial.ballVelocity"],
-        )?;
-        let [ball, length, width, radius] =
-            study.reals(&instance, ["ball.mass", "cylinder.length", "frame.width", "ball.radius"])?;
-        let [r1, h1, r2] =
-            study.reals(&instance, ["membrane.initialRadius", "membrane.initialThickness", "membrane.radius"])?;
+        let [mass, ball, length, width, radius] =
+            study.reals(&instance, ["cylinder.mass", "ball.mass", "cylinder.length", "frame.width", "ball.radius"])?;
+        let [r1, h1, r2] = study.reals(&instance, lengths)?;
+        let start = study.reals(&instance, start)?;
         let [z_cylinder, v_cylinder, z_ball, v_ball] = start;
+        // Without the last digits, which a change of units upsets.
+        let milli = |value: f64| (1e3 * value * 1e9).round() / 1e9;
         let caption = format!(
             "A = {amplitude} N, f_0 = {frequency} Hz, r = {restitution}; M = {} g, m = {} g, d = {} mm, w = {} mm, r_b \
              = {} mm, R_1 = {} mm, R_2 = {} mm, h_1 = {} mm, U_in = U_z = {bias_voltage} V; z_M(0) = {:.4} mm, z_M'(0) \
              = {v_cylinder} m/s, z_m(0) = {:.4} mm, z_m'(0) = {v_ball:.5} m/s.",
-            rounded(1e3 * mass),
-            rounded(1e3 * ball),
-            rounded(1e3 * length),
-            rounded(1e3 * width),
-            rounded(1e3 * radius),
-            rounded(1e3 * r1),
-            rounded(1e3 * r2),
-            rounded(1e3 * h1),
+            milli(mass),
+            milli(ball),
+            milli(length),
+            milli(width),
+            milli(radius),
+            milli(r1),
+            milli(r2),
+            milli(h1),
             1e3 * z_cylinder,
             1e3 * z_ball,
         );
@@ -97,22 +92,17 @@ impl Setup {
     }
 
     /// A / (M (2 pi `f_0`)^2), m: amplitude of the cylinder.
-    pub(super) fn swing(&self) -> f64 {
+    fn swing(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.frequency;
         self.amplitude / (self.mass * omega * omega)
     }
 }
 
-/// Without the last digits, which a change of units upsets.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
-}
-
 /// Makes a figure.
 pub(super) fn make(study: &Study<'_>, shown: &Shown) -> Result<Artefact, PaperError> {
     let setup = Setup::of(study, shown.case)?;
-    let recording = record(study, &study.case(shown.case)?, shown.window, STEP)?;
-    let (findings, text) = findings(study, shown, &setup, &recording)?;
+    let recording = record(study, &Study::case(shown.case)?, shown.window, STEP)?;
+    let (findings, text) = findings::findings(study, shown, &setup, &recording)?;
     let picture = picture(shown, &setup, &recording)?;
     let sheets = vec![samples(shown, &setup, &recording), impacts(shown, &setup, &recording)];
     Ok(Artefact { findings, text, pictures: vec![picture], sheets, ..Artefact::default() })
@@ -196,7 +186,7 @@ fn picture(shown: &Shown, setup: &Setup, recording: &Recording) -> Result<Pictur
     let caption = caption(shown, setup);
     let figure = Figure::new(format!("Figure {}", shown.number)).columns(2).width(960.0).caption(caption.clone());
     let figure = curves.panels(shown.window).into_iter().fold(figure, Figure::panel);
-    Ok(Picture::new(shown.case, &figure, caption)?)
+    Picture::new(shown.case, &figure, caption)
 }
 
 fn caption(shown: &Shown, setup: &Setup) -> String {
@@ -227,11 +217,8 @@ fn samples(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {
         let voltages = [true, false].map(|left| voltage(sample, left));
         std::iter::once(sample.time).chain(values).chain(voltages).collect()
     };
-    Sheet {
-        name: shown.case.to_owned(),
-        columns: std::iter::once("time (s)".to_owned()).chain(headings).chain(voltages).collect(),
-        rows: recording.samples.iter().map(row).collect(),
-    }
+    let columns = std::iter::once("time (s)".to_owned()).chain(headings).chain(voltages);
+    Sheet::new(shown.case, columns, recording.samples.iter().map(row))
 }
 
 fn impacts(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {
@@ -240,9 +227,5 @@ fn impacts(shown: &Shown, setup: &Setup, recording: &Recording) -> Sheet {
         let side = if i.left { 1.0 } else { 2.0 };
         vec![i.time, side, i.speed, setup.bias_voltage + i.gain, 1e3 * i.ball]
     };
-    Sheet {
-        name: format!("{}-impacts", shown.case),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: recording.impacts.iter().map(row).collect(),
-    }
+    Sheet::new(format!("{}-impacts", shown.case), columns, recording.impacts.iter().map(row))
 }

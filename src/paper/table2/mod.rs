@@ -1,23 +1,24 @@
 //! Table 2: the average voltage gain, and how far nearby starts and the paper's own stepping scatter.
 
+mod output;
+
 use videg_model::Case;
 
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
 use super::fixed_step::{FixedStep, STEP};
-use super::table2_output::{picture, sheets, table, text};
 use super::{Artefact, Effort, Finding, PaperError, Run, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
 /// Largest nudge for the paper's method, m/s: what its time step makes of one impact, 2 A/M times 1e-5 s. Smaller ones
 /// change no step at which the ball hits a membrane for a long time, so that all starts would be the same.
-pub(super) const STEPPED_NUDGE: f64 = 1e-4;
+const STEPPED_NUDGE: f64 = 1e-4;
 
 /// Starts that one core steps at once by the paper's method.
 const BATCH: usize = 20;
 
 /// How a case moves, and so how it can be compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Motion {
+enum Motion {
     /// Nearby starts end in one motion; agreement is a relative difference of at most this.
     Damped(f64),
     /// An orbit that nearby starts leave.
@@ -27,14 +28,14 @@ pub(super) enum Motion {
 }
 
 /// A column of the table.
-pub(super) struct Printed {
+struct Printed {
     /// Number of the figure.
-    pub(super) number: u32,
+    number: u32,
     /// Its case.
-    pub(super) case: &'static str,
+    case: &'static str,
     /// `<U>`, V/s.
-    pub(super) gain: f64,
-    pub(super) motion: Motion,
+    gain: f64,
+    motion: Motion,
 }
 
 const PRINTED: [Printed; 6] = [
@@ -47,50 +48,49 @@ const PRINTED: [Printed; 6] = [
 ];
 
 /// A column of the table, computed. All values are `<U>`, V/s.
-pub(super) struct Computed {
-    pub(super) printed: &'static Printed,
+struct Computed {
+    printed: &'static Printed,
     /// The start of the paper.
-    pub(super) own: f64,
+    own: f64,
     /// Nearby starts, in the order of the nudges.
-    pub(super) values: Vec<f64>,
-    pub(super) nearby: Ensemble,
+    values: Vec<f64>,
+    nearby: Ensemble,
     /// Nearby starts by the paper's method, where one motion does not stand for all.
-    pub(super) stepped: Option<Ensemble>,
+    stepped: Option<Ensemble>,
 }
 
 impl Computed {
-    pub(super) fn deviation(&self) -> f64 {
+    /// A value of `<U>`, V/s, of the case, or of a `variant` of it.
+    fn finding(&self, variant: &str, quantity: &str, gain: f64) -> Finding {
+        Finding::new(format!("Table 2, Figure {}{variant}", self.printed.number), quantity, "V/s", gain)
+    }
+
+    fn deviation(&self) -> f64 {
         self.own / self.printed.gain - 1.0
     }
 
-    pub(super) fn is_chaotic(&self) -> bool {
+    fn is_chaotic(&self) -> bool {
         self.printed.motion == Motion::Chaotic
     }
 }
 
 /// Everything that the table shows.
-pub(super) struct Computation {
-    pub(super) nudges: Vec<f64>,
-    pub(super) cases: Vec<Computed>,
+struct Computation {
+    nudges: Vec<f64>,
+    cases: Vec<Computed>,
     /// Figure 12 with a ball that starts free.
-    pub(super) free: Computed,
+    free: Computed,
     /// Nearby starts of all chaotic cases together.
-    pub(super) pooled: Ensemble,
+    pooled: Ensemble,
 }
 
 /// Makes the table.
 pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let computation = compute(study)?;
     let mut findings: Vec<_> = computation.cases.iter().map(|case| finding(case, &computation.pooled)).collect();
-    findings.extend(other_rule(&computation.free));
+    findings.push(other_rule(&computation.free));
     findings.extend(computation.cases.iter().filter_map(by_the_papers_method));
-    Ok(Artefact {
-        findings,
-        text: text(&computation),
-        tables: vec![table(&computation)],
-        pictures: vec![picture(&computation)?],
-        sheets: sheets(&computation),
-    })
+    output::artefact(&computation, findings)
 }
 
 /// Nearby starts of each case.
@@ -106,14 +106,14 @@ fn compute(study: &Study<'_>) -> Result<Computation, PaperError> {
     let coarse = ensemble::nudges(stepped_starts, STEPPED_NUDGE);
     let mut cases = Vec::new();
     for printed in &PRINTED {
-        let mut case = computed(study, printed, study.case(printed.case)?, &nudges)?;
+        let mut case = computed(study, printed, Study::case(printed.case)?, &nudges)?;
         if !matches!(printed.motion, Motion::Damped(_)) {
             case.stepped = stepped(study, printed, &coarse)?;
         }
         cases.push(case);
     }
     let rule = Setting::new("initial.outsideGap", "free");
-    let free = study.case("fig12")?.into_iter().chain([rule]).collect();
+    let free = Study::case("fig12")?.into_iter().chain([rule]).collect();
     let free = computed(study, &PRINTED[2], free, &nudges)?;
     let pooled = cases.iter().filter(|case| case.is_chaotic()).flat_map(|case| case.values.iter().copied());
     let pooled = Ensemble::new(pooled.collect());
@@ -147,15 +147,7 @@ fn stepped(study: &Study<'_>, printed: &Printed, nudges: &[f64]) -> Result<Optio
 
 fn finding(case: &Computed, pooled: &Ensemble) -> Finding {
     let (verdict, reason) = judge(case, pooled);
-    Finding {
-        place: format!("Table 2, Figure {}", case.printed.number),
-        quantity: "<U>, Eq. (15)".to_owned(),
-        unit: "V/s".to_owned(),
-        paper: Some(case.printed.gain),
-        videg: case.own,
-        verdict,
-        reason,
-    }
+    case.finding("", "<U>, Eq. (15)", case.own).printed(case.printed.gain).judged(verdict).reason(reason)
 }
 
 fn judge(case: &Computed, pooled: &Ensemble) -> (Verdict, String) {
@@ -193,39 +185,22 @@ fn judge_chaotic(paper: f64, nearby: &Ensemble, pooled: &Ensemble) -> (Verdict, 
 }
 
 /// Figure 12 under the rule that is not the default.
-fn other_rule(free: &Computed) -> Vec<Finding> {
+fn other_rule(free: &Computed) -> Finding {
     let [low, high] = free.nearby.range();
-    let reason = format!(
+    free.finding(", initial.outsideGap = free", "<U>, Eq. (15)", free.own).reason(format!(
         "the other reading of a start outside the gap, another motion: {} nearby starts give {low:.1} to {high:.1} V/s",
         free.nearby.len()
-    );
-    vec![Finding {
-        place: "Table 2, Figure 12, initial.outsideGap = free".to_owned(),
-        quantity: "<U>, Eq. (15)".to_owned(),
-        unit: "V/s".to_owned(),
-        paper: None,
-        videg: free.own,
-        verdict: Verdict::Beyond,
-        reason,
-    }]
+    ))
 }
 
 /// Whether the paper's way of stepping explains its value.
 fn by_the_papers_method(case: &Computed) -> Option<Finding> {
     let stepped = case.stepped.as_ref()?;
-    let [low, high] = stepped.range();
-    let paper = case.printed.gain;
-    Some(Finding {
-        place: format!("Table 2, Figure {}", case.printed.number),
-        quantity: "<U> by the paper's stepping, median of nearby starts".to_owned(),
-        unit: "V/s".to_owned(),
-        paper: None,
-        videg: stepped.quantile(0.5),
-        verdict: Verdict::Beyond,
-        reason: format!(
-            "{} starts nudged by up to {STEPPED_NUDGE:e} m/s give {low:.0} to {high:.0} V/s; below {paper}: {}",
-            stepped.len(),
-            stepped.below(paper)
-        ),
-    })
+    let ([low, high], paper) = (stepped.range(), case.printed.gain);
+    let quantity = "<U> by the paper's stepping, median of nearby starts";
+    Some(case.finding("", quantity, stepped.quantile(0.5)).reason(format!(
+        "{} starts nudged by up to {STEPPED_NUDGE:e} m/s give {low:.0} to {high:.0} V/s; below {paper}: {}",
+        stepped.len(),
+        stepped.below(paper)
+    )))
 }

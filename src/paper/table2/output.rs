@@ -1,9 +1,10 @@
 //! Table 2 as words, table, picture and data.
 
-use super::ensemble::{Ensemble, NUDGE};
-use super::table2::{Computation, Computed, STEPPED_NUDGE};
-use super::{PaperError, Picture, Sheet};
-use videg_report::{Column, Figure, Panel, Series, Style, Table};
+use super::{Computation, Computed, STEPPED_NUDGE};
+use crate::paper::PaperError;
+use crate::paper::artefact::{Artefact, Finding, Picture, Sheet, table};
+use crate::paper::ensemble::{Ensemble, NUDGE};
+use videg_report::{Figure, Panel, Series, Style, Table};
 
 /// Where the free start of Figure 12 stands on the axis of figures.
 const FREE: f64 = 12.5;
@@ -15,7 +16,18 @@ const PLACES: [(f64, &str); 7] =
 /// How far the paper's value and ours stand beside the bars of nearby starts.
 const BESIDE: f64 = 0.1;
 
-pub(super) fn text(computation: &Computation) -> Vec<String> {
+/// All of the table but its findings.
+pub(super) fn artefact(computation: &Computation, findings: Vec<Finding>) -> Result<Artefact, PaperError> {
+    Ok(Artefact {
+        findings,
+        text: text(computation),
+        tables: vec![cases(computation)],
+        pictures: vec![picture(computation)?],
+        sheets: vec![statistics(computation), nearby(computation)],
+    })
+}
+
+fn text(computation: &Computation) -> Vec<String> {
     let Computation { nudges, cases, pooled, .. } = computation;
     let shares = cases.iter().filter(|case| case.is_chaotic()).map(|case| {
         let (number, paper, own) = (case.printed.number, case.printed.gain, &case.nearby);
@@ -23,9 +35,9 @@ pub(super) fn text(computation: &Computation) -> Vec<String> {
     });
     vec![
         format!(
-            "With r = 1 nothing is damped, and a start that differs by {NUDGE:e} m/s takes another course long before \
-             the averaging window begins. Each case is therefore computed {} more times with the ball's velocity \
-             nudged by up to that much, always by the same numbers. Of the chaotic cases {}.",
+            "With r = 1 nothing is damped, and starts that differ by {NUDGE:e} m/s have separated long before the averaging \
+             window begins. Each case is therefore computed {} more times with the ball's velocity nudged by up to that \
+             much, always by the same numbers. Of the chaotic cases {}.",
             nudges.len(),
             shares.collect::<Vec<_>>().join(", "),
         ),
@@ -40,7 +52,7 @@ pub(super) fn text(computation: &Computation) -> Vec<String> {
     ]
 }
 
-/// Of values of the paper below the 5 % quantile: how likely they are, and what does not explain them.
+/// Values of the paper below the 5 % quantile: their probability, and what does not explain them.
 fn low_values(computation: &Computation) -> String {
     let Computation { cases, pooled, .. } = computation;
     let chaotic = || cases.iter().filter(|case| case.is_chaotic());
@@ -48,66 +60,62 @@ fn low_values(computation: &Computation) -> String {
     let Some(highest) = low.iter().copied().reduce(f64::max) else { return String::new() };
     let share = pooled.below(highest) as f64 / pooled.len() as f64;
     let (count, draws) = (low.len(), chaotic().count());
-    let chance = at_least(count, draws, share);
+    let probability = at_least(count, draws, share);
     let stepped = chaotic().filter_map(|case| case.stepped.as_ref()).flat_map(|stepped| stepped.values().to_vec());
     let stepped = Ensemble::new(stepped.collect());
     let below = low.iter().map(|gain| format!("{} of {} lie below {gain}", stepped.below(*gain), stepped.len()));
     format!(
-        "That {count} of the paper's {draws} values stand as low as {highest} or lower has a chance of {:.2} %, which \
-         nothing here explains. The paper's own stepping does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied where a step ends beyond the \
-         membrane, starts nudged by up to {STEPPED_NUDGE:e} m/s have a median of {:.0} V/s, and {}. The voltages do \
-         not either: the same formulas give Figure 14 to within its last digit.",
-        100.0 * chance,
+        "{count} of the paper's {draws} values are {highest} V/s or lower. By chance this has a probability of {:.2} %; we \
+         found no explanation. The paper's own stepping does not explain it: by Runge-Kutta at 1e-5 s, Eq. (11) applied \
+         where a step ends beyond the membrane, starts nudged by up to {STEPPED_NUDGE:e} m/s have a median of {:.0} V/s, \
+         and {}. The voltages do not either: the same formulas give Figure 14 to within its last digit.",
+        100.0 * probability,
         stepped.quantile(0.5),
         below.collect::<Vec<_>>().join(" and "),
     )
 }
 
-/// Chance of at least `count` hits in so many independent `draws`, each with the chance `share`.
+/// Probability of at least `count` hits in so many independent `draws`, each with the probability `share`.
 fn at_least(count: usize, draws: usize, share: f64) -> f64 {
     let ways = |hits: usize| (0..hits).fold(1.0, |ways, k| ways * (draws - k) as f64 / (k + 1) as f64);
     (count..=draws).map(|hits| ways(hits) * share.powf(hits as f64) * (1.0 - share).powf((draws - hits) as f64)).sum()
 }
 
-pub(super) fn table(computation: &Computation) -> Table {
-    let columns = [
-        Column::words("figure"),
-        Column::numbers("paper (V/s)"),
-        Column::numbers("videg (V/s)"),
-        Column::numbers("deviation (%)"),
-        Column::numbers("nearby starts: mean"),
-        Column::numbers("5 %"),
-        Column::numbers("95 %"),
-        Column::numbers("lowest"),
-        Column::numbers("highest"),
-        Column::numbers("below the paper's"),
-        Column::numbers("paper's stepping: median"),
+fn cases(computation: &Computation) -> Table {
+    let numbers = [
+        "paper (V/s)",
+        "videg (V/s)",
+        "deviation (%)",
+        "nearby starts: mean",
+        "5 %",
+        "95 %",
+        "lowest",
+        "highest",
+        "below the paper's",
+        "paper's stepping: median",
     ];
     let row = |name: String, case: &Computed| {
-        let ensemble = &case.nearby;
-        let [low, high] = ensemble.range();
+        let nearby = &case.nearby;
+        let [low, high] = nearby.range();
         let stepped = case.stepped.as_ref().map_or_else(String::new, |stepped| format!("{:.0}", stepped.quantile(0.5)));
-        let mut cells = vec![
-            name,
-            format!("{:.0}", case.printed.gain),
-            format!("{:.2}", case.own),
-            format!("{:+.3}", 100.0 * case.deviation()),
-        ];
-        cells.extend(
-            [ensemble.mean(), ensemble.quantile(0.05), ensemble.quantile(0.95), low, high]
-                .map(|value| format!("{value:.1}")),
-        );
-        cells.extend([format!("{} of {}", ensemble.below(case.printed.gain), ensemble.len()), stepped]);
-        cells
+        let (gain, deviation) = (case.printed.gain, 100.0 * case.deviation());
+        let head = [name, format!("{gain:.0}"), format!("{:.2}", case.own), format!("{deviation:+.3}")];
+        let middle = [nearby.mean(), nearby.quantile(0.05), nearby.quantile(0.95), low, high];
+        let tail = [format!("{} of {}", nearby.below(gain), nearby.len()), stepped];
+        head.into_iter().chain(middle.map(|value| format!("{value:.1}"))).chain(tail).collect::<Vec<_>>()
     };
     let mut rows: Vec<_> = computation.cases.iter().map(|case| row(case.printed.number.to_string(), case)).collect();
     rows.insert(3, row("12, started free".to_owned(), &computation.free));
-    rows.into_iter().fold(Table::new(columns), Table::row)
+    rows.into_iter().fold(table("figure", numbers), Table::row)
 }
 
-pub(super) fn sheets(computation: &Computation) -> Vec<Sheet> {
-    let all = || computation.cases.iter().map(|case| (case, false)).chain([(&computation.free, true)]);
-    let statistics = [
+/// All cases, and whether the ball starts free.
+fn all(computation: &Computation) -> impl Iterator<Item = (&Computed, bool)> {
+    computation.cases.iter().map(|case| (case, false)).chain([(&computation.free, true)])
+}
+
+fn statistics(computation: &Computation) -> Sheet {
+    let columns = [
         "figure",
         "started free (1 yes)",
         "paper (V/s)",
@@ -130,20 +138,17 @@ pub(super) fn sheets(computation: &Computation) -> Vec<Sheet> {
         let tail = [of.below(paper) as f64, of.len() as f64, stepped];
         head.into_iter().chain(quantiles).chain(tail).collect()
     };
-    let summary = Sheet {
-        name: "table2".to_owned(),
-        columns: statistics.map(str::to_owned).to_vec(),
-        rows: all().map(row).collect(),
-    };
-    let names = all().map(|(case, free)| format!("{}{} (V/s)", case.printed.case, if free { " free" } else { "" }));
-    let values = |index: usize| all().map(move |(case, _)| case.values[index]);
-    let starts = computation.nudges.iter().enumerate();
-    let nearby = Sheet {
-        name: "table2-nearby".to_owned(),
-        columns: std::iter::once("nudge of the ball's velocity (m/s)".to_owned()).chain(names).collect(),
-        rows: starts.map(|(index, nudge)| std::iter::once(*nudge).chain(values(index)).collect()).collect(),
-    };
-    vec![summary, nearby]
+    Sheet::new("table2", columns, all(computation).map(row))
+}
+
+fn nearby(computation: &Computation) -> Sheet {
+    let heading =
+        |(case, free): (&Computed, bool)| format!("{}{} (V/s)", case.printed.case, if free { " free" } else { "" });
+    let columns = std::iter::once("nudge of the ball's velocity (m/s)".to_owned()).chain(all(computation).map(heading));
+    let rows = computation.nudges.iter().enumerate().map(|(index, nudge)| {
+        std::iter::once(*nudge).chain(all(computation).map(|(case, _)| case.values[index])).collect()
+    });
+    Sheet::new("table2-nearby", columns, rows)
 }
 
 type Points = Vec<(f64, f64)>;
@@ -212,7 +217,7 @@ impl Curves {
     }
 }
 
-pub(super) fn picture(computation: &Computation) -> Result<Picture, PaperError> {
+fn picture(computation: &Computation) -> Result<Picture, PaperError> {
     let chaotic = || computation.cases.iter().filter(|case| case.is_chaotic());
     let others = || computation.cases.iter().filter(|case| !case.is_chaotic());
     let overview = Overview::new(computation);
@@ -234,5 +239,5 @@ pub(super) fn picture(computation: &Computation) -> Result<Picture, PaperError> 
          Figure 10. (d) As (b) by the paper's method, Runge-Kutta of fourth order at 1e-5 s, with nudges of up to \
          {STEPPED_NUDGE:e} m/s. A few starts of (b) and (d) lie outside.",
     );
-    Ok(Picture::new("table2", &figure.caption(caption.clone()), caption)?)
+    Picture::new("table2", &figure.caption(caption.clone()), caption)
 }
