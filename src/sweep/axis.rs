@@ -21,10 +21,6 @@ enum Values {
 
 impl Axis {
     /// What `vary` says of a variable of `description`, for a `design` with this `seed`.
-    ///
-    /// # Errors
-    /// No such variable, or none that can be set; values of another type; a range without a count in a grid, or with
-    /// one elsewhere; a variable no value of which lies in its bounds.
     pub fn new(description: &ModelDescription, vary: &Vary, design: Design, seed: u64) -> Result<Self, SweepError> {
         let name = &vary.name;
         let bad = |reason: String| SweepError::option("vary", name, reason);

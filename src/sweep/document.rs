@@ -1,7 +1,11 @@
 //! The document `sweep.json`: everything that decides the results of a sweep. Behind it stand their checksums once they are
 //! complete (`sums.rs`).
 
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use super::column::Column;
@@ -9,6 +13,9 @@ use super::times::Times;
 use super::{Design, Vary};
 use crate::scenario::Setting;
 use fmu_import::Bounds;
+
+/// Name of the document in a folder of results.
+pub(super) const DOCUMENT: &str = "sweep.json";
 
 /// The document `sweep.json`: the same bytes for the same sweep.
 #[derive(Serialize)]
@@ -72,6 +79,62 @@ impl Document<'_> {
         // Numbers, texts and lists of them: nothing that JSON cannot say.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
+}
+
+/// Key of the checksums in the file.
+const RESULTS: &str = "results";
+
+/// Length and checksum of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Sum {
+    pub bytes: u64,
+    pub sha256: String,
+}
+
+/// By the names of the files.
+pub(super) type Sums = BTreeMap<String, Sum>;
+
+/// JSON whose keys keep their order.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Ordered {
+    Object(IndexMap<String, Ordered>),
+    List(Vec<Ordered>),
+    Leaf(Value),
+}
+
+type Object = IndexMap<String, Ordered>;
+
+fn written(document: &Object) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(document).map(|text| text + "\n")
+}
+
+/// The document in `text` without checksums: what decides the results. A text that is none stays as it is.
+pub(super) fn identity(text: &str) -> String {
+    let without = || {
+        let mut document: Object = serde_json::from_str(text).ok()?;
+        document.shift_remove(RESULTS)?;
+        written(&document).ok()
+    };
+    without().unwrap_or_else(|| text.to_owned())
+}
+
+/// The document in `text` with these checksums at its end.
+pub(super) fn with_sums(text: &str, sums: &Sums) -> serde_json::Result<String> {
+    let mut document: Object = serde_json::from_str(text)?;
+    document.shift_remove(RESULTS);
+    document.insert(RESULTS.to_owned(), serde_json::from_value(serde_json::to_value(sums)?)?);
+    written(&document)
+}
+
+/// The checksums in `text`.
+pub(super) fn sums(text: &str) -> serde_json::Result<Sums> {
+    #[derive(Deserialize)]
+    struct Kept {
+        #[serde(default)]
+        results: Sums,
+    }
+    serde_json::from_str::<Kept>(text).map(|kept| kept.results)
 }
 
 /// SHA-256 of `content`, in hexadecimal digits.

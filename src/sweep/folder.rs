@@ -1,17 +1,16 @@
-//! Whose a folder of results is: its document says of which sweep, and results of no other stand beside it.
+//! Checks which sweep owns a folder of results: its document says so, and results of no other sweep stand beside it.
 
-use std::fs::File;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::differences::{Difference, told};
+use super::document::{DOCUMENT, identity};
+use super::files::{remove, rename, write_synced};
 use super::unfinished::{Unfinished, complete_name, unfinished};
-use super::{Shard, SweepError, sums, table};
-use videg_system::atomic_file::{self, LockError, Part, partial};
+use super::{Shard, SweepError, table};
+use videg_system::atomic_file::partial;
 use videg_system::input;
 
-/// Name of the document in a folder of results.
-pub(super) const DOCUMENT: &str = "sweep.json";
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
 /// What to do about a folder of another sweep.
@@ -19,9 +18,6 @@ const WAY_OUT: &str = "type the command with another --output to keep both, or w
 
 /// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With
 /// `fresh` whatever was there goes.
-///
-/// # Errors
-/// Results of another sweep; results that another process is writing; a refusal of the file system.
 pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> Result<Unfinished, SweepError> {
     check(folder, document, path, fresh)?;
     let results = Unfinished::take(path)?;
@@ -82,7 +78,7 @@ fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError 
 fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     let path = folder.join(DOCUMENT);
     match input::read_text(&path) {
-        Ok(there) => Ok(Some(sums::identity(&there))),
+        Ok(there) => Ok(Some(identity(&there))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(SweepError::file("read", &path)(error)),
     }
@@ -101,9 +97,6 @@ fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
 }
 
 /// Writes the document beside `results`, which the caller has locked, unless it is there.
-///
-/// # Errors
-/// If another one is there by now; a refusal of the file system.
 pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> Result<(), SweepError> {
     let path = folder.join(DOCUMENT);
     // Under a name of its own first, so that a reader never sees half of it.
@@ -124,44 +117,10 @@ pub(super) fn write_document(folder: &Path, document: &str, results: &Path) -> R
     check_document(folder, document)
 }
 
-/// Writes a new file at `path`, forced to the disk. What stands there goes: it is of an attempt that was killed, or a link
-/// through which another file would be written. Of what could not be written nothing stays.
-pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<Part> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    let (mut file, part) = Part::begin(|| File::create_new(path).map(|file| (file, path.to_owned())))?;
-    let written = file.write_all(content).and_then(|()| file.sync_all());
-    written.map(|()| part).inspect_err(|_| drop(std::fs::remove_file(path)))
-}
-
-/// Gives what was written at `part` its name, or removes it.
-pub(super) fn rename(part: &Path, path: &Path) -> Result<(), SweepError> {
-    let renamed = std::fs::rename(part, path).inspect_err(|_| drop(std::fs::remove_file(part)));
-    renamed.map_err(SweepError::file("write", path))
-}
-
-/// Opens `part`, which no other process has open to write.
-pub(super) fn lock(part: &Path) -> Result<File, SweepError> {
-    atomic_file::lock(part).map_err(|error| match error {
-        LockError::Open(cause) => SweepError::file("open", part)(cause),
-        LockError::Busy => SweepError::Locked { path: part.to_owned() },
-        LockError::Lock(cause) => SweepError::file("lock", part)(cause),
-    })
-}
-
-/// Removes a file, which need not be there.
-pub(super) fn remove(path: &Path) -> Result<(), SweepError> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(SweepError::file("remove", path)(error)),
-        _ => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs;
+    use std::io::Write as _;
 
     use super::*;
 

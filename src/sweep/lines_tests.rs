@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use super::column::Type;
-use super::folder::{DOCUMENT, RESULTS};
+use super::document::DOCUMENT;
+use super::folder::RESULTS;
 use super::lines::LONGEST;
 use super::plan::Results;
 use super::record::{Found, Record};

@@ -5,11 +5,11 @@ use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::differences::{Difference, told};
-use super::document::Kept;
-use super::folder::{self, DOCUMENT, RESULTS};
+use super::document::{self, DOCUMENT, Kept};
+use super::folder::{self, RESULTS};
 use super::run::Report;
 use super::unfinished::Unfinished;
-use super::{Shard, SweepError, column, lines, sums, table};
+use super::{Shard, SweepError, column, files, lines, sums, table};
 use videg_system::atomic_file::{self, Part};
 use videg_system::input;
 
@@ -57,7 +57,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
 fn leave(output: &Path, results: Unfinished, is_new: bool) {
     // Why it failed is what the user is told; a document without results is in nobody's way but that of another sweep.
     if results.discard().is_ok() && is_new {
-        let _ = folder::remove(&output.join(DOCUMENT));
+        let _ = files::remove(&output.join(DOCUMENT));
     }
 }
 
@@ -66,7 +66,7 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
     let mut first = None;
     for folder in folders {
         let path = folder.join(DOCUMENT);
-        let text = sums::identity(&input::read_text(&path).map_err(SweepError::file("read", &path))?);
+        let text = document::identity(&input::read_text(&path).map_err(SweepError::file("read", &path))?);
         match &first {
             None => first = Some(text),
             Some(first) if *first == text => {}

@@ -14,12 +14,14 @@ mod document;
 mod engine;
 mod error;
 mod file;
+mod files;
 mod folder;
 mod lines;
 #[cfg(test)]
 mod lines_tests;
 mod merge;
 mod plan;
+mod points;
 mod random;
 mod record;
 mod run;

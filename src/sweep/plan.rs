@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use super::axis::Axis;
 use super::column::{self, Column, Type};
-use super::design::{MAX_RUNS, Points};
 use super::document::Document;
 use super::lines::LONGEST;
+use super::points::{MAX_RUNS, Points};
 use super::seeds::{self, Asked, Seeds};
 use super::times::Times;
 use super::{Design, SweepError, Vary};

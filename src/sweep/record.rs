@@ -55,10 +55,6 @@ pub(super) fn range(sweep: &Sweep, shard: Option<Shard>) -> Range<u64> {
 
 impl Record {
     /// Opens the results of `shard` of `sweep` in `folder`; with `fresh` whatever was there goes.
-    ///
-    /// # Errors
-    /// Results of another sweep; results that another process is writing; whole lines that are not those of the runs due; a
-    /// refusal of the file system.
     pub fn open(folder: &Path, sweep: &Sweep, shard: Option<Shard>, fresh: bool) -> Result<Found, SweepError> {
         std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
         let path = results_path(folder, shard);
@@ -98,9 +94,6 @@ impl Record {
     }
 
     /// Adds the lines of the runs that are due.
-    ///
-    /// # Errors
-    /// If they cannot be written; those before stay.
     pub fn append(&mut self, lines: &[Vec<u8>]) -> Result<(), SweepError> {
         if lines.is_empty() {
             return Ok(());
@@ -124,17 +117,11 @@ impl Record {
     }
 
     /// Forces what is there to the disk.
-    ///
-    /// # Errors
-    /// If the disk refuses.
     pub fn sync(&self) -> Result<(), SweepError> {
         self.results.file.sync_all().map_err(|cause| self.full(cause))
     }
 
     /// Gives the complete results of the sweep of `document` their name.
-    ///
-    /// # Errors
-    /// If by now the folder is that of another sweep, or the file system refuses.
     pub fn finish(mut self, document: &str) -> Result<(), SweepError> {
         self.sync()?;
         let folder = self.path.parent().unwrap_or(Path::new(""));

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::folder;
+use super::document::DOCUMENT;
 use super::record::{self, Found, Record};
 use super::{Engine, Shard, Sweep, SweepError, sums, table};
 use crate::progress::Progress;
@@ -55,7 +55,7 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, observer: &dyn Progres
     let range = record::range(sweep, job.shard);
     let runs = range.end - range.start;
     let path = record::results_path(job.folder, job.shard);
-    let mut files = vec![path.clone(), job.folder.join(folder::DOCUMENT)];
+    let mut files = vec![path.clone(), job.folder.join(DOCUMENT)];
     let mut is_summed = false;
     let (done, failed, resumed_from) = match Record::open(job.folder, sweep, job.shard, job.fresh)? {
         Found::Complete { failed } => {

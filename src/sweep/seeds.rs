@@ -34,9 +34,6 @@ pub(super) struct Asked<'a> {
 
 impl Seeds {
     /// Seeds, if there are several samples, if the variable is named, or if there is noise whose seed nobody set.
-    ///
-    /// # Errors
-    /// If seeds are needed and the model has no variable for them, or the user gave it a value.
     pub fn new(description: &ModelDescription, asked: &Asked<'_>) -> Result<Option<Self>, SweepError> {
         let name = asked.variable.unwrap_or(SEED_VARIABLE);
         let given = asked.given.iter().find(|(given, _)| *given == name);

@@ -1,53 +1,26 @@
 //! Checksums of complete results. They stand in the document behind what decides the results, so that a file which changes
 //! later on a disk or on the way to another machine is found out.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::SweepError;
-use super::document::hexadecimal;
-use super::folder::{self, DOCUMENT};
+use super::document::{DOCUMENT, Sum, Sums, hexadecimal, sums, with_sums};
+use super::files::{lock, remove, rename, write_synced};
+use super::{SweepError, folder};
 use videg_system::atomic_file::{self, Part};
 
-/// What stands before the checksums. Nothing else in the document does: a text has no line breaks, and other keys are
-/// indented further or have other names.
-const KEY: &str = ",\n  \"results\": ";
-/// How a document ends.
-const END: &str = "\n}\n";
-/// Who has this file locked writes.
+/// The process that has this file locked writes the checksums.
 const LOCK: &str = "sweep.json.lock.part";
 /// How long to wait for another shard that writes its own.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What a file holds.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-struct Sum {
-    bytes: u64,
-    sha256: String,
-}
-
-/// By the names of the files.
-type Sums = BTreeMap<String, Sum>;
-
-/// The document without checksums: what decides the results.
-pub(super) fn identity(text: &str) -> String {
-    text.split_once(KEY).map_or_else(|| text.to_owned(), |(head, _)| format!("{head}{END}"))
-}
-
 /// That a complete file of results is as `sweep.json` beside it says, if that says anything of it; whether it does.
-///
-/// # Errors
-/// A file of another length or content; a refusal of the file system.
 pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
-    let document = path.with_file_name(DOCUMENT);
-    let text = std::fs::read_to_string(&document).map_err(SweepError::file("read", &document))?;
-    let Some(expected) = read(&document, &text)?.remove(&name(path)) else { return Ok(false) };
+    let Some(expected) = read(&path.with_file_name(DOCUMENT))?.remove(&name(path)) else { return Ok(false) };
     let found = Sum::of(path)?;
     let changed = |what: String| {
         let anew = if path.extension().is_some_and(|it| it == "parquet") {
@@ -68,10 +41,6 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
 }
 
 /// Adds the checksums of complete `results` to their `document` in the folder.
-///
-/// # Errors
-/// Another document in the folder; another process that does not come to an end with the same; a refusal of the file
-/// system.
 pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
     let Some(first) = results.first() else { return Ok(()) };
     // Before its turn: others wait for the end of that, and large results take long.
@@ -87,13 +56,9 @@ pub(super) fn clear(folder: &Path) {
 }
 
 /// Takes out the checksums of `results`, which are about to be replaced.
-///
-/// # Errors
-/// As [`record`].
 pub(super) fn forget(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
-    let (Some(first), path) = (results.first(), folder.join(DOCUMENT)) else { return Ok(()) };
-    let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
-    let sums = read(&path, &text)?;
+    let Some(first) = results.first() else { return Ok(()) };
+    let sums = read(&folder.join(DOCUMENT))?;
     if results.iter().all(|result| !sums.contains_key(&name(result))) {
         return Ok(());
     }
@@ -102,56 +67,42 @@ pub(super) fn forget(folder: &Path, document: &str, results: &[&Path]) -> Result
 
 /// Changes the checksums in the `document` of the folder, on behalf of the result at `first`.
 fn change(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut Sums)) -> Result<(), SweepError> {
-    // Only one that this program wrote ends so; others it does not write to.
-    let Some(head) = document.strip_suffix(END) else { return Ok(()) };
-    let lock = folder.join(LOCK);
-    let turn = wait_for(&lock)?;
-    let written = write(folder, (document, head), first, change);
-    let removed = folder::remove(&lock);
+    let own = folder.join(LOCK);
+    let turn = wait_for(&own)?;
+    let written = write(folder, document, first, change);
+    let removed = remove(&own);
     drop(turn);
     written.and(removed)
 }
 
-/// Writes the `document` of the folder, which begins with `head`, with other checksums.
-fn write(
-    folder: &Path,
-    (document, head): (&str, &str),
-    first: &Path,
-    change: impl FnOnce(&mut Sums),
-) -> Result<(), SweepError> {
+/// Writes the `document` of the folder with other checksums.
+fn write(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut Sums)) -> Result<(), SweepError> {
     let path = folder.join(DOCUMENT);
     folder::check_document(folder, document)?;
-    let text = std::fs::read_to_string(&path).map_err(SweepError::file("read", &path))?;
-    let mut sums = read(&path, &text)?;
+    let mut sums = read(&path)?;
     change(&mut sums);
-    let sums = serde_json::to_string_pretty(&sums).unwrap_or_default().replace('\n', "\n  ");
+    let text = with_sums(document, &sums).map_err(|error| SweepError::content(&path, error.to_string()))?;
     // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
     let part = first.with_extension("json.part");
-    let _begun = folder::write_synced(&part, format!("{head}{KEY}{sums}{END}").as_bytes())
-        .map_err(SweepError::file("write", &part))?;
-    folder::rename(&part, &path)
+    let _begun = write_synced(&part, text.as_bytes()).map_err(SweepError::file("write", &part))?;
+    rename(&part, &path)
 }
 
 /// Waits until no other shard of the folder writes its own: they take turns.
-fn wait_for(lock: &Path) -> Result<(File, Part), SweepError> {
+fn wait_for(own: &Path) -> Result<(File, Part), SweepError> {
     let end = Instant::now() + PATIENCE;
     loop {
-        match Part::begin(|| folder::lock(lock).map(|file| (file, lock.to_owned()))) {
+        match Part::begin(|| lock(own).map(|file| (file, own.to_owned()))) {
             Err(SweepError::Locked { .. }) if Instant::now() < end => std::thread::sleep(Duration::from_millis(10)),
             other => return other,
         }
     }
 }
 
-/// The checksums in the `text` of the document at `path`.
-fn read(path: &Path, text: &str) -> Result<Sums, SweepError> {
-    #[derive(Deserialize)]
-    struct Results {
-        #[serde(default)]
-        results: Sums,
-    }
-    let read = serde_json::from_str::<Results>(text);
-    read.map(|read| read.results).map_err(|error| SweepError::content(path, error.to_string()))
+/// The checksums in the document at `path`.
+fn read(path: &Path) -> Result<Sums, SweepError> {
+    let text = std::fs::read_to_string(path).map_err(SweepError::file("read", path))?;
+    sums(&text).map_err(|error| SweepError::content(path, error.to_string()))
 }
 
 fn name(path: &Path) -> String {
@@ -181,8 +132,8 @@ mod tests {
     use std::fs;
     use std::path::PathBuf;
 
-    use super::super::document::sha256;
     use super::*;
+    use crate::sweep::document::{identity, sha256};
 
     const DECIDES: &str = "{\n  \"seed\": 1,\n  \"sha256\": \"00\"\n}\n";
 

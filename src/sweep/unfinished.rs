@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::SweepError;
-use super::folder::{lock, remove};
+use super::files::{lock, remove};
 use videg_system::atomic_file::partial;
 
 /// Name of the results for `path` that are not complete and that nobody is writing.
@@ -32,9 +32,6 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Takes the results for `path`: those of a sweep that ended early, or new ones.
-    ///
-    /// # Errors
-    /// Another process that writes them; a refusal of the file system.
     pub fn take(path: &Path) -> Result<Self, SweepError> {
         let (part, kept) = (partial(path), unfinished(path));
         loop {
@@ -62,9 +59,6 @@ impl Unfinished {
     }
 
     /// Gives complete results their name.
-    ///
-    /// # Errors
-    /// A refusal of the file system.
     pub fn finish(&mut self) -> Result<(), SweepError> {
         std::fs::rename(self.part(), &self.path).map_err(SweepError::file("rename", &self.part()))?;
         self.has_ended = true;
@@ -72,9 +66,6 @@ impl Unfinished {
     }
 
     /// Removes what there is.
-    ///
-    /// # Errors
-    /// A refusal of the file system.
     pub fn discard(mut self) -> Result<(), SweepError> {
         self.has_ended = true;
         remove(&self.part()).and_then(|()| remove(&self.kept()))
