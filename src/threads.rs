@@ -231,7 +231,9 @@ mod tests {
             Ok::<_, ()>(number)
         };
         let take = |numbers: Vec<u64>| {
-            numbers.iter().for_each(|number| assert_eq!(*number, taken.fetch_add(1, Ordering::SeqCst)));
+            for number in numbers {
+                assert_eq!(number, taken.fetch_add(1, Ordering::SeqCst));
+            }
             Ok(())
         };
         in_order(0..count, sharing(8), work, take).unwrap();
@@ -276,8 +278,14 @@ mod tests {
     fn nobody_waits_for_a_result_that_does_not_come() {
         let ended = |panics_in_work: bool| {
             let fail = |here: bool| assert!(!here, "as expected");
-            let work = |number| Ok::<_, ()>(fail(panics_in_work && number == 3));
-            let take = |_| Ok(fail(!panics_in_work));
+            let work = |number| {
+                fail(panics_in_work && number == 3);
+                Ok::<_, ()>(())
+            };
+            let take = |_| {
+                fail(!panics_in_work);
+                Ok(())
+            };
             catch_unwind(|| in_order(0..1_000_000, sharing(1), work, take)).is_err()
         };
         assert!(ended(true) && ended(false));

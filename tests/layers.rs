@@ -108,15 +108,6 @@ const TO_MEND: &[&str] = &[
     "src/package/ssp/annotation.rs",
     "src/package/ssp/document.rs",
     "src/package/tools.rs",
-    "src/paper/motion.rs",
-    "src/paper/motion_findings.rs",
-    "src/paper/table2.rs",
-    "src/paper/table2_output.rs",
-    "src/sweep/axis.rs",
-    "src/sweep/design.rs",
-    "src/sweep/folder.rs",
-    "src/sweep/sums.rs",
-    "src/sweep/unfinished.rs",
 ];
 
 fn repository() -> &'static Path {

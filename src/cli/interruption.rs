@@ -36,8 +36,8 @@ fn is_ignored(signal: i32) -> bool {
     present.sa_sigaction == libc::SIG_IGN
 }
 
-/// How often it is looked whether a signal has come.
-const LOOK: Duration = Duration::from_millis(20);
+/// Polling interval for signals.
+const POLL: Duration = Duration::from_millis(20);
 
 /// The signal that has come, once signals are waited for.
 #[derive(Default, Clone)]
@@ -45,9 +45,9 @@ pub struct Interruption {
     /// Its number; before one has come, 0.
     signal: Arc<AtomicUsize>,
     has_come: Arc<AtomicBool>,
-    /// Whether somebody else sees to it.
+    /// Whether the caller ends by itself.
     is_deferred: Arc<AtomicBool>,
-    /// What is then to be said of what stays.
+    /// Notice about files that stay.
     notice: Arc<OnceLock<String>>,
 }
 
@@ -59,7 +59,7 @@ impl Interruption {
         let look = move || {
             loop {
                 watched.settle();
-                std::thread::sleep(LOOK);
+                std::thread::sleep(POLL);
             }
         };
         if std::thread::Builder::new().name("signals".into()).spawn(look).is_err() {
@@ -68,7 +68,7 @@ impl Interruption {
         self.register()
     }
 
-    /// From here on, the first signal puts its number down. The second one ends the process at once.
+    /// From here on the first signal stores its number, and the second one ends the process at once.
     fn register(&self) -> anyhow::Result<()> {
         for signal in signals() {
             let number = usize::try_from(signal).unwrap_or_default();
@@ -93,12 +93,12 @@ impl Interruption {
         self.signal.load(Ordering::Relaxed)
     }
 
-    /// What the user is told of the files that stay, if a signal ends the process. The first one counts.
+    /// Sets the notice about files that stay if a signal ends the process. The first one counts.
     pub fn tell(&self, notice: String) {
         let _ = self.notice.set(notice);
     }
 
-    /// Ends the process if a signal has come and nobody else sees to it: what failed for that reason is nothing to tell.
+    /// Ends the process if a signal has come, unless the caller ends by itself. Errors that the signal caused are not shown.
     pub fn settle(&self) {
         let Ok(signal @ 1..) = i32::try_from(self.signal()) else { return };
         if self.is_deferred.load(Ordering::Relaxed) {

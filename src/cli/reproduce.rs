@@ -13,7 +13,7 @@ use super::reproduce_report::{self as page, Chapter};
 use super::{Exit, crosscheck_files, crosscheck_solve, format, output, packaging, picture, reproduce_files as files};
 use crate::cosim::{Cosimulation, CsvRecorder, Options};
 use crate::ngspice::Ngspice;
-use crate::paper::{Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
+use crate::paper::{self, Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
 use crate::progress::Progress;
 use crate::scenario::Request;
 use fmu_import::{Fmu, nearest_name};
@@ -94,13 +94,10 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let mut book = Book { folder, chapters: Vec::new(), warnings: Vec::new(), solvers_disagree: false };
     let bar = ItemBar::new(wanted.count());
-    for item in ITEMS.iter().filter(|item| wanted.has(item.name)) {
-        let started = Instant::now();
-        bar.begin(item.name, item.title);
-        let artefact = (item.make)(&Study { fmu: &fmu, effort, observer: &bar })
-            .with_context(|| format!("cannot make {}", item.name))?;
+    let study = Study { fmu: &fmu, effort, observer: &bar };
+    for made in paper::reproduce(&study, |name| wanted.has(name)) {
+        let (item, artefact) = made?;
         book.add(item, artefact)?;
-        bar.end(item.name, started.elapsed());
     }
     if wanted.has(AUDIT) {
         during(&bar, AUDIT, "where the energy goes", || book.audit(&fmu))?;
@@ -223,7 +220,7 @@ impl Book<'_> {
     }
 
     fn json<'b>(&'b self, quick: bool, passed: bool, report: &Path) -> Output<'b> {
-        let row = |finding: &'b Finding| Row { finding, deviation: finding.paper.map(|p| finding.videg / p - 1.0) };
+        let row = |finding: &'b Finding| Row { finding, deviation: finding.deviation() };
         let made = |chapter: &'b Chapter| Made {
             name: chapter.name,
             title: chapter.title,

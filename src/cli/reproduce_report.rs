@@ -10,9 +10,9 @@ use videg_report::{self, Cell, Column, Drawing, Report, Section, Table, Tone};
 
 /// One table or figure in the report.
 pub struct Chapter {
-    /// What the command line calls it.
+    /// Its name on the command line.
     pub name: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
     /// Its numbers beside the paper's.
     pub findings: Vec<Finding>,

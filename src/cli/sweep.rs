@@ -14,7 +14,7 @@ use super::progress::RunBar;
 use super::run_output::file_list;
 use super::sweep_options::What;
 use super::{Exit, format, output};
-use crate::sweep::{self, BuiltIn, Design, Engine, Job, Report, Shard, Sweep, SweepError, SweepFile};
+use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, SweepFile};
 use fmu_import::Fmu;
 
 /// Arguments of the verb.
@@ -69,15 +69,22 @@ struct Merge {
     json: bool,
 }
 
-/// What `--json` says.
+/// Size of a sweep; all of the output of `--check --json`.
 #[derive(Serialize)]
-struct Output<'a> {
+struct Counts<'a> {
     case: &'a str,
     design: Design,
     points: u64,
     samples: u64,
     /// Runs of the sweep, or of the shard.
     runs: u64,
+}
+
+/// Output of `--json`.
+#[derive(Serialize)]
+struct Output<'a> {
+    #[serde(flatten)]
+    counts: Counts<'a>,
     failed: u64,
     /// Runs that were there from the beginning.
     resumed_from: u64,
@@ -87,18 +94,7 @@ struct Output<'a> {
     files: &'a [PathBuf],
 }
 
-/// What `--check --json` says.
-#[derive(Serialize)]
-struct Counts<'a> {
-    case: &'a str,
-    design: Design,
-    points: u64,
-    samples: u64,
-    /// Runs of the whole sweep.
-    runs: u64,
-}
-
-/// What `--json` says of a merge.
+/// Output of `merge --json`.
 #[derive(Serialize)]
 struct Merged<'a> {
     runs: u64,
@@ -110,12 +106,12 @@ struct Merged<'a> {
 /// Runs the verb.
 pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     match &arguments.verb {
-        Some(Verb::Merge(merge)) => put_together(merge),
-        None => carry_out(arguments, interruption),
+        Some(Verb::Merge(merge)) => run_merge(merge),
+        None => run_sweep(arguments, interruption),
     }
 }
 
-fn put_together(merge: &Merge) -> anyhow::Result<Exit> {
+fn run_merge(merge: &Merge) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
     let elapsed_s = started.elapsed().as_secs_f64();
@@ -127,12 +123,12 @@ fn put_together(merge: &Merge) -> anyhow::Result<Exit> {
     Ok(verdict(runs, failed))
 }
 
-/// A sweep none of whose runs came to anything has failed.
+/// A sweep has failed if all of its runs have.
 fn verdict(runs: u64, failed: u64) -> Exit {
     if runs > 0 && failed == runs { Exit::Failed } else { Exit::Passed }
 }
 
-fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
+fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
     let design = arguments.what.design.or(file.design).unwrap_or_default();
@@ -150,8 +146,8 @@ fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     }
     let engine = match fmu {
         Some(fmu) => Engine::Fmu(fmu),
-        // What the model itself does not offer goes through its FMU, with the same numbers.
-        None => match BuiltIn::new(&sweep)? {
+        // The FMU has variables that the model does not offer; the numbers are the same.
+        None => match BuiltIn::new(&sweep) {
             Some(built_in) if !arguments.isolation.is_forced() => Engine::BuiltIn(Box::new(built_in)),
             _ => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
         },
@@ -166,44 +162,43 @@ fn carry_out(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     Ok(Exit::Stopped(u8::try_from(interruption.signal())?))
 }
 
+impl<'a> Counts<'a> {
+    fn new(sweep: &'a Sweep, design: Design, runs: u64) -> Self {
+        Self { case: sweep.name(), design, points: sweep.points(), samples: sweep.samples(), runs }
+    }
+}
+
 fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Exit> {
-    let (points, samples, runs) = (sweep.points(), sweep.samples(), sweep.runs());
+    let counts = Counts::new(sweep, design, sweep.runs());
     if arguments.json {
-        let counts = Counts { case: sweep.name(), design, points, samples, runs };
         output::print_json(&serde_json::to_string_pretty(&counts)?)?;
     } else {
-        let name = sweep.name();
-        output::print(&format!("sweep {name}: {design} of {points} points, {samples} samples each: {runs} runs"))?;
+        let Counts { case, points, samples, runs, .. } = counts;
+        output::print(&format!("sweep {case}: {design} of {points} points, {samples} samples each: {runs} runs"))?;
     }
     Ok(Exit::Passed)
 }
 
 /// Runs the sweep, with progress.
 fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBool) -> Result<Report, SweepError> {
-    let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let job = Job {
-        folder: &arguments.output,
-        shard: arguments.shard,
-        jobs: arguments.jobs.map_or_else(cores, usize::from),
-        fresh: arguments.fresh,
-    };
+    let mut options = Options::new(sweep, engine, &arguments.output);
+    options.shard = arguments.shard;
+    options.jobs = arguments.jobs.map_or(options.jobs, usize::from);
+    options.fresh = arguments.fresh;
     let bar = RunBar::new(&format!("sweep {}", sweep.name()), stop);
-    let report = sweep::run(sweep, engine, &job, &bar);
+    let report = sweep::run(&options, &bar);
     bar.finish();
     report
 }
 
 fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, elapsed_s: f64) -> anyhow::Result<Exit> {
+    let Report { runs, failed, resumed_from, .. } = *report;
     let result = Output {
-        case: sweep.name(),
-        design,
-        points: sweep.points(),
-        samples: sweep.samples(),
-        runs: report.runs,
-        failed: report.failed,
-        resumed_from: report.resumed_from,
+        counts: Counts::new(sweep, design, runs),
+        failed,
+        resumed_from,
         elapsed_s,
-        rate_runs_per_s: (report.runs - report.resumed_from) as f64 / elapsed_s,
+        rate_runs_per_s: (runs - resumed_from) as f64 / elapsed_s,
         shard: arguments.shard.map(|shard| shard.to_string()),
         files: &report.files,
     };
@@ -212,17 +207,17 @@ fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, e
     } else {
         output::print(&text(&result))?;
     }
-    if report.failed > 0 {
-        let (failed, runs) = (report.failed, report.runs);
+    if failed > 0 {
         say(&format!("warning: {failed} of {runs} runs failed; the column error says why"));
     }
-    // Whether all runs of the sweep failed is seen when the shards are merged.
-    Ok(if arguments.shard.is_some() { Exit::Passed } else { verdict(report.runs, report.failed) })
+    // The merge of the shards finds out whether all runs of the sweep failed.
+    Ok(if arguments.shard.is_some() { Exit::Passed } else { verdict(runs, failed) })
 }
 
 fn text(result: &Output<'_>) -> String {
-    let Output { case, design, points, samples, runs, failed, resumed_from, elapsed_s, rate_runs_per_s, .. } = result;
-    let share = result.shard.as_ref().map_or_else(String::new, |shard| format!(", shard {shard}"));
+    let Output { counts, failed, resumed_from, elapsed_s, rate_runs_per_s, shard, files } = result;
+    let Counts { case, design, points, samples, runs } = counts;
+    let share = shard.as_ref().map_or_else(String::new, |shard| format!(", shard {shard}"));
     let work = if resumed_from == runs {
         "all of them were there already: nothing to do".to_owned()
     } else {
@@ -233,6 +228,6 @@ fn text(result: &Output<'_>) -> String {
     format!(
         "sweep {case}: {design} of {points} points, {samples} samples each{share}\n\
          {runs} runs, {failed} of them failed; {work}\n\n{}",
-        file_list(result.files)
+        file_list(files)
     )
 }

@@ -1,4 +1,4 @@
-//! What `videg sweep` is asked for, from options and sweep file.
+//! The sweep that a user asks for, from options and sweep file.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Design, Request, SweepFile, Times, Vary};
 use fmu_import::{Bounds, ModelDescription};
 
-/// What is swept. An option wins over the same key of the file.
+/// Options that describe a sweep. An option wins over the same key of the file.
 #[derive(Args, Default)]
 pub struct What {
     /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
@@ -102,7 +102,7 @@ impl What {
         })
     }
 
-    /// What the file says, and no option: of which file.
+    /// Keys of the file that no option overrides, with the path.
     fn in_file(&self, file: &SweepFile) -> Vec<(&'static str, PathBuf)> {
         let Some(path) = &file.case.path else { return Vec::new() };
         let keys = [
@@ -154,7 +154,7 @@ fn mechanical(description: &ModelDescription, scenario: &Scenario) -> anyhow::Re
 mod tests {
     use super::*;
 
-    /// What a sweep without options says of an FMU whose default experiment has these attributes.
+    /// Times of a sweep without options, of an FMU whose default experiment has these attributes.
     fn request(experiment: &str) -> Result<Times, String> {
         let attributes = "startTime=\"0\" stopTime=\"1e1\"";
         let text = include_str!("../../fmu/import/src/testdata/good.xml").replace(attributes, experiment);

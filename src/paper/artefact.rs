@@ -1,4 +1,4 @@
-//! What making a table or figure comes to.
+//! A table or figure that was made.
 
 use serde::{Serialize, Serializer};
 
@@ -11,7 +11,7 @@ use super::PaperError;
 pub struct Artefact {
     /// Its numbers beside the paper's: rows of the summary table.
     pub findings: Vec<Finding>,
-    /// What a reader should know, in paragraphs of plain text.
+    /// Explanations, in paragraphs of plain text.
     pub text: Vec<String>,
     /// Tables for the report.
     pub tables: Vec<Table>,
@@ -26,13 +26,13 @@ pub struct Artefact {
 pub struct Finding {
     /// Where the paper has it, e.g. `Table 2, Figure 14`.
     pub place: String,
-    /// What it is, e.g. `<U>, Eq. (15)`.
+    /// The quantity, e.g. `<U>, Eq. (15)`.
     pub quantity: String,
     /// Its unit.
     pub unit: String,
-    /// What the paper prints, if it prints a number.
+    /// The number of the paper, if it prints one.
     pub paper: Option<f64>,
-    /// What comes out here.
+    /// The number computed here.
     pub videg: f64,
     /// How the two go together.
     pub verdict: Verdict,
@@ -41,7 +41,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A number of which the paper says nothing.
+    /// A number that the paper does not have.
     pub(super) fn new(place: impl Into<String>, quantity: impl Into<String>, unit: &str, videg: f64) -> Self {
         let (place, quantity, unit) = (place.into(), quantity.into(), unit.to_owned());
         Self { place, quantity, unit, paper: None, videg, verdict: Verdict::Beyond, reason: String::new() }
@@ -65,6 +65,11 @@ impl Finding {
     /// With a reason.
     pub(super) fn reason(self, reason: impl Into<String>) -> Self {
         Self { reason: reason.into(), ..self }
+    }
+
+    /// videg / paper - 1, where the paper prints a number.
+    pub fn deviation(&self) -> Option<f64> {
+        self.paper.map(|paper| self.videg / paper - 1.0)
     }
 
     /// Whether the paper says something that it can be compared with.

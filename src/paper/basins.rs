@@ -1,19 +1,14 @@
 //! Beyond the paper: basins of attraction. Which motion a start leads to, over position and velocity of the ball.
 
 use super::artefact::table;
-use super::excitation::Cylinder;
-use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Sheet, Study};
+use super::excitation::{Cylinder, FORCE, FREQUENCY};
+use super::stroboscope::{Orbit, Start, Stroboscope, periods};
+use super::{Artefact, Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Figure, HeatMap, Panel, Scale, Table};
 
-/// `f_0`, Hz, and A, N, of Figures 11 to 15.
-const FREQUENCY: f64 = 2.0;
-const FORCE: f64 = 0.5;
 /// Periods that pass, and that are looked at then.
 const TRANSIENT: u32 = 200;
 const TAKEN: u32 = 32;
-/// Largest distance, m, after a recurrence.
-const TOLERANCE: f64 = 1e-6;
 /// Largest relative velocity at the start, m/s.
 const FASTEST: f64 = 0.5;
 /// Attractors that have a colour of their own.
@@ -45,9 +40,9 @@ struct Attractor {
 
 impl Attractor {
     fn of(orbit: &Orbit) -> Self {
-        let recurrence = orbit.recurrence(TOLERANCE);
-        let periods = recurrence.unwrap_or(TAKEN as usize);
-        let (gain, displacement) = (orbit.voltage_gain(periods), orbit.mean_displacement(periods));
+        let recurrence = orbit.recurrence();
+        let count = recurrence.unwrap_or(TAKEN as usize);
+        let (gain, displacement) = (orbit.voltage_gain(count), orbit.mean_displacement(count));
         Self { recurrence, gain, displacement }
     }
 
@@ -61,11 +56,7 @@ impl Attractor {
     }
 
     fn periods(&self) -> String {
-        match self.recurrence {
-            Some(1) => "1 period".to_owned(),
-            Some(n) => format!("{n} periods"),
-            None => "aperiodic".to_owned(),
-        }
+        periods(self.recurrence, "aperiodic")
     }
 
     fn label(&self) -> String {
@@ -87,10 +78,7 @@ struct Basins {
 
 impl Basins {
     fn new(study: &Study<'_>, cylinder: &Cylinder, restitution: f64) -> Result<Self, PaperError> {
-        let count = match study.effort {
-            Effort::Full => 100_u32,
-            Effort::Quick => 30,
-        };
+        let count = study.effort.of(100_u32, 30);
         let middle = |k: u32| 2.0 * (f64::from(k) + 0.5) / f64::from(count) - 1.0;
         let xs: Vec<f64> = (0..count).map(|k| middle(k) * cylinder.travel() / 2.0).collect();
         let ys: Vec<f64> = (0..count).map(|k| middle(k) * FASTEST).collect();

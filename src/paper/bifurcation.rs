@@ -1,15 +1,13 @@
 //! Bifurcation diagrams: how the motion changes along a parameter.
 
 use super::excitation::Cylinder;
-use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Effort, PaperError, Picture, Sheet, Study};
+use super::stroboscope::{Orbit, Start, Stroboscope, periods};
+use super::{PaperError, Picture, Sheet, Study};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
 const TRANSIENT: u32 = 200;
 const TAKEN: u32 = 60;
-/// Largest distance, m, after a recurrence.
-const TOLERANCE: f64 = 1e-6;
 
 /// A parameter and where it goes.
 pub struct Path {
@@ -19,20 +17,20 @@ pub struct Path {
     pub axis: &'static str,
     /// Ends.
     pub range: [f64; 2],
-    /// What is kept.
+    /// Parameters that stay the same.
     pub caption: &'static str,
     /// The saw-tooth start at a value of the parameter.
     pub start: fn(&Cylinder, f64) -> Start,
 }
 
 impl Path {
-    /// What stands on the axis, without its unit.
+    /// Symbol of the parameter, without its unit.
     pub fn symbol(&self) -> &str {
         self.axis.split(' ').next().unwrap_or_default()
     }
 }
 
-/// Distance, mm, of dots that nobody could tell apart.
+/// Distance, mm, of dots that look like one.
 const RESOLUTION: f64 = 0.05;
 
 /// Whether a dot of a cloud, which is sorted by x, is one with this to the eye.
@@ -53,10 +51,7 @@ pub struct Diagram {
 impl Diagram {
     /// Follows `path`.
     pub fn new(study: &Study<'_>, cylinder: &Cylinder, path: &Path) -> Result<Self, PaperError> {
-        let count = match study.effort {
-            Effort::Full => 400_u32,
-            Effort::Quick => 100,
-        };
+        let count = study.effort.of(400_u32, 100);
         let [from, to] = path.range;
         let xs: Vec<f64> = (0..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)).collect();
         let orbit = |start: &Start| -> Result<Orbit, PaperError> {
@@ -81,7 +76,7 @@ impl Diagram {
 
     /// Values at which two ways lead to different `<U>`, by more than a part in a thousand, though both are periodic.
     pub fn coexisting(&self) -> Vec<f64> {
-        let periodic = |orbit: &Orbit| orbit.recurrence(TOLERANCE).map(|n| orbit.voltage_gain(n));
+        let periodic = |orbit: &Orbit| orbit.recurrence().map(|n| orbit.voltage_gain(n));
         let differs = |index: usize| {
             let gains: Vec<f64> = self.ways.iter().filter_map(|orbits| periodic(&orbits[index])).collect();
             let [low, high] = [f64::min, f64::max].map(|pick| gains.iter().copied().reduce(pick).unwrap_or_default());
@@ -100,7 +95,7 @@ impl Diagram {
     pub fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {
         let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
         for (&x, orbit) in self.xs.iter().zip(self.ways.iter().flatten()) {
-            let recurrence = orbit.recurrence(TOLERANCE);
+            let recurrence = orbit.recurrence();
             match found.last_mut() {
                 Some(last) if last.2 == recurrence => last.1 = x,
                 _ => found.push((x, x, recurrence)),
@@ -120,12 +115,8 @@ impl Diagram {
         let spacing = self.xs.get(1).zip(self.xs.first()).map_or(0.0, |(b, a)| b - a);
         let long = self.stretches().into_iter().filter(|(from, to, _)| to - from > 2.5 * spacing);
         long.fold(Table::new(columns), |table, (from, to, recurrence)| {
-            let words = match recurrence {
-                Some(1) => "1 period".to_owned(),
-                Some(n) => format!("{n} periods"),
-                None => format!("more than {} periods: chaos, or a slow transient", TAKEN / 2),
-            };
-            table.row([format!("{from:.4}"), format!("{to:.4}"), words])
+            let never = format!("more than {} periods: chaos, or a slow transient", TAKEN / 2);
+            table.row([format!("{from:.4}"), format!("{to:.4}"), periods(recurrence, never)])
         })
     }
 
@@ -167,7 +158,7 @@ impl Diagram {
         Picture::new(path.name, &figure, caption)
     }
 
-    /// Dots to draw, mm: of those that nobody could tell apart, one.
+    /// Dots to draw, mm: one of those that look alike.
     fn cloud(&self, orbits: &[Orbit]) -> Vec<(f64, f64)> {
         let dots = |orbit: &Orbit| {
             let mut values: Vec<f64> =
@@ -185,7 +176,7 @@ impl Diagram {
         let columns = [path.axis, "way (1)", "displacement (m)", "velocity (m/s)", "<U> (V/s)", "recurrence (periods)"];
         let rows = self.ways.iter().zip([0.0, 1.0, 2.0]).flat_map(|(orbits, way)| {
             self.xs.iter().zip(orbits).flat_map(move |(&x, orbit)| {
-                let recurrence = orbit.recurrence(TOLERANCE);
+                let recurrence = orbit.recurrence();
                 let gain = orbit.voltage_gain(recurrence.unwrap_or(TAKEN as usize));
                 let taken = orbit.flashes.iter().take(recurrence.unwrap_or(usize::MAX));
                 let recurrence = recurrence.map_or(f64::NAN, |n| n as f64);

@@ -1,4 +1,4 @@
-//! Circuits driven by one run of the harvester: what they gain in a second.
+//! Circuits driven by one run of the harvester, and their mean power.
 
 use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
@@ -11,7 +11,7 @@ use crate::scenario::{Request, Setting};
 pub struct Drive {
     /// The case.
     pub case: &'static str,
-    /// What differs from it.
+    /// Settings that differ from it.
     pub settings: Vec<Setting>,
     /// Averaging window, s; the run ends with it.
     pub window: [f64; 2],
@@ -19,7 +19,7 @@ pub struct Drive {
     pub tolerance: f64,
 }
 
-/// What a [`Drive`] comes to.
+/// Results of a [`Drive`].
 #[derive(Debug, Clone)]
 pub struct Driven {
     /// Length of the window, s.
@@ -50,7 +50,7 @@ pub struct Power {
 }
 
 impl Power {
-    /// What a user gains: load - supply, W.
+    /// Net gain, load - supply, W.
     pub fn surplus(&self) -> f64 {
         self.load - self.supply
     }
@@ -154,7 +154,7 @@ impl Driven {
     }
 }
 
-/// A circuit of which the voltage of release and the load are to be chosen.
+/// A circuit with these values and defaults for the rest.
 pub fn circuit(topology: Topology, release: Release, voltage: f64, resistance: f64) -> Settings {
     let mut settings = Settings::default();
     settings.circuit.topology = topology;

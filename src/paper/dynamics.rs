@@ -1,13 +1,10 @@
 //! Beyond the paper: what the motion is like, by Poincare sections and bifurcation diagrams.
 
 use super::bifurcation::{Diagram, Path};
+use super::excitation::{Cylinder, FORCE, FREQUENCY};
 use super::stroboscope::Start;
-use super::{Artefact, Finding, PaperError, Study, excitation::Cylinder, poincare};
+use super::{Artefact, Finding, PaperError, Study, poincare};
 
-/// `f_0`, Hz.
-const FREQUENCY: f64 = 2.0;
-/// A, N, of Figures 11 to 15.
-const FORCE: f64 = 0.5;
 /// r of Figure 14.
 const RESTITUTION: f64 = 0.6;
 

@@ -1,4 +1,4 @@
-//! What keeps an item from being made.
+//! Errors of making an item.
 
 use crate::cosim::CosimError;
 use crate::scenario::ScenarioError;
@@ -8,6 +8,14 @@ use videg_report::ReportError;
 /// Why an item could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
+    /// An item.
+    #[error("cannot make {name}: {cause}")]
+    Item {
+        /// Its name.
+        name: &'static str,
+        /// Why.
+        cause: Box<PaperError>,
+    },
     /// The FMU.
     #[error(transparent)]
     Fmi(#[from] FmiError),

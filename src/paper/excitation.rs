@@ -5,6 +5,10 @@ use std::f64::consts::TAU;
 use super::{PaperError, Study};
 use crate::scenario::Setting;
 
+/// `f_0`, Hz, and A, N, of Figures 11 to 15.
+pub const FREQUENCY: f64 = 2.0;
+pub const FORCE: f64 = 0.5;
+
 /// The variable called `name` at `value`, to the last bit.
 pub fn set(name: &str, value: f64) -> Setting {
     Setting::new(name, format!("{value:?}"))

@@ -2,26 +2,23 @@
 
 use super::excitation::{Cylinder, nudge};
 use super::statistics::{Summary, rank_correlation};
-use super::{Artefact, Effort, Finding, PaperError, Picture, Run, Sheet, Study, Verdict, WINDOW};
+use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study, Verdict, WINDOW};
 use videg_report::{Figure, Panel, Series, Style};
 
 /// Nearby starts that are averaged.
-fn starts(effort: Effort) -> usize {
-    match effort {
-        Effort::Full => 20,
-        Effort::Quick => 5,
-    }
+fn starts(study: &Study<'_>) -> usize {
+    study.effort.of(20, 5)
 }
 
 /// One half of the figure.
 struct Half {
     /// `a` or `b`.
     letter: char,
-    /// What runs along the x axis, with its unit.
+    /// Quantity of the x axis, with its unit.
     axis: &'static str,
     /// Its values.
     xs: Vec<f64>,
-    /// What tells the curves apart: symbol, values, unit.
+    /// Parameter of the curves: symbol, values, unit.
     parameter: (&'static str, Vec<f64>, &'static str),
     /// gamma and `f_0`, Hz, from x and that.
     at: fn(f64, f64) -> (f64, f64),
@@ -36,7 +33,7 @@ struct Curve {
 /// Makes the figure.
 pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let cylinder = Cylinder::new(study)?;
-    let mut artefact = Artefact { text: text(starts(study.effort)), ..Artefact::default() };
+    let mut artefact = Artefact { text: text(starts(study)), ..Artefact::default() };
     let mut panels = Vec::new();
     for half in halves() {
         let curves = half.curves(study, &cylinder)?;
@@ -69,7 +66,7 @@ fn halves() -> [Half; 2] {
 
 impl Half {
     fn curves(&self, study: &Study<'_>, cylinder: &Cylinder) -> Result<Vec<Curve>, PaperError> {
-        let starts = starts(study.effort);
+        let starts = starts(study);
         let (symbol, parameters, unit) = &self.parameter;
         let points = parameters.iter().flat_map(|&parameter| self.xs.iter().map(move |&x| (self.at)(x, parameter)));
         let runs: Vec<Run> = points
@@ -103,7 +100,7 @@ impl Half {
     }
 }
 
-/// What is drawn of a curve: means, and their intervals.
+/// Means of a curve and their intervals.
 struct Drawn {
     means: Vec<(f64, f64)>,
     intervals: Vec<(f64, f64, f64)>,
@@ -164,7 +161,7 @@ fn finding(half: &Half, curve: &Curve) -> Finding {
         .reason(reason)
 }
 
-/// Neighbouring points of which the later lies lower, and the intervals do not overlap.
+/// Number of neighbouring points of which the later lies lower and the intervals do not overlap.
 fn falls(points: &[(f64, Summary)]) -> usize {
     points.windows(2).filter(|pair| pair[1].1.interval[1] < pair[0].1.interval[0]).count()
 }

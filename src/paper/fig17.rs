@@ -15,15 +15,8 @@ const INTENSITIES: [f64; 19] =
     [0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 64.0, 81.0, 100.0];
 /// D of the paper's smaller plots, which show a voltage pattern each.
 const PATTERNS: [f64; 2] = [1.0, 81.0];
-/// What the patterns show, s. The paper does not say which seconds its plots show.
+/// Window of the patterns, s. The paper does not give that of its plots.
 const SHOWN: [f64; 2] = [50.0, 60.0];
-/// Samples a point; the paper has 100.
-fn samples(effort: Effort) -> usize {
-    match effort {
-        Effort::Full => 100,
-        Effort::Quick => 10,
-    }
-}
 
 /// All samples of one D.
 struct Point {
@@ -52,7 +45,7 @@ impl Point {
 /// Makes the figure.
 pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let cylinder = Cylinder::new(study)?;
-    let count = samples(study.effort);
+    let count = study.effort.of(100, 10); // the paper has 100
     let settings = |point| (0..count).map(move |sample| settings(&cylinder, point, sample, count));
     let runs: Vec<Run> =
         (0..INTENSITIES.len()).flat_map(settings).map(|settings| Run { settings, window: WINDOW }).collect();
@@ -78,7 +71,7 @@ fn seed(point: usize, sample: usize) -> usize {
     1000 * point + sample + 1
 }
 
-/// What sample number `sample` of point number `point` sets. The starts are nudged as in Figure 16, so that the samples
+/// Settings of sample number `sample` of point number `point`. The starts are nudged as in Figure 16, so that the samples
 /// without noise are not one and the same run.
 fn settings(cylinder: &Cylinder, point: usize, sample: usize, count: usize) -> Vec<Setting> {
     let mut settings = cylinder.elastic(GAMMA, FREQUENCY, nudge(sample, count));

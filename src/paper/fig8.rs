@@ -21,7 +21,7 @@ const KINDS: [Kind; 3] = [
     Kind { topology: Topology::Isolated, release: Release::Storage, voltage: 2911.0, load: f64::INFINITY },
     Kind { topology: Topology::SharedNode, release: Release::Zener, voltage: 2000.0, load: 1e9 },
 ];
-/// What is in one panel of the picture.
+/// Panels of the picture.
 const PANELS: [(Topology, &str); 2] =
     [(Topology::Isolated, "(a) isolated membranes"), (Topology::SharedNode, "(b) the paper's circuit: shared node")];
 

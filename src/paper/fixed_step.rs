@@ -8,7 +8,7 @@ use videg_model::{Membrane, Parameters};
 /// The paper's time step, s (Section 4.2).
 pub(super) const STEP: f64 = 1e-5;
 
-/// What a window of a run comes to.
+/// Averages over a window of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Stepped {
     /// `<U>`, Eq. (15), V/s.
@@ -65,7 +65,7 @@ impl FixedStep {
         self.balls.first().map(|ball| [z - ball.position, v - ball.velocity])
     }
 
-    /// What a window, s, comes to for each ball.
+    /// Averages of each ball over a window, s.
     pub(super) fn run(mut self, [from, to]: [f64; 2]) -> Vec<Stepped> {
         self.advance(from);
         let before = self.balls.clone();

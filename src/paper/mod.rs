@@ -1,7 +1,7 @@
 //! Every table and figure of the paper, and what lies beyond it, computed through the harvester FMU.
 //!
-//! An [`Item`] is one table or figure, a file of this module each. It makes an [`Artefact`] with the [`Study`]: numbers
-//! beside the paper's ([`Finding`]), data ([`Sheet`]), pictures and words. The same items give the same bytes whenever
+//! An [`Item`] is one table or figure, a file of this module each. [`reproduce`] makes an [`Artefact`] of each with the
+//! [`Study`]: numbers beside the paper's ([`Finding`]), data ([`Sheet`]), pictures and words. The same items give the same bytes whenever
 //! they are made: runs are counted, not timed, and random numbers follow from a seed.
 
 mod artefact;
@@ -35,6 +35,8 @@ mod table2;
 mod table3;
 mod tuning;
 
+use std::time::Instant;
+
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
 pub use error::PaperError;
 pub use study::{Effort, Run, Study};
@@ -45,43 +47,58 @@ const WINDOW: [f64; 2] = [50.0, 100.0];
 /// Volume of the device of Table 3, cm^3 (Section 5.3).
 const VOLUME: f64 = 42.2;
 
+/// Makes a table or figure.
+pub type Make = fn(&Study<'_>) -> Result<Artefact, PaperError>;
+
 /// A table or figure that can be made.
+#[derive(Debug)]
 pub struct Item {
-    /// What the command line calls it, e.g. `fig14`.
+    /// Its name on the command line, e.g. `fig14`.
     pub name: &'static str,
-    /// What it is, e.g. `Figure 14`.
+    /// Its title, e.g. `Figure 14`.
     pub title: &'static str,
     /// Makes it.
-    pub make: fn(&Study<'_>) -> Result<Artefact, PaperError>,
+    pub make: Make,
+}
+
+/// Makes the items whose names are `wanted`, each when the iterator comes to it. The observer of the `study` hears of each.
+pub fn reproduce<'a>(
+    study: &'a Study<'_>,
+    wanted: impl Fn(&str) -> bool + 'a,
+) -> impl Iterator<Item = Result<(&'static Item, Artefact), PaperError>> + 'a {
+    ITEMS.iter().filter(move |item| wanted(item.name)).map(|item| {
+        let started = Instant::now();
+        study.observer.begin(item.name, item.title);
+        let artefact =
+            (item.make)(study).map_err(|cause| PaperError::Item { name: item.name, cause: Box::new(cause) })?;
+        study.observer.end(item.name, started.elapsed());
+        Ok((item, artefact))
+    })
 }
 
 /// All items, in the order of the report.
 pub const ITEMS: &[Item] = &[
-    Item { name: "table1", title: "Table 1: the stages of a membrane", make: table1::make },
-    Item { name: "table2", title: "Table 2: voltage gain", make: table2::make },
-    Item { name: "table3", title: "Table 3: power density", make: table3::make },
-    Item { name: "fig4", title: "Figure 4: force law", make: fig4::make },
-    Item { name: "fig7", title: "Figure 7: shape of the membrane", make: fig7::make },
-    Item { name: "fig8", title: "Figure 8(b): one harvesting cycle", make: fig8::make },
-    Item { name: "fig9", title: "Figure 9: no impact", make: |study| motion::make(study, &motion::FIG9) },
-    Item { name: "fig10", title: "Figure 10: saw-tooth motion", make: stability::make },
-    Item {
-        name: "fig11",
-        title: "Figure 11: saw-tooth start, A = 0.5 N",
-        make: |study| motion::make(study, &motion::FIG11),
-    },
-    Item {
-        name: "fig12",
-        title: "Figure 12: start outside the gap",
-        make: |study| motion::make(study, &motion::FIG12),
-    },
-    Item { name: "fig13", title: "Figure 13: zero start", make: |study| motion::make(study, &motion::FIG13) },
-    Item { name: "fig14", title: "Figure 14: r = 0.6", make: |study| motion::make(study, &motion::FIG14) },
-    Item { name: "fig15", title: "Figure 15: r = 0.3", make: |study| motion::make(study, &motion::FIG15) },
-    Item { name: "fig16", title: "Figure 16: amplitude and frequency", make: fig16::make },
-    Item { name: "fig17", title: "Figure 17: phase noise", make: fig17::make },
-    Item { name: "tuning", title: "Tuning of the circuit", make: tuning::make },
-    Item { name: "power", title: "Power density by Eq. (14) and by net gain", make: power::make },
-    Item { name: "dynamics", title: "Poincare sections and bifurcation diagrams", make: dynamics::make },
-    Item { name: "basins", title: "Basins of attraction", make: basins::make },
+    item("table1", "Table 1: the stages of a membrane", table1::make),
+    item("table2", "Table 2: voltage gain", table2::make),
+    item("table3", "Table 3: power density", table3::make),
+    item("fig4", "Figure 4: force law", fig4::make),
+    item("fig7", "Figure 7: shape of the membrane", fig7::make),
+    item("fig8", "Figure 8(b): one harvesting cycle", fig8::make),
+    item("fig9", "Figure 9: no impact", |study| motion::make(study, &motion::FIG9)),
+    item("fig10", "Figure 10: saw-tooth motion", stability::make),
+    item("fig11", "Figure 11: saw-tooth start, A = 0.5 N", |study| motion::make(study, &motion::FIG11)),
+    item("fig12", "Figure 12: start outside the gap", |study| motion::make(study, &motion::FIG12)),
+    item("fig13", "Figure 13: zero start", |study| motion::make(study, &motion::FIG13)),
+    item("fig14", "Figure 14: r = 0.6", |study| motion::make(study, &motion::FIG14)),
+    item("fig15", "Figure 15: r = 0.3", |study| motion::make(study, &motion::FIG15)),
+    item("fig16", "Figure 16: amplitude and frequency", fig16::make),
+    item("fig17", "Figure 17: phase noise", fig17::make),
+    item("tuning", "Tuning of the circuit", tuning::make),
+    item("power", "Power density by Eq. (14) and by net gain", power::make),
+    item("dynamics", "Poincare sections and bifurcation diagrams", dynamics::make),
+    item("basins", "Basins of attraction", basins::make),
 ];
+
+const fn item(name: &'static str, title: &'static str, make: Make) -> Item {
+    Item { name, title, make }
+}

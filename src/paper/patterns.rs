@@ -1,4 +1,4 @@
-//! What the paper points out in sequences of impacts, by rule.
+//! Patterns that the paper points out in sequences of impacts, by rule.
 
 use super::recording::Impact;
 

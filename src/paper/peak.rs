@@ -23,8 +23,8 @@ const OF_A_MEMBRANE: [[&str; 3]; 2] = [
     ["right.deflection", "right.capacitance", "right.areaRatio"],
 ];
 
-/// Whose largest impact makes stage 3 of Table 1, and when, s: the averages of the paper begin there, and twenty periods
-/// show all.
+/// The case whose largest impact makes stage 3 of Table 1, and the window, s: the averages of the paper begin there, and
+/// twenty periods show all.
 pub(super) const CASE: &str = "fig14";
 pub(super) const WHEN: [f64; 2] = [50.0, 60.0];
 

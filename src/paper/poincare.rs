@@ -1,17 +1,12 @@
 //! Poincare sections: the motion once a period, in the plane of relative displacement and velocity.
 
-use super::excitation::Cylinder;
+use super::excitation::{Cylinder, FORCE, FREQUENCY};
 use super::stroboscope::{Orbit, Start, Stroboscope};
-use super::{Effort, Finding, PaperError, Picture, Sheet, Study, Verdict, lyapunov};
+use super::{Finding, PaperError, Picture, Sheet, Study, Verdict, lyapunov};
 use videg_report::{Figure, Panel, Series, Style};
 
-/// `f_0`, Hz, and A, N, of the cases.
-const FREQUENCY: f64 = 2.0;
-const FORCE: f64 = 0.5;
 /// Periods that pass first: 100 s.
 const TRANSIENT: u32 = 200;
-/// Largest distance, m, after a recurrence.
-const TOLERANCE: f64 = 1e-6;
 
 /// A case of the paper.
 pub struct Section {
@@ -24,10 +19,7 @@ pub struct Section {
 
 /// The sections of the elastic and of the inelastic cases.
 pub fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
-    let many = match study.effort {
-        Effort::Full => 4000,
-        Effort::Quick => 400,
-    };
+    let many = study.effort.of(4000, 400);
     let cylinder = Cylinder::new(study)?;
     let cases = [
         ("fig13", "Figure 13, r = 1", 1.0, many),
@@ -53,7 +45,7 @@ pub fn picture(sections: &[Section]) -> Result<Picture, PaperError> {
         .columns(3)
         .width(1080.0);
     for (section, dots) in sections.iter().zip(&dots) {
-        let style = if section.orbit.recurrence(TOLERANCE).is_some() { Style::Markers } else { Style::Dots };
+        let style = if section.orbit.recurrence().is_some() { Style::Markers } else { Style::Dots };
         let panel = Panel::new(section.title, "z_M - z_m (mm)", "z_M' - z_m' (m/s)")
             .height(300.0)
             .series(Series::points("", dots).style(style));
@@ -76,7 +68,7 @@ pub fn findings(sections: &[Section]) -> Vec<Finding> {
 
 impl Section {
     fn finding(&self) -> Finding {
-        let comes_back = match self.orbit.recurrence(TOLERANCE) {
+        let comes_back = match self.orbit.recurrence() {
             Some(n) => format!("the motion comes back after {n} periods"),
             None => format!("the motion does not come back within {} periods", (self.orbit.flashes.len() - 1) / 2),
         };

@@ -19,7 +19,7 @@ const ELECTROMAGNETIC: f64 = 0.123;
 /// `U_in`, V, of all cases.
 const BIAS: f64 = 2000.0;
 
-/// What a circuit is called whose voltages the film stands.
+/// Name of the circuit whose voltages the film withstands.
 const BEARABLE: &str = "net gain, isolated, switch at what the film stands";
 /// Rows that are drawn, those whose voltages the film stands, and their names below the bars.
 const DRAWN: [(&str, &str); 3] = [("Eq. (14)", "Eq. (14)"), (NO_LOAD, "paper's circuit"), (BEARABLE, "switch")];
@@ -79,25 +79,26 @@ fn bearable_voltage(case: &str, ratio: f64) -> f64 {
         let area = (ratio * BIAS / voltage).sqrt().max(1.0);
         membrane.excesses(deflection(&membrane, area), voltage, 0.0).any(|excess| excess.limit == Limit::Field)
     };
-    let [mut low, mut high] = [BIAS, BIAS * ratio];
+    last([BIAS, BIAS * ratio], |voltage| !breaks_down(voltage))
+}
+
+/// The last value between `low` and `high` at which `is_below`, by bisection.
+fn last([mut low, mut high]: [f64; 2], is_below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if breaks_down(middle) { high = middle } else { low = middle }
+        if is_below(middle) { low = middle } else { high = middle }
     }
     low
 }
 
 /// Deflection, m, at which the area of `membrane` has grown by the factor `area`.
 fn deflection(membrane: &Membrane, area: f64) -> f64 {
-    let [mut low, mut high] = [0.0, membrane.radius()];
-    while membrane.area_ratio(high) < area {
+    let is_below = |deflection| membrane.area_ratio(deflection) < area;
+    let mut high = membrane.radius();
+    while is_below(high) {
         high *= 2.0;
     }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if membrane.area_ratio(middle) < area { low = middle } else { high = middle }
-    }
-    low
+    last([0.0, high], is_below)
 }
 
 /// The power of `case` in different circuits.
@@ -121,7 +122,7 @@ fn counts(study: &Study<'_>, case: &'static str) -> Result<Vec<Count>, PaperErro
     Ok(std::iter::once(eq14).chain(net).chain([lost]).collect())
 }
 
-/// What the membranes take from the ball, W: the FMU's own books of (1 - r^2) m v^2 / 2.
+/// Power that the membranes take from the ball, W: the FMU adds up (1 - r^2) m v^2 / 2.
 fn loss(study: &Study<'_>, case: &str) -> Result<f64, PaperError> {
     let mut instance = study.start(&Study::case(case)?)?;
     let [from, to] = WINDOW;

@@ -33,7 +33,7 @@ const EVENTS: [&str; 3] = ["impact.nextTime", "pulse.nextKnot", "impact.lastVelo
 /// of doubles at 100 s.
 const BEFORE: f64 = 1e-9;
 
-/// What holds at one time.
+/// Outputs at one time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     /// s.

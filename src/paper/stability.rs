@@ -1,5 +1,4 @@
-//! Figure 10 and whether its orbit lasts: multipliers, growth of small perturbations, and what the paper's stepping
-//! does.
+//! Figure 10 and the stability of its orbit: multipliers, growth of small perturbations, and the paper's stepping.
 
 use videg_model::Case;
 
@@ -50,7 +49,7 @@ impl Track {
     }
 }
 
-/// Everything that is said of the orbit.
+/// All results for the orbit.
 struct Stability {
     orbit: SawTooth,
     closed_form: Multipliers,

@@ -1,6 +1,4 @@
-//! What a sample says: mean with its interval of confidence, median, rank correlation, slope.
-
-use statrs::statistics::{Data, OrderStatistics as _, RankTieBreaker};
+//! Statistics of a sample: mean with its confidence interval, median, rank correlation, slope.
 
 use super::ensemble::Ensemble;
 
@@ -11,7 +9,7 @@ const SEED: u64 = 1;
 /// Standard errors on either side that 95 % of a normal distribution take.
 pub const TWO_SIDED: f64 = 1.96;
 
-/// A sample, summed up.
+/// Summary of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
     /// Mean.
@@ -41,10 +39,12 @@ impl Summary {
 
 /// Spearman's rank correlation of `(x, y)` pairs, -1 to 1: 1 where y always rises with x. NaN if either is constant.
 pub fn rank_correlation(points: &[(f64, f64)]) -> f64 {
-    let ranks = |values: Vec<f64>| Data::new(values).ranks(RankTieBreaker::Average);
-    let x = ranks(points.iter().map(|point| point.0).collect());
-    let y = ranks(points.iter().map(|point| point.1).collect());
-    let [xx, xy, yy] = moments(x.into_iter().zip(y));
+    let rank = |of: fn(&(f64, f64)) -> f64, value: f64| {
+        let count = |is: fn(&f64, &f64) -> bool| points.iter().filter(|point| is(&of(point), &value)).count() as f64;
+        count(f64::lt) + f64::midpoint(count(f64::eq), 1.0)
+    };
+    let ranks: Vec<_> = points.iter().map(|point| (rank(|it| it.0, point.0), rank(|it| it.1, point.1))).collect();
+    let [xx, xy, yy] = moments(ranks.iter().copied());
     xy / (xx * yy).sqrt()
 }
 

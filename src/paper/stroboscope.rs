@@ -1,4 +1,4 @@
-//! The motion once a period, in phase with the force: what Poincare sections and bifurcation diagrams are made of.
+//! The motion once a period, in phase with the force: the data of Poincare sections and bifurcation diagrams.
 
 use super::excitation::{Cylinder, set};
 use super::{PaperError, Study};
@@ -75,13 +75,14 @@ impl Orbit {
         self.flashes.last().copied().unwrap_or(Flash { displacement: f64::NAN, velocity: f64::NAN, gain: f64::NAN })
     }
 
-    /// The smallest number of periods, up to half of those taken, after which the motion comes back to within
-    /// `tolerance`: in displacement, m, and in velocity by that a period's 2 pi-th.
-    pub fn recurrence(&self, tolerance: f64) -> Option<usize> {
+    /// The smallest number of periods, up to half of those taken, after which the motion comes back to within 1 um: in
+    /// displacement, and in velocity times a period's 2 pi-th.
+    pub fn recurrence(&self) -> Option<usize> {
+        const TOLERANCE: f64 = 1e-6;
         let flashes = &self.flashes;
         let near = |a: &Flash, b: &Flash| {
             let time = self.period / std::f64::consts::TAU;
-            (a.displacement - b.displacement).abs() <= tolerance && (a.velocity - b.velocity).abs() * time <= tolerance
+            (a.displacement - b.displacement).abs() <= TOLERANCE && (a.velocity - b.velocity).abs() * time <= TOLERANCE
         };
         (1..=(flashes.len() - 1) / 2).find(|&n| flashes.iter().zip(&flashes[n..]).all(|(a, b)| near(a, b)))
     }
@@ -96,6 +97,15 @@ impl Orbit {
     pub fn mean_displacement(&self, periods: usize) -> f64 {
         let last = self.flashes.iter().rev().take(periods);
         super::statistics::mean(last.map(|flash| flash.displacement))
+    }
+}
+
+/// A number of periods after which a motion comes back, in words; none: `never`.
+pub fn periods(recurrence: Option<usize>, never: impl Into<String>) -> String {
+    match recurrence {
+        Some(1) => "1 period".to_owned(),
+        Some(n) => format!("{n} periods"),
+        None => never.into(),
     }
 }
 
@@ -127,7 +137,7 @@ impl Start {
         Self { displacement: flash.displacement, velocity: flash.velocity, ..self }
     }
 
-    /// What it sets.
+    /// Its settings.
     pub fn settings(&self, cylinder: &Cylinder) -> Vec<Setting> {
         let position = -self.gamma * cylinder.travel() / 2.0;
         vec![

@@ -1,4 +1,4 @@
-//! What the items work with: the harvester FMU, and runs of it on all cores.
+//! The harvester FMU of the items, and runs of it on all cores.
 
 use super::PaperError;
 use crate::cosim::{Averages, Gains};
@@ -7,7 +7,7 @@ use crate::scenario::{Request, Setting};
 use crate::threads;
 use fmu_import::{Fmu, Instance, Logging};
 
-/// How much work the large ensembles may be.
+/// Size of the large ensembles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Effort {
     /// As many samples as the paper, and fine grids.
@@ -17,20 +17,29 @@ pub enum Effort {
     Quick,
 }
 
-/// What the items work with.
+impl Effort {
+    pub(super) fn of<T>(self, full: T, quick: T) -> T {
+        match self {
+            Self::Full => full,
+            Self::Quick => quick,
+        }
+    }
+}
+
+/// The harvester FMU, the effort and the observer of all items.
 pub struct Study<'a> {
     /// The harvester FMU.
     pub fmu: &'a Fmu,
-    /// How much work the large ensembles may be.
+    /// Size of the large ensembles.
     pub effort: Effort,
     /// Follows the parts of the present item.
     pub observer: &'a dyn Progress,
 }
 
-/// A run of the harvester from 0 s, of which averages are wanted.
+/// A run of the harvester from 0 s to the end of an averaging window.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// What differs from the start values of the FMU.
+    /// Settings that differ from the start values of the FMU.
     pub settings: Vec<Setting>,
     /// Averaging window, s; the run ends with it.
     pub window: [f64; 2],

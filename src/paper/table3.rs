@@ -9,7 +9,7 @@ use videg_report::{Figure, Panel, Series, Style, Table};
 /// Steps of the paper's method to show, s.
 const STEPS: [f64; 10] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6];
 
-/// What the paper prints of a case.
+/// The numbers of the paper for a case.
 struct Printed {
     case: &'static str,
     frequency: &'static str,
@@ -19,7 +19,7 @@ struct Printed {
     density: f64,
     /// Largest deviation of the power that digits and method allow.
     tolerance: f64,
-    /// What there is to say of it.
+    /// The explanation.
     text: fn(&Compared) -> String,
 }
 

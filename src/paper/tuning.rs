@@ -32,10 +32,7 @@ struct Grid {
 
 impl Grid {
     fn new(effort: Effort) -> Self {
-        let [columns, rows] = match effort {
-            Effort::Full => [47_u32, 26],
-            Effort::Quick => [24, 11],
-        };
+        let [columns, rows] = effort.of([47_u32, 26], [24, 11]);
         let spread = |[from, to]: [f64; 2], count: u32| {
             (0..count).map(move |k| from + (to - from) * f64::from(k) / f64::from(count - 1))
         };

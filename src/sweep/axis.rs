@@ -20,7 +20,7 @@ enum Values {
 }
 
 impl Axis {
-    /// What `vary` says of a variable of `description`, for a `design` with this `seed`.
+    /// The axis of a variable of `description` over the values of `vary`, for a `design` with this `seed`.
     pub fn new(description: &ModelDescription, vary: &Vary, design: Design, seed: u64) -> Result<Self, SweepError> {
         let name = &vary.name;
         let bad = |reason: String| SweepError::option("vary", name, reason);
@@ -82,7 +82,7 @@ impl Axis {
         }
     }
 
-    /// The value that a `share` from 0 to below 1 of all lies below.
+    /// The quantile at a `share` from 0 to below 1.
     pub fn quantile(&self, share: f64) -> Value {
         match &self.values {
             Values::List(values) => pick(values, part(share, values.len() as u64)),
@@ -102,7 +102,7 @@ impl Axis {
         if design == Design::Lhs { (self.stream.permuted(point, points) as f64 + unit) / points as f64 } else { unit }
     }
 
-    /// That a value lies in the bounds of the variable. One of a range does if an end does, or if a bound lies between.
+    /// Checks that a value lies in the bounds of the variable. One of a range does if an end does, or if a bound lies between.
     fn check_any(&self) -> Result<(), String> {
         let (values, spans_bounds) = match &self.values {
             Values::List(values) => (values.clone(), false),

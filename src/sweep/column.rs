@@ -9,14 +9,14 @@ use fmu_import::{Kind, Value, Variable};
 pub struct Column {
     /// Its heading.
     pub name: String,
-    /// What stands in it.
+    /// Type of its cells.
     #[serde(rename = "type")]
     pub kind: Type,
     /// Whether it is empty in the row of a run that failed, or of one that did not.
     pub optional: bool,
 }
 
-/// What stands in a column.
+/// Type of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Type {
@@ -43,7 +43,7 @@ impl Column {
 }
 
 impl Type {
-    /// What the values of `variable` are.
+    /// Type of the values of `variable`.
     pub(super) fn of(variable: &Variable) -> Self {
         match variable.kind {
             Kind::Real { .. } => Self::Real,
@@ -54,7 +54,7 @@ impl Type {
     }
 }
 
-/// `value` as it stands in a row: reading a number gives the same bits.
+/// The cell of `value`; a number keeps its bits when it is read again.
 pub(super) fn cell(value: &Value) -> String {
     match value {
         Value::Real(value) => real(*value),
@@ -67,8 +67,8 @@ pub(super) fn real(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// `text` in one line, so that a line is a row, and without zero bytes, which are what a torn write leaves. Whatever an FMU
-/// has a say in comes through here: names of columns and of items of enumerations, values, and why a run failed.
+/// `text` in one line, so that a line is a row, and without zero bytes, which a torn write leaves. All texts of an FMU pass
+/// here: names of columns and of items of enumerations, values, and reasons of failures.
 pub(super) fn one_line(text: &str) -> String {
     text.split(['\r', '\n', '\0']).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
@@ -76,7 +76,7 @@ pub(super) fn one_line(text: &str) -> String {
 /// Most that [`reason`] takes of a line, bytes.
 pub(super) const MOST_REASON: usize = 1 << 16;
 
-/// Why a run failed, in one cell: what is too long for that is cut.
+/// Reason of a failure for one cell, cut if it is too long.
 pub(super) fn reason(text: &str) -> String {
     let text = one_line(text);
     // A quote takes two bytes, and the cell has one at each end.

@@ -1,9 +1,9 @@
-//! In what two sweeps differ, in words: each setting as a user types it, with its value in either.
+//! Differences of two sweeps in words: each setting as a user types it, with its value in either.
 
 use serde_json::{Map, Value};
 
-/// Longest value that is shown, characters, and most settings: what to do stands behind them, and no message is longer than
-/// some 2000 characters.
+/// Longest value that is shown, characters, and most settings: advice follows them, and a message has at most some 2000
+/// characters.
 const LONGEST: usize = 80;
 const MOST: usize = 8;
 
@@ -18,18 +18,18 @@ pub(super) struct Difference {
 }
 
 impl Difference {
-    /// For one who asks for something else than is there.
+    /// For a user who asks for another sweep than is there.
     pub fn was_is(&self) -> String {
         format!("{} was {}, is {}", self.what, self.there, self.here)
     }
 
-    /// For one who has both.
+    /// For a user who has both.
     pub fn is_not(&self) -> String {
         format!("{} is {}, not {}", self.what, self.here, self.there)
     }
 }
 
-/// In what two documents of sweeps differ, each setting in the words of `said`.
+/// The differences of two documents of sweeps, each in the words of `said`.
 pub(super) fn told(there: &str, here: &str, said: fn(&Difference) -> String) -> String {
     let found = differences(there, here);
     let shown = found.iter().take(MOST).map(said);
@@ -37,9 +37,9 @@ pub(super) fn told(there: &str, here: &str, said: fn(&Difference) -> String) -> 
     shown.chain(more).collect::<Vec<_>>().join("; ")
 }
 
-/// In what two documents of sweeps differ.
+/// The differences of two documents of sweeps.
 fn differences(there: &str, here: &str) -> Vec<Difference> {
-    /// They follow from the rest, but for the number of points where it is asked for, and what is recorded.
+    /// They follow from the other keys, except a number of points that was given, and the recorded variables.
     const DERIVED: [&str; 4] = ["columns", "points", "runs", "sha256"];
     let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
     let (Some(there), Some(here)) = (read(there), read(here)) else {

@@ -1,5 +1,5 @@
-//! The document `sweep.json`: everything that decides the results of a sweep. Behind it stand their checksums once they are
-//! complete (`sums.rs`).
+//! The document `sweep.json`: everything that decides the results of a sweep. Once the results are complete their checksums
+//! follow it (`sums.rs`).
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub(super) struct Document<'a> {
     /// SHA-256 of the archive, if the model is not the harvester of this project.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fmu: Option<&'a str>,
-    /// What a run may take, if each has a process of its own: whether it fails hangs on that.
+    /// Limits of a run, if each has a process of its own: whether it fails depends on them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isolation: Option<Limits>,
     pub settings: Vec<Setting>,
@@ -47,7 +47,7 @@ pub(super) struct Document<'a> {
     pub sha256: Option<String>,
 }
 
-/// Bounds on an isolated FMU as they stand in the document; none: any.
+/// Limits of an isolated FMU in the document; none: unlimited.
 #[derive(Serialize)]
 pub(super) struct Limits {
     time_limit_s: Option<f64>,
@@ -60,7 +60,7 @@ impl From<Bounds> for Limits {
     }
 }
 
-/// What is needed of the document to put results together.
+/// The part of the document that a merge needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct Kept {
     pub videg: String,
@@ -69,7 +69,7 @@ pub(super) struct Kept {
 }
 
 impl Document<'_> {
-    /// The document with its fingerprint, as it stands in the file.
+    /// The text of the file: the document with its fingerprint.
     pub fn sealed(mut self) -> String {
         self.sha256 = Some(sha256(self.json()));
         self.json() + "\n"
@@ -109,7 +109,7 @@ fn written(document: &Object) -> serde_json::Result<String> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
 }
 
-/// The document in `text` without checksums: what decides the results. A text that is none stays as it is.
+/// The document in `text` without checksums: only what decides the results. Other texts stay as they are.
 pub(super) fn identity(text: &str) -> String {
     let without = || {
         let mut document: Object = serde_json::from_str(text).ok()?;

@@ -1,4 +1,4 @@
-//! What runs the runs: the model itself, or an FMU.
+//! Engines compute runs: the model itself, or an FMU.
 
 use videg_model::{Harvester, ModelError, Parameters};
 
@@ -6,9 +6,9 @@ use super::plan::{GAINS, Results, Run};
 use super::times::Driven;
 use super::{Sweep, SweepError};
 use crate::cosim::Gains;
-use fmu_import::{FmiError, Fmu, Instance, Logging, Status, Value, Variable};
+use fmu_import::{FmiError, Fmu, Instance, Kind, Logging, Status, Value, Variable};
 
-/// What runs the runs.
+/// Computes runs.
 pub enum Engine {
     /// The model behind the harvester FMU, without the FMU: the same numbers to the last bit.
     BuiltIn(Box<BuiltIn>),
@@ -25,13 +25,7 @@ pub struct BuiltIn {
 
 /// How a parameter of the model is set.
 #[derive(Clone, Copy)]
-struct Setter {
-    name: &'static str,
-    set: Set,
-}
-
-#[derive(Clone, Copy)]
-enum Set {
+enum Setter {
     Quantity(fn(&mut Parameters, f64)),
     Choice(fn(&mut Parameters, i32)),
 }
@@ -46,23 +40,19 @@ impl Engine {
         }
     }
 
-    /// Whether the outcome of a run hangs on the machine as well: on limits of time and memory.
+    /// Whether the outcome of a run depends on the machine, by limits of time and memory.
     pub(super) fn is_isolated(&self) -> bool {
         matches!(self, Self::Fmu(fmu) if fmu.is_isolated())
     }
 
-    /// What `run` comes to; the inner error is why it failed.
-    ///
-    /// # Errors
-    /// If no run can go on.
+    /// Outcome of `run`; the inner error says why it failed, the outer one why no run can be computed any more.
     pub(super) fn run(&self, sweep: &Sweep, run: &Run) -> Result<Result<Results, String>, SweepError> {
         if let Err(error) = sweep.check(run) {
             return Ok(Err(error.to_string()));
         }
         match self {
             Self::BuiltIn(built_in) => {
-                let parameters = built_in.parameters(run)?;
-                Ok(simulate(sweep, &parameters).map_err(|error| error.to_string()))
+                Ok(simulate(sweep, &built_in.parameters(run)).map_err(|error| error.to_string()))
             }
             Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
                 Ok(results) => Ok(Ok(results)),
@@ -77,7 +67,7 @@ fn is_single(fmu: &Fmu) -> bool {
     fmu.description().co_simulation.can_be_instantiated_only_once_per_process
 }
 
-/// Whether no instance of the FMU can go on. What becomes of an isolated one concerns no other.
+/// Whether no instance of the FMU can go on. An isolated instance does not affect others.
 fn is_final(error: &FmiError, fmu: &Fmu) -> bool {
     match error {
         FmiError::Dead { .. } | FmiError::Call { status: Status::Fatal, .. } => !fmu.is_isolated(),
@@ -88,30 +78,27 @@ fn is_final(error: &FmiError, fmu: &Fmu) -> bool {
 
 impl BuiltIn {
     /// The model, if all that `sweep` sets are parameters and it records nothing.
-    ///
-    /// # Errors
-    /// A parameter that is given a value of another type than the model has it in.
-    pub fn new(sweep: &Sweep) -> Result<Option<Self>, SweepError> {
+    pub fn new(sweep: &Sweep) -> Option<Self> {
         let settings = sweep.settings.iter().map(|(variable, _)| variable);
         let varied = sweep.points.axes().iter().map(|axis| &axis.variable);
         let varied = varied.chain(sweep.seeds.as_ref().map(|seeds| &seeds.variable));
         let [set, setters] = [settings.map(Setter::of).collect(), varied.map(Setter::of).collect::<Option<Vec<_>>>()];
-        let Some((set, setters)) = set.zip(setters).filter(|_| sweep.record.is_empty()) else { return Ok(None) };
+        let (set, setters) = set.zip(setters).filter(|_| sweep.record.is_empty())?;
         let mut parameters = Parameters::default();
         for (setter, (_, value)) in set.iter().zip(&sweep.settings) {
-            setter.set(&mut parameters, value)?;
+            setter.set(&mut parameters, value);
         }
-        Ok(Some(Self { parameters, setters }))
+        Some(Self { parameters, setters })
     }
 
     /// The parameters of `run`.
-    fn parameters(&self, run: &Run) -> Result<Parameters, SweepError> {
+    fn parameters(&self, run: &Run) -> Parameters {
         let mut parameters = self.parameters;
         let seed = run.seed.map(Value::Integer);
         for (setter, value) in self.setters.iter().zip(run.values.iter().chain(&seed)) {
-            setter.set(&mut parameters, value)?;
+            setter.set(&mut parameters, value);
         }
-        Ok(parameters)
+        parameters
     }
 }
 
@@ -122,34 +109,29 @@ fn simulate(sweep: &Sweep, parameters: &Parameters) -> Result<Results, ModelErro
 }
 
 impl Setter {
+    /// That of `variable`, if it is a parameter whose values are of the parameter's type.
     fn of(variable: &Variable) -> Option<Self> {
-        let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == variable.name);
-        let choice = Parameters::CHOICES.iter().find(|choice| choice.name == variable.name);
-        let quantity = quantity.map(|quantity| Self { name: quantity.name, set: Set::Quantity(quantity.set) });
-        quantity.or(choice.map(|choice| Self { name: choice.name, set: Set::Choice(choice.set) }))
+        let named = |name: &str| name == variable.name;
+        match variable.kind {
+            Kind::Real { .. } => Parameters::TABLE.iter().find(|it| named(it.name)).map(|it| Self::Quantity(it.set)),
+            Kind::Integer { .. } | Kind::Boolean { .. } | Kind::Enumeration { .. } => {
+                Parameters::CHOICES.iter().find(|it| named(it.name)).map(|it| Self::Choice(it.set))
+            }
+            Kind::String { .. } => None,
+        }
     }
 
-    /// Sets a value of the parameter's type.
-    ///
-    /// # Errors
-    /// A value of another type.
-    fn set(self, parameters: &mut Parameters, value: &Value) -> Result<(), SweepError> {
-        match (self.set, value) {
-            (Set::Quantity(set), Value::Real(number)) => set(parameters, *number),
-            (Set::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
+    /// Sets a value of the variable's type.
+    fn set(self, parameters: &mut Parameters, value: &Value) {
+        match (self, value) {
+            (Self::Quantity(set), Value::Real(number)) => set(parameters, *number),
+            (Self::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
                 set(parameters, *number);
             }
-            (Set::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
-            (set, value) => {
-                let allowed = match set {
-                    Set::Quantity(_) => "Real",
-                    Set::Choice(_) => "Integer, Boolean or Enumeration",
-                };
-                let (name, given) = (self.name, value.type_name());
-                return Err(SweepError::Type { name, value: value.to_string(), given, allowed });
-            }
+            (Self::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
+            // No value of a variable is of another type than the variable.
+            _ => debug_assert!(false, "{value} is of type {}", value.type_name()),
         }
-        Ok(())
     }
 }
 
@@ -233,28 +215,21 @@ impl Driven for Slave {
 mod tests {
     use super::*;
 
-    fn set(name: &str, value: &Value) -> Result<Parameters, String> {
-        let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == name);
-        let choice = Parameters::CHOICES.iter().find(|choice| choice.name == name);
-        let set = quantity.map(|quantity| Set::Quantity(quantity.set)).or(choice.map(|choice| Set::Choice(choice.set)));
-        let name = quantity.map(|quantity| quantity.name).or(choice.map(|choice| choice.name)).unwrap();
-        let mut parameters = Parameters::default();
-        let setter = Setter { name, set: set.unwrap() };
-        setter.set(&mut parameters, value).map(|()| parameters).map_err(|error| error.to_string())
-    }
-
     #[test]
-    fn a_parameter_takes_values_of_its_own_type_and_refuses_others_by_name() {
-        assert_eq!(set("membrane.restitution", &Value::Real(0.25)).unwrap().restitution, 0.25);
-        assert!(set("contact.reaction", &Value::Boolean(true)).unwrap().reaction);
-        assert_eq!(set("excitation.seed", &Value::Integer(7)).unwrap().seed, 7);
-        assert_eq!(
-            set("membrane.restitution", &Value::Integer(1)).unwrap_err(),
-            "membrane.restitution = 1 is of type Integer; allowed: Real"
-        );
-        assert_eq!(
-            set("excitation.seed", &Value::Real(1.5)).unwrap_err(),
-            "excitation.seed = 1.5 is of type Real; allowed: Integer, Boolean or Enumeration"
-        );
+    fn each_parameter_of_the_model_takes_the_values_of_its_variable() {
+        let description = crate::sweep::harvester_description().unwrap();
+        let names = Parameters::TABLE.iter().map(|it| it.name).chain(Parameters::CHOICES.iter().map(|it| it.name));
+        for name in names {
+            assert!(Setter::of(description.variable(name).unwrap()).is_some(), "{name}");
+        }
+        let mut parameters = Parameters::default();
+        for (name, value) in [
+            ("membrane.restitution", Value::Real(0.25)),
+            ("contact.reaction", Value::Boolean(true)),
+            ("excitation.seed", Value::Integer(7)),
+        ] {
+            Setter::of(description.variable(name).unwrap()).unwrap().set(&mut parameters, &value);
+        }
+        assert_eq!((parameters.restitution, parameters.reaction, parameters.seed), (0.25, true, 7));
     }
 }

@@ -1,4 +1,4 @@
-//! What keeps a sweep from being run, resumed or merged.
+//! Errors of running, resuming and merging sweeps.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -24,31 +24,19 @@ pub enum SweepError {
         origin: Origin,
         /// Name of the option.
         option: &'static str,
-        /// What was given.
+        /// The value given.
         value: String,
-        /// What is allowed.
+        /// What is wrong with it.
         reason: String,
-    },
-    /// A parameter of the model is given a value of another type than it has.
-    #[error("{name} = {value} is of type {given}; allowed: {allowed}")]
-    Type {
-        /// Name of the parameter.
-        name: &'static str,
-        /// What was given.
-        value: String,
-        /// Of which type.
-        given: &'static str,
-        /// What is allowed.
-        allowed: &'static str,
     },
     /// The file system refused.
     #[error("cannot {action} {}: {cause}", path.display())]
     File {
-        /// What was tried.
+        /// The action that failed.
         action: &'static str,
         /// On which file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         cause: io::Error,
     },
     /// The sweep ended before it was complete.
@@ -69,7 +57,7 @@ pub enum SweepError {
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// Another process writes the same file.
@@ -78,10 +66,10 @@ pub enum SweepError {
         /// The file.
         path: PathBuf,
     },
-    /// Shards that do not make a whole.
+    /// Shards that do not make a complete sweep.
     #[error("cannot merge: {reason}")]
     Merge {
-        /// What is missing, or there twice.
+        /// The reason.
         reason: String,
     },
     /// The Parquet file.
@@ -89,12 +77,12 @@ pub enum SweepError {
     Parquet {
         /// The file.
         path: PathBuf,
-        /// What the writer said.
+        /// The error of the writer.
         cause: parquet::errors::ParquetError,
     },
 }
 
-/// What is called `option`, and its `value`, as a user finds it.
+/// The place of an `option` and its `value` in the words of the user.
 fn place(origin: &Origin, option: &str, value: &str) -> String {
     match option {
         _ if value.is_empty() => origin.key(option),

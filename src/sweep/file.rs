@@ -28,10 +28,10 @@ use toml::Table;
 use super::{Design, Vary};
 use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_file, toml_error, with_plain_ends};
 
-/// What a sweep file says.
+/// Contents of a sweep file.
 #[derive(Debug, Default)]
 pub struct SweepFile {
-    /// What a case file says, too.
+    /// The part that a case file has, too.
     pub case: CaseFile,
     /// How points are chosen.
     pub design: Option<Design>,
@@ -83,7 +83,7 @@ impl SweepFile {
     /// Reads the text of a sweep file.
     ///
     /// # Errors
-    /// What is wrong and where: no TOML, an unknown key, a value that no variable can have, a control character.
+    /// Not TOML, an unknown key, a value that no variable can have, a control character; with the place.
     pub fn parse(text: &str) -> Result<Self, String> {
         let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(&with_plain_ends(text)).map_err(said)?;

@@ -7,8 +7,8 @@ use std::path::Path;
 use super::SweepError;
 use videg_system::atomic_file::{self, LockError, Part};
 
-/// Writes a new file at `path`, forced to the disk. What stands there goes: it is of an attempt that was killed, or a link
-/// through which another file would be written. Of what could not be written nothing stays.
+/// Writes a new file at `path`, forced to the disk. A file that is there is removed: a killed attempt left it, or it is a link
+/// through which another file would be written. A failed write leaves nothing.
 pub(super) fn write_synced(path: &Path, content: &[u8]) -> io::Result<Part> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),

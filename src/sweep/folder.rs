@@ -13,7 +13,7 @@ use videg_system::input;
 
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
-/// What to do about a folder of another sweep.
+/// Advice for a folder of another sweep.
 const WAY_OUT: &str = "type the command with another --output to keep both, or with --fresh to replace what is there";
 
 /// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With

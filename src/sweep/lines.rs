@@ -8,7 +8,7 @@ use super::column::{self, Column, Type};
 /// Longest line with its end, bytes. None is written that is longer.
 pub(super) const LONGEST: usize = 1 << 20;
 
-/// How far results are what they should be.
+/// The valid part of a file of results.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Extent {
     /// Bytes, heading included.
@@ -19,17 +19,17 @@ pub(super) struct Extent {
     pub failed: u64,
     /// The last of them that is of a run that did not fail, and the number of that run.
     pub last: Option<(u64, Vec<u8>)>,
-    /// What comes behind.
+    /// The rest of the file.
     pub rest: Rest,
 }
 
-/// What stands behind results that are what they should be.
+/// The rest of a file after its valid lines.
 #[derive(Debug, Default, PartialEq)]
 pub(super) enum Rest {
     /// Nothing.
     #[default]
     Nothing,
-    /// What a write leaves that was cut short: part of a line, or zero bytes, which are in no text of an FMU.
+    /// The trace of a write that was cut short: part of a line, or zero bytes, which no text of an FMU has.
     Torn,
     /// A whole line, and why it is not the one that is due.
     Wrong(String),
@@ -37,7 +37,7 @@ pub(super) enum Rest {
 
 impl Extent {
     /// That it is all of a file of `length` bytes with the results of the runs `range`; else what is wrong with them.
-    pub fn check_whole(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
+    pub fn check_complete(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
         let due = range.start + self.lines;
         match &self.rest {
             _ if self.bytes == 0 => Err(NOT_HEADING.to_owned()),
@@ -182,24 +182,39 @@ mod tests {
     }
 
     #[test]
-    fn results_end_before_the_first_line_that_is_not_what_it_should_be() {
+    fn results_end_before_the_first_line_that_is_torn_or_wrong() {
+        let wrong = |reason: &str| Rest::Wrong(reason.to_owned());
+        let (not_6, no_row) = ("line 3 is not run 6 of runs 5 to 7", "line 3, of run 6, is no row of 2 cells");
+        let long = format!("5,{}\n", "x".repeat(LONGEST));
         for (text, expected) in [
-            ("", (0, 0, 0)),
-            ("run,err", (0, 0, 0)),
-            ("run,other\n0,\n", (0, 0, 0)),
-            ("run,error\n", (10, 0, 0)),
-            ("run,error\n5,\n6,bad\n7,\n", (22, 3, 1)),
-            ("run,error\n5,\n6,", (13, 1, 0)),
-            ("run,error\n5,\n7,\n", (13, 1, 0)),
-            ("run,error\n5,\n\0\0\0\0\n6,\n", (13, 1, 0)),
-            ("run,error\n5,\n60,\n", (13, 1, 0)),
-            ("run,error\n5,\n6,\0\0,\n7,\n", (13, 1, 0)),
-            ("run,error\n5,\"a, \"\"b\"\"\"\n6,\n7,\n", (29, 3, 1)),
-            ("run,error\n5,\n6,\"\n7,\n", (13, 1, 0)),
-            ("run,error\n5,\n6,\n7,\n8,\n", (19, 3, 0)),
+            ("", ((0, 0, 0), Rest::Nothing)),
+            ("run,err", ((0, 0, 0), Rest::Torn)),
+            ("\0\0\0", ((0, 0, 0), Rest::Torn)),
+            ("run,other\n0,\n", ((0, 0, 0), wrong(NOT_HEADING))),
         ] {
-            let Extent { bytes, lines, failed, .. } = extent(text, &(5..8));
-            assert_eq!((bytes, lines, failed), expected, "{text:?}");
+            let Extent { bytes, lines, failed, rest, .. } = extent(text, &(5..8));
+            assert_eq!(((bytes, lines, failed), rest), expected, "{text:?}");
+        }
+        for (text, expected) in [
+            ("", ((10, 0, 0), Rest::Nothing)),
+            ("5,\n", ((13, 1, 0), Rest::Nothing)),
+            ("5,\n6,bad\n7,\n", ((22, 3, 1), Rest::Nothing)),
+            ("5,\"a, \"\"b\"\"\"\n6,\n7,\n", ((29, 3, 1), Rest::Nothing)),
+            ("5,\n6,", ((13, 1, 0), Rest::Torn)),
+            ("5,\n\0\0\0\0\n6,\n", ((13, 1, 0), Rest::Torn)),
+            ("5,\n6,\0\0,\n7,\n", ((13, 1, 0), Rest::Torn)),
+            ("5,\n6,\n7,\n8,", ((19, 3, 0), Rest::Torn)),
+            ("5,\n7,\n", ((13, 1, 0), wrong(not_6))),
+            ("5,\n60,\n", ((13, 1, 0), wrong(not_6))),
+            ("5,\n6\n", ((13, 1, 0), wrong(not_6))),
+            ("5,\n6,a,b\n", ((13, 1, 0), wrong(no_row))),
+            ("5,\n6,\"\n7,\n", ((13, 1, 0), wrong(no_row))),
+            ("5,\n6,\r7,\n", ((13, 1, 0), wrong(no_row))),
+            ("5,\n6,\n7,\n8,\n", ((19, 3, 0), wrong("line 5 follows that of the last run, 7"))),
+            (&long, ((10, 0, 0), wrong("line 2 has more than 1048576 bytes"))),
+        ] {
+            let Extent { bytes, lines, failed, rest, .. } = extent(&format!("run,error\n{text}"), &(5..8));
+            assert_eq!(((bytes, lines, failed), rest), expected, "{text:.40?}");
         }
     }
 
@@ -213,31 +228,6 @@ mod tests {
         ] {
             let expected = expected.map(|(run, line): (u64, &str)| (run, line.into()));
             assert_eq!(extent(text, &(5..8)).last, expected, "{text:?}");
-        }
-    }
-
-    #[test]
-    fn what_a_torn_write_leaves_is_told_from_a_whole_line_that_is_wrong() {
-        let wrong = |reason: &str| Rest::Wrong(reason.to_owned());
-        let long = format!("run,error\n5,{}\n", "x".repeat(LONGEST));
-        for (text, expected) in [
-            ("", Rest::Nothing),
-            ("run,err", Rest::Torn),
-            ("\0\0\0", Rest::Torn),
-            ("run,other\n", wrong("its first line is not the heading of this sweep")),
-            ("run,error\n5,\n", Rest::Nothing),
-            ("run,error\n5,\n6", Rest::Torn),
-            ("run,error\n5,\n\0\0\0\n7,\n", Rest::Torn),
-            ("run,error\n5,\n7,\n", wrong("line 3 is not run 6 of runs 5 to 7")),
-            ("run,error\n5,\n6\n", wrong("line 3 is not run 6 of runs 5 to 7")),
-            ("run,error\n5,\n6,a,b\n", wrong("line 3, of run 6, is no row of 2 cells")),
-            ("run,error\n5,\n6,\"\n", wrong("line 3, of run 6, is no row of 2 cells")),
-            ("run,error\n5,\n6,\r7,\n", wrong("line 3, of run 6, is no row of 2 cells")),
-            ("run,error\n5,\n6,\n7,\n8,", Rest::Torn),
-            ("run,error\n5,\n6,\n7,\n8,\n", wrong("line 5 follows that of the last run, 7")),
-            (&long, wrong("line 2 has more than 1048576 bytes")),
-        ] {
-            assert_eq!(extent(text, &(5..8)).rest, expected, "{text:.40?}");
         }
     }
 
@@ -270,7 +260,7 @@ mod tests {
             ("run,error\n5,\n7,\n", Some("line 3 is not run 6 of runs 5 to 6")),
             ("run,error\n5,\n6,\n7,\n", Some("3 bytes follow line 3, its last")),
         ] {
-            let checked = extent(text, &(5..7)).check_whole(text.len() as u64, &(5..7));
+            let checked = extent(text, &(5..7)).check_complete(text.len() as u64, &(5..7));
             assert_eq!(checked.err().as_deref(), expected, "{text:?}");
         }
     }

@@ -55,7 +55,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
 
 /// Removes what a merge that failed has written: the document only if it `is_new`.
 fn leave(output: &Path, results: Unfinished, is_new: bool) {
-    // Why it failed is what the user is told; a document without results is in nobody's way but that of another sweep.
+    // The user gets the first error; a document without results only blocks another sweep.
     if results.discard().is_ok() && is_new {
         let _ = files::remove(&output.join(DOCUMENT));
     }
@@ -144,7 +144,7 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, results: &Unfinished) -> Resul
             Broken::Written(cause) => written(cause),
         })?;
         let length = std::fs::metadata(path).map_err(SweepError::file("read", path))?.len();
-        extent.check_whole(length, &range).map_err(|reason| SweepError::content(path, reason))?;
+        extent.check_complete(length, &range).map_err(|reason| SweepError::content(path, reason))?;
         sums::check(path)?;
         failed += extent.failed;
     }

@@ -40,7 +40,7 @@ pub use error::SweepError;
 pub use file::SweepFile;
 pub use merge::merge;
 pub use plan::{Request, Sweep};
-pub use run::{Job, Report, run};
+pub use run::{Options, Report, run};
 pub use seeds::SEED_VARIABLE;
 pub use shard::Shard;
 pub use times::Times;
@@ -50,7 +50,7 @@ use std::path::Path;
 
 use fmu_import::{FmiError, ModelDescription};
 
-/// What the harvester FMU says of itself; the model behind it has the same parameters.
+/// Model description of the harvester FMU; the model behind it has the same parameters.
 ///
 /// # Errors
 /// None: it is part of this program.

@@ -18,7 +18,7 @@ use fmu_import::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
 /// Variables from which averages follow, and their types.
 pub(super) const GAINS: [&str; 3] = ["gain.voltage", "gain.energyEq13", "impact.count"];
 
-/// What is to be swept.
+/// A sweep as a user asks for it.
 pub struct Request<'a> {
     /// How the sweep is called.
     pub name: String,
@@ -26,7 +26,7 @@ pub struct Request<'a> {
     pub description: &'a ModelDescription,
     /// SHA-256 of the FMU, if the model is not the harvester of this project.
     pub fmu: Option<String>,
-    /// What a run may take, if the FMU is isolated.
+    /// Limits of a run, if the FMU is isolated.
     pub isolation: Option<Bounds>,
     /// Variables that are the same in all runs; the last of a name wins.
     pub settings: Vec<Setting>,
@@ -48,7 +48,7 @@ pub struct Request<'a> {
     pub seed_variable: Option<String>,
     /// Variables to record at the end of each run.
     pub record: Vec<String>,
-    /// Which of these stand in a file, by the names of the options, and in which.
+    /// Options that come from a file, with its path.
     pub in_file: Vec<(&'static str, PathBuf)>,
 }
 
@@ -85,7 +85,7 @@ pub struct Sweep {
     document: String,
 }
 
-/// What one run is given.
+/// Inputs of one run.
 pub(super) struct Run {
     pub number: u64,
     pub point: u64,
@@ -94,7 +94,7 @@ pub(super) struct Run {
     pub seed: Option<i32>,
 }
 
-/// What one run comes to.
+/// Results of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Results {
     pub averages: Option<Averages>,
@@ -105,7 +105,7 @@ impl Sweep {
     /// Resolves a request.
     ///
     /// # Errors
-    /// Whatever in it makes no sense for all of its runs.
+    /// An error in the request that concerns all runs.
     pub fn new(request: &Request<'_>) -> Result<Self, SweepError> {
         Self::resolve(request).map_err(|error| error.said(|option, value| request.origin(option, value)))
     }
@@ -194,7 +194,7 @@ impl Sweep {
         varied.chain(seed).collect()
     }
 
-    /// What run number `number` is given.
+    /// Inputs of run number `number`.
     pub(super) fn run(&self, number: u64) -> Run {
         let (point, sample) = (number / self.samples, number % self.samples);
         let seed = self.seeds.as_ref().map(|seeds| seeds.of(point, sample));
@@ -246,14 +246,14 @@ fn last_of_each<T: Clone>(items: &[T], name: impl Fn(&T) -> &str) -> Vec<T> {
     kept
 }
 
-/// What is the same in all runs.
+/// Values that are the same in all runs.
 fn settings(request: &Request<'_>, vary: &[Vary]) -> Result<Vec<(Variable, Value)>, SweepError> {
     let settings = last_of_each(&request.settings, |setting| &setting.name);
     let is_varied = |setting: &&Setting| vary.iter().any(|vary| vary.name == setting.name);
     settings.iter().filter(|setting| !is_varied(setting)).map(|setting| typed(request.description, setting)).collect()
 }
 
-/// Who gives seeds: the samples, or the user.
+/// The seeds, if the samples have them and not the user.
 fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -> Result<Option<Seeds>, SweepError> {
     let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
     let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
@@ -279,7 +279,7 @@ fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable,
     Ok((variable.clone(), value))
 }
 
-/// As it stands in the document: however it was written, the same value gives the same text.
+/// As in the document: one value has one text, however it was written.
 fn as_setting((variable, value): &(Variable, Value)) -> Setting {
     let text = if let Value::String(text) = value { text.clone() } else { column::cell(value) };
     Setting::new(&variable.name, text)

@@ -7,7 +7,7 @@ use fmu_import::Value;
 /// Most runs of a sweep: a year on a thousand cores at a tenth of a second each.
 pub(super) const MAX_RUNS: u64 = 1_000_000_000_000;
 
-/// The points: where each variable stands in each.
+/// The points: the value of each variable in each.
 pub(super) struct Points {
     design: Design,
     count: u64,
@@ -15,12 +15,12 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// Whether they are those of a grid, whose number nobody asked for.
+    /// Whether they are those of a grid, which has a number of its own.
     pub fn is_grid(&self) -> bool {
         self.design == Design::Grid
     }
 
-    /// The points of a `design` over `axes`, of which there are `asked` if the design draws them.
+    /// The points of a `design` over `axes`; a design that draws them has as many as `asked`.
     pub fn new(design: Design, axes: Vec<Axis>, asked: Option<u64>) -> Result<Self, SweepError> {
         let bad = |value: String, reason: String| Err(SweepError::option("points", value, reason));
         let count = match (design, asked) {
@@ -58,7 +58,7 @@ impl Points {
         self.count
     }
 
-    /// What is varied.
+    /// The varied variables.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
@@ -75,7 +75,7 @@ impl Points {
     }
 }
 
-/// The value that stands at the last place of `rest`, a number whose base is the length of `axis`; takes the place off.
+/// The value at the last digit of `rest`, a number whose base is the length of `axis`; removes the digit.
 fn digit(axis: &Axis, rest: &mut u64) -> Value {
     let index = *rest % axis.len();
     *rest /= axis.len();

@@ -1,4 +1,4 @@
-//! The file of results while it is being written: locked, in order, and such that a killed sweep can go on.
+//! The file of results while it is written: locked, in order, so that a killed sweep can be resumed.
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek as _, SeekFrom, Write as _};
@@ -19,7 +19,7 @@ const SYNC_EVERY: Duration = Duration::from_secs(10);
 const NOT_TORN: &str = "no interruption leaves a whole line like that, so nothing is thrown away: take out that line and all \
                         behind it to go on from there, or begin anew with --fresh";
 
-/// What is there of a sweep, or of a shard of it.
+/// Results that are there of a sweep, or of a shard of it.
 pub(super) enum Found {
     /// Everything.
     Complete {
@@ -141,7 +141,7 @@ fn complete(path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Optio
     };
     let extent = extent(&file, path, columns, range)?;
     let length = file.metadata().map_err(SweepError::file("read", path))?.len();
-    match extent.check_whole(length, range) {
+    match extent.check_complete(length, range) {
         Ok(()) => Ok(Some(extent)),
         Err(reason) => {
             let reason = format!("it was changed after it was complete: {reason}; --fresh begins anew");

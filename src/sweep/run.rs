@@ -12,19 +12,32 @@ use crate::threads::{self, Sharing};
 /// Most results that wait for an earlier one.
 const AHEAD: u64 = 4096;
 
-/// Where results go, and which.
-pub struct Job<'a> {
+/// A sweep, its engine and its folder.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// The sweep.
+    pub sweep: &'a Sweep,
+    /// Computes the runs.
+    pub engine: &'a Engine,
     /// The folder.
     pub folder: &'a Path,
     /// A share of the runs, or all.
     pub shard: Option<Shard>,
-    /// How many runs go on at once.
+    /// Most runs at once.
     pub jobs: usize,
-    /// Whether what is there goes.
+    /// Whether to replace results in the folder.
     pub fresh: bool,
 }
 
-/// What came of a sweep.
+impl<'a> Options<'a> {
+    /// All runs of `sweep`, on all cores, into `folder`; results that are there are kept.
+    pub fn new(sweep: &'a Sweep, engine: &'a Engine, folder: &'a Path) -> Self {
+        let jobs = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { sweep, engine, folder, shard: None, jobs, fresh: false }
+    }
+}
+
+/// Outcome of a sweep or of a merge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     /// Runs that this sweep or shard consists of.
@@ -51,13 +64,14 @@ impl Report {
 ///
 /// # Errors
 /// Results of another sweep, or of another build of the model; a refusal of the file system; an FMU that is beyond use.
-pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, observer: &dyn Progress) -> Result<Report, SweepError> {
-    let range = record::range(sweep, job.shard);
+pub fn run(options: &Options<'_>, observer: &dyn Progress) -> Result<Report, SweepError> {
+    let Options { sweep, engine, folder, shard, fresh, .. } = *options;
+    let range = record::range(sweep, shard);
     let runs = range.end - range.start;
-    let path = record::results_path(job.folder, job.shard);
-    let mut files = vec![path.clone(), job.folder.join(DOCUMENT)];
+    let path = record::results_path(folder, shard);
+    let mut files = vec![path.clone(), folder.join(DOCUMENT)];
     let mut is_summed = false;
-    let (done, failed, resumed_from) = match Record::open(job.folder, sweep, job.shard, job.fresh)? {
+    let (done, failed, resumed_from) = match Record::open(folder, sweep, shard, fresh)? {
         Found::Complete { failed } => {
             is_summed = sums::check(&path)?;
             (runs, failed, runs)
@@ -65,7 +79,7 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, observer: &dyn Progres
         Found::Unfinished(mut record) => {
             let resumed_from = record.next - range.start;
             check_last(sweep, engine, &record)?;
-            let computed = compute(sweep, engine, job, &range, &mut record, observer).and_then(|()| record.sync());
+            let computed = compute(options, &range, &mut record, observer).and_then(|()| record.sync());
             let (next, kept) = (record.next, record.kept());
             computed.map_err(|cause| SweepError::Ended { path: kept.clone(), next, cause: cause.into() })?;
             let (done, failed) = (next - range.start, record.failed);
@@ -79,7 +93,7 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, observer: &dyn Progres
     };
     if done == runs {
         let is_new = resumed_from < runs;
-        let parquet = job.shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), is_new));
+        let parquet = shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), is_new));
         let parquet = parquet.transpose()?;
         let mut missing: Vec<&Path> = (!is_summed).then_some(path.as_path()).into_iter().collect();
         if let Some(parquet) = &parquet
@@ -88,17 +102,17 @@ pub fn run(sweep: &Sweep, engine: &Engine, job: &Job<'_>, observer: &dyn Progres
             missing.push(parquet);
         }
         if missing.is_empty() {
-            sums::clear(job.folder);
+            sums::clear(folder);
         } else {
-            sums::record(job.folder, sweep.document(), &missing)?;
+            sums::record(folder, sweep.document(), &missing)?;
         }
         files.extend(parquet);
     }
     Ok(Report { runs, done, failed, resumed_from, files })
 }
 
-/// That the last line that is there is what this program makes of its run. Those of runs that failed do not count, as it may
-/// be the machine that such a run failed on.
+/// Checks that this program gives the last line that is there again. Lines of runs that failed do not count: the machine may
+/// have been the reason.
 fn check_last(sweep: &Sweep, engine: &Engine, record: &Record) -> Result<(), SweepError> {
     let Some((number, line)) = &record.last else { return Ok(()) };
     let run = sweep.run(*number);
@@ -115,13 +129,12 @@ fn check_last(sweep: &Sweep, engine: &Engine, record: &Record) -> Result<(), Swe
 }
 
 fn compute(
-    sweep: &Sweep,
-    engine: &Engine,
-    job: &Job<'_>,
+    options: &Options<'_>,
     range: &Range<u64>,
     record: &mut Record,
     observer: &dyn Progress,
 ) -> Result<(), SweepError> {
+    let Options { sweep, engine, jobs, .. } = *options;
     let line = |number| {
         let run = sweep.run(number);
         engine.run(sweep, &run).map(|outcome| sweep.line(&run, &outcome))
@@ -129,7 +142,7 @@ fn compute(
     let tell = |next: u64| observer.advance(next - range.start, range.end - range.start, &[]);
     tell(record.next);
     let is_stopped = || observer.is_stopped();
-    let sharing = Sharing { threads: engine.at_once(job.jobs), ahead: AHEAD, is_stopped: &is_stopped };
+    let sharing = Sharing { threads: engine.at_once(jobs), ahead: AHEAD, is_stopped: &is_stopped };
     threads::in_order(record.next..range.end, sharing, line, |lines| {
         record.append(&lines)?;
         tell(record.next);

@@ -22,7 +22,7 @@ pub(super) struct Seeds {
     pub common: bool,
 }
 
-/// What a user asks for.
+/// Options that concern seeds.
 pub(super) struct Asked<'a> {
     pub samples: u64,
     pub seed: u64,

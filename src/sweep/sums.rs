@@ -1,5 +1,5 @@
-//! Checksums of complete results. They stand in the document behind what decides the results, so that a file which changes
-//! later on a disk or on the way to another machine is found out.
+//! Checksums of complete results, at the end of the document: they reveal a file that changed later on a disk or on the way
+//! to another machine.
 
 use std::fs::File;
 use std::io::{self, Read as _};
@@ -18,7 +18,7 @@ const LOCK: &str = "sweep.json.lock.part";
 /// How long to wait for another shard that writes its own.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// That a complete file of results is as `sweep.json` beside it says, if that says anything of it; whether it does.
+/// Checks a complete file of results against `sweep.json` beside it; false if that has no checksum of it.
 pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     let Some(expected) = read(&path.with_file_name(DOCUMENT))?.remove(&name(path)) else { return Ok(false) };
     let found = Sum::of(path)?;
@@ -49,9 +49,9 @@ pub(super) fn record(folder: &Path, document: &str, results: &[&Path]) -> Result
     change(folder, document, first, |sums| sums.extend(new))
 }
 
-/// Removes what a process that was killed left of [`record`].
+/// Removes files that a killed process left in [`record`].
 pub(super) fn clear(folder: &Path) {
-    // It keeps nobody from anything.
+    // It blocks nothing.
     let _ = atomic_file::remove_abandoned(&folder.join(LOCK));
 }
 
@@ -82,7 +82,7 @@ fn write(folder: &Path, document: &str, first: &Path, change: impl FnOnce(&mut S
     let mut sums = read(&path)?;
     change(&mut sums);
     let text = with_sums(document, &sums).map_err(|error| SweepError::content(&path, error.to_string()))?;
-    // Under a name of its own first: where the file system has no locks, the sums of a shard may get lost, and no more.
+    // Under another name first: where the file system has no locks, the sums of a shard may get lost, and no more.
     let part = first.with_extension("json.part");
     let _begun = write_synced(&part, text.as_bytes()).map_err(SweepError::file("write", &part))?;
     rename(&part, &path)

@@ -1,4 +1,4 @@
-//! When a run communicates, and what it comes to over the averaging window.
+//! Communication points of a run, and its averages over the window.
 
 use serde::Serialize;
 
@@ -15,9 +15,9 @@ pub struct Times {
     pub window: [f64; 2],
 }
 
-/// What is driven through a run.
+/// A slave that is driven through a run.
 pub(super) trait Driven {
-    /// Why it cannot go on.
+    /// Its error.
     type Error;
 
     /// Steps from `time` by `step`, s.

@@ -78,7 +78,7 @@ impl Drop for Unfinished {
             return;
         }
         let is_empty = self.file.metadata().is_ok_and(|file| file.len() == 0);
-        // What the file system refuses stays as a killed process leaves it.
+        // If the file system refuses, the file stays as a killed process leaves it.
         let _ = if is_empty { std::fs::remove_file(self.part()) } else { std::fs::rename(self.part(), self.kept()) };
     }
 }

@@ -1,4 +1,4 @@
-//! What is varied, as a user writes it: on the command line or in a sweep file.
+//! Varied variables as a user writes them: on the command line or in a sweep file.
 
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -79,7 +79,7 @@ impl Vary {
     /// Reads a table of lists and of ranges `{ from, to, count, scale }`, whose names may be dotted.
     ///
     /// # Errors
-    /// What is neither a list nor a range, by its name.
+    /// An entry that is neither a list nor a range, by its name.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
         let mut all = Vec::new();
         flatten("", table, &mut all)?;
@@ -107,7 +107,7 @@ fn flatten(prefix: &str, table: &Table, all: &mut Vec<Vary>) -> Result<(), Strin
     for (key, value) in table {
         let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
         let spread = match value {
-            // What is varied is a list or a table: where `from` is neither, it is that of a range.
+            // Values are a list or a table: a table whose `from` is neither is a range.
             Value::Table(range) if range.get("from").is_some_and(|from| !from.is_table() && !from.is_array()) => {
                 let read = Range::deserialize(range.clone()).map_err(|error| format!("vary.{name}: {error}"))?;
                 Spread::Range(read)

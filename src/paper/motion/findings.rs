@@ -1,4 +1,4 @@
-//! What Section 4.2 says of Figures 9 to 15, beside what the FMU does.
+//! Statements of Section 4.2 on Figures 9 to 15, beside the motion of the FMU.
 
 use super::{Setup, Shown};
 use crate::paper::patterns::{Pattern, mean_falling_row};
@@ -6,7 +6,7 @@ use crate::paper::recording::{BALL, DISPLACEMENT, Impact, Recording, Sample, imp
 use crate::paper::{Finding, PaperError, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
-/// Where it is asked whether a motion repeats, s: any transient is long over.
+/// Window of the test whether a motion repeats, s: any transient is long over.
 const LATE: [f64; 2] = [990.0, 1000.0];
 
 /// Most cycles after which it may.
@@ -18,15 +18,15 @@ const REPEATS: f64 = 1e-6;
 /// Largest relative difference of what counts as equal.
 const EQUAL: f64 = 1e-6;
 
-/// What is found, and what is said of it.
+/// Findings, and paragraphs of text.
 pub(super) type Found = (Vec<Finding>, Vec<String>);
 
-/// A quantity of a figure of which the paper has no number.
+/// A quantity of a figure that the paper gives no number for.
 fn own(shown: &Shown, quantity: &str, unit: &str, videg: f64) -> Finding {
     Finding::new(format!("Figure {}", shown.number), quantity, unit, videg)
 }
 
-/// A quantity of which the paper prints or says `paper`.
+/// A quantity that the paper prints or describes as `paper`.
 fn said(shown: &Shown, quantity: &str, unit: &str, [paper, videg]: [f64; 2], agrees: bool) -> Finding {
     own(shown, quantity, unit, videg).printed(paper).agrees_if(agrees)
 }
@@ -158,7 +158,7 @@ fn damped(shown: &Shown, setup: &Setup, steady: &[Impact], period: &Period) -> F
         (Verdict::Agrees, "high, moderate, small")
     } else {
         let verdict = if row > 2.0 && row < 3.0 { Verdict::Explained } else { Verdict::Differs };
-        (verdict, "three peaks in a row are typical of r < 1; here some rows have two")
+        (verdict, "the paper takes three peaks as typical of r < 1; here some rows have two")
     };
     let mut findings = vec![
         own(shown, "mean length of a row of falling peaks", "1", row).printed(3.0).judged(verdict).reason(reason),

@@ -18,9 +18,9 @@ pub(super) struct Shown {
     pub(super) case: &'static str,
     /// Its number.
     pub(super) number: u32,
-    /// What is shown of it, s.
+    /// Window, s.
     pub(super) window: [f64; 2],
-    /// What the paper circles in it.
+    /// The pattern that the paper circles in it.
     pub(super) circled: Option<Pattern>,
 }
 

@@ -6,7 +6,7 @@ use videg_model::Case;
 
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
 use super::fixed_step::{FixedStep, STEP};
-use super::{Artefact, Effort, Finding, PaperError, Run, Study, Verdict, WINDOW};
+use super::{Artefact, Finding, PaperError, Run, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
 /// Largest nudge for the paper's method, m/s: what its time step makes of one impact, 2 A/M times 1e-5 s. Smaller ones
@@ -98,10 +98,7 @@ const STARTS: usize = 200;
 
 fn compute(study: &Study<'_>) -> Result<Computation, PaperError> {
     // Runs of the FMU take no time beside those of the paper's method.
-    let stepped_starts = match study.effort {
-        Effort::Full => STARTS,
-        Effort::Quick => STARTS / 5,
-    };
+    let stepped_starts = study.effort.of(STARTS, STARTS / 5);
     let nudges = ensemble::nudges(STARTS, NUDGE);
     let coarse = ensemble::nudges(stepped_starts, STEPPED_NUDGE);
     let mut cases = Vec::new();

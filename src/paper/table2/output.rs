@@ -6,14 +6,14 @@ use crate::paper::artefact::{Artefact, Finding, Picture, Sheet, table};
 use crate::paper::ensemble::{Ensemble, NUDGE};
 use videg_report::{Figure, Panel, Series, Style, Table};
 
-/// Where the free start of Figure 12 stands on the axis of figures.
+/// Place of the free start of Figure 12 on the axis of figures.
 const FREE: f64 = 12.5;
 
-/// What is written on that axis.
+/// Labels of that axis.
 const PLACES: [(f64, &str); 7] =
     [(10.0, "10"), (11.0, "11"), (12.0, "12"), (FREE, "12 free"), (13.0, "13"), (14.0, "14"), (15.0, "15")];
 
-/// How far the paper's value and ours stand beside the bars of nearby starts.
+/// Distance of the paper's value and ours from the bars of nearby starts.
 const BESIDE: f64 = 0.1;
 
 /// All of the table but its findings.
@@ -154,7 +154,7 @@ fn nearby(computation: &Computation) -> Sheet {
 type Points = Vec<(f64, f64)>;
 type Limits = Vec<(f64, f64, f64)>;
 
-/// What panel (a) shows.
+/// Contents of panel (a).
 struct Overview {
     paper: Points,
     own: Points,

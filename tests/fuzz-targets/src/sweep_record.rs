@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use videg::scenario::CaseFile;
-use videg::sweep::{self, BuiltIn, Engine, Job, Report, Sweep, SweepError, SweepFile, Vary};
+use videg::sweep::{self, BuiltIn, Engine, Options, Report, Sweep, SweepError, SweepFile, Vary};
 
 use crate::{Target, sweeps};
 
@@ -27,7 +27,7 @@ static OWN: LazyLock<Own> = LazyLock::new(|| {
     let case = CaseFile { until: Some(0.5), ..CaseFile::default() };
     let file = SweepFile { case, vary: vec![Vary::parse(VARY).unwrap()], ..SweepFile::default() };
     let sweep = sweeps::resolve(file, Vec::new()).unwrap();
-    let engine = Engine::BuiltIn(Box::new(BuiltIn::new(&sweep).unwrap().unwrap()));
+    let engine = Engine::BuiltIn(Box::new(BuiltIn::new(&sweep).unwrap()));
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &sweep, &engine).unwrap();
     let lines = lines(&fs::read(folder.path().join("sweep.csv")).unwrap());
@@ -35,8 +35,7 @@ static OWN: LazyLock<Own> = LazyLock::new(|| {
 });
 
 fn run(folder: &Path, sweep: &Sweep, engine: &Engine) -> Result<Report, SweepError> {
-    let job = Job { folder, shard: None, jobs: 1, fresh: false };
-    sweep::run(sweep, engine, &job, &())
+    sweep::run(&Options { jobs: 1, ..Options::new(sweep, engine, folder) }, &())
 }
 
 fn lines(bytes: &[u8]) -> Vec<Vec<u8>> {
