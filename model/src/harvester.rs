@@ -1,83 +1,128 @@
-//! The vibro-impact harvester: from event to event, exactly under the impulsive law.
+//! The vibro-impact harvester: its parts, and how they act together from event to event.
 
-mod contact;
-mod copy;
-mod course;
-mod dues;
-mod energy;
 mod events;
-mod exchange;
-mod foreseen;
-mod input;
-mod occurrence;
-mod output;
-mod phase;
-mod position;
+mod inputs;
+mod integrator;
+#[cfg(test)]
+mod noise_tests;
+mod outputs;
+mod predicted;
 mod snapshot;
-mod start;
-mod tangent;
-mod totals;
 
-pub use self::energy::Energies;
-pub use self::occurrence::{Impact, Occurrence, Peak};
+pub use self::events::{Event, Impact, Peak};
 pub use self::snapshot::Snapshot;
-pub use self::tangent::{Direction, GRAZING_SPEED, Sensitivities};
-pub use self::totals::Totals;
 
-use self::dues::Dues;
-use self::energy::Ledger;
-use self::events::Search;
-use self::input::finite;
-use self::phase::Noise;
-use self::tangent::Tangent;
-use crate::compliant::{Ramp, Touch};
-use crate::cylinder::CylinderMotion;
+use crate::accounting::batch::Batch;
+use crate::accounting::budget::Budget;
+use crate::accounting::ledger::{Ledger, Totals, Works};
+use crate::contact::Ramp;
 use crate::error::ModelError;
-use crate::flight::Side;
-use crate::holds::Holds;
 use crate::membrane::Membrane;
-use crate::parameters::Parameters;
-use crate::pulse::{PulseShape, Pulses};
-
-/// The ball since its last event: straight on while free, carried by the membrane while resting.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Ball {
-    since: f64,
-    position: f64,
-    velocity: f64,
-    resting: Option<Side>,
-}
+use crate::motion::cylinder::{CylinderMotion, Drive};
+use crate::motion::pulse::{PulseShape, Pulses};
+use crate::motion::{Ball, Forces, Motion, Start};
+use crate::noise::Noise;
+use crate::parameters::{OutsideGap, Parameters};
+use crate::sensitivity::{Direction, Tangent, Tangential};
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
 #[derive(Debug, PartialEq)]
 pub struct Harvester {
     parameters: Parameters,
     membrane: Membrane,
-    shape: PulseShape,
     time: f64,
-    cylinder: CylinderMotion,
-    ball: Ball,
+    motion: Motion,
     noise: Noise,
-    holds: Holds,
-    search: Search,
-    pulses: [Pulses; 2],
-    /// The present contact, under the compliant law.
-    touch: Option<Touch>,
     /// Voltages across the membranes, V, for the Maxwell force.
     voltages: [Ramp; 2],
-    totals: Totals,
+    pulses: Pulses,
     ledger: Ledger,
+    budget: Budget,
     tangent: Tangent,
-    /// Its states are placed by an integrator.
-    placed: bool,
-    /// Up to here, s, nothing happens and nothing more is to be foreseen: on the way only the time changes.
+    /// Up to here, s, nothing happens and nothing more is to be predicted: on the way only the time changes.
     calm_until: f64,
-    /// Second in which events are being counted, and their number: the budget.
-    second: f64,
-    second_events: u64,
+}
+
+impl Clone for Harvester {
+    fn clone(&self) -> Self {
+        Self { motion: self.motion.clone(), noise: self.noise.clone(), pulses: self.pulses.clone(), ..*self }
+    }
+
+    /// Masters that try steps save a harvester and take it back at each of them: this takes no memory that is there already, and
+    /// moves what it copies once.
+    fn clone_from(&mut self, source: &Self) {
+        self.motion.clone_from(&source.motion);
+        self.noise.clone_from(&source.noise);
+        self.pulses.clone_from(&source.pulses);
+        let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = source;
+        (self.parameters, self.membrane, self.tangent) = (*parameters, *membrane, *tangent);
+        (self.time, self.voltages, self.calm_until) = (*time, *voltages, *calm_until);
+        (self.ledger, self.budget) = (*ledger, *budget);
+    }
 }
 
 impl Harvester {
+    /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it has met it:
+    /// [`Harvester::present_impact`].
+    ///
+    /// # Errors
+    /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
+    /// phase noise, beyond 2^52 hold intervals.
+    pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
+        let mut harvester = Self::before_events(parameters, start)?;
+        harvester.begin_on_membrane();
+        harvester.advance(start)?;
+        Ok(harvester)
+    }
+
+    /// The harvester at `start`, s, under the external `force`, N, whose [`Harvester::sensitivities`] are those to first
+    /// order along `direction`.
+    ///
+    /// # Errors
+    /// As [`Harvester::new`]; a force that is not finite or beyond 1e18 N.
+    pub fn along(parameters: &Parameters, start: f64, force: f64, direction: &Direction) -> Result<Self, ModelError> {
+        inputs::check_force([force, 0.0])?;
+        let mut harvester = Self::before_events(parameters, start)?;
+        let xi = harvester.noise.xi(harvester.noise.sample);
+        harvester.tangent = Tangent::along(parameters, start, force, direction, xi);
+        harvester.begin_on_membrane();
+        harvester.advance(start)?;
+        harvester.push(force, 0.0);
+        Ok(harvester)
+    }
+
+    /// The harvester at `start`, s; what happens there is still ahead.
+    fn before_events(p: &Parameters, start: f64) -> Result<Self, ModelError> {
+        p.validate()?;
+        let noise = Noise::at_start(p, start)?;
+        let drive = Drive::new(p, noise.phase(noise.sample), [0.0; 2]);
+        let cylinder = CylinderMotion::new(start, p.cylinder_position, p.cylinder_velocity, drive);
+        let half = p.travel() / 2.0;
+        let position = match p.outside_gap {
+            OutsideGap::Free => p.ball_position,
+            OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
+        };
+        let last = Start { time: start, position, velocity: p.ball_velocity };
+        let projected = p.projected_side().map(|side| side.sign() * half);
+        let displacement = projected.unwrap_or(p.cylinder_position - position);
+        let relative = Start { time: start, position: displacement, velocity: p.cylinder_velocity - p.ball_velocity };
+        let membrane = Membrane::new(p);
+        let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
+        Ok(Self {
+            parameters: *p,
+            membrane,
+            time: start,
+            motion: Motion::new(p, cylinder, last, Ball::Free, relative),
+            noise,
+            voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
+            pulses: Pulses { shape, under_way: Default::default() },
+            ledger: Ledger::new(p, membrane.rest_capacitance, Totals::default(), Works::default()),
+            budget: Budget::new(p, 0.0, 0),
+            tangent: Tangent::none(),
+            calm_until: f64::NEG_INFINITY,
+        })
+    }
+
     /// Moves on to `time`, s, through every event up to and including it. How a run is split into calls changes nothing.
     ///
     /// # Errors
@@ -93,7 +138,7 @@ impl Harvester {
     /// # Errors
     /// As [`Harvester::advance`].
     #[inline]
-    pub fn advance_with(&mut self, time: f64, show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
+    pub fn advance_with(&mut self, time: f64, show: impl FnMut(&Event)) -> Result<(), ModelError> {
         if self.time <= time && time < self.calm_until {
             self.time = time;
             return Ok(());
@@ -101,8 +146,8 @@ impl Harvester {
         self.advance_through_events(time, show)
     }
 
-    fn advance_through_events(&mut self, time: f64, mut show: impl FnMut(&Occurrence)) -> Result<(), ModelError> {
-        finite("time", time)?;
+    fn advance_through_events(&mut self, time: f64, mut show: impl FnMut(&Event)) -> Result<(), ModelError> {
+        inputs::finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
@@ -112,37 +157,42 @@ impl Harvester {
     }
 
     /// Moves on to `time`, s; what comes after it is not known yet.
-    fn go_to(&mut self, time: f64, show: &mut impl FnMut(&Occurrence)) -> Result<(), ModelError> {
-        self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing foreseen
-        let mut dues = Dues::NONE;
-        let passed = self.pass_events(time, &mut dues, show);
-        self.settle_dues(&mut dues);
+    fn go_to(&mut self, time: f64, show: &mut impl FnMut(&Event)) -> Result<(), ModelError> {
+        self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing predicted
+        let mut batch = Batch::EMPTY;
+        let passed = self.pass_events(time, &mut batch, show);
+        batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
         passed?;
-        self.follow_noise(time);
+        self.motion.enter_interval_of(&mut self.noise, time);
         self.time = time;
-        Ok(())
-    }
-
-    /// Does what events up to `time`, s, do, but for the credit of impacts in `dues`.
-    fn pass_events(
-        &mut self,
-        time: f64,
-        dues: &mut Dues,
-        show: &mut impl FnMut(&Occurrence),
-    ) -> Result<(), ModelError> {
-        while let Some(event) = self.next_event(time, true).filter(|event| event.time() <= time) {
-            let turn = self.turn_at(event);
-            self.process(event, dues)?;
-            let (impact, peak) = (self.impact_of(event), turn.or_else(|| self.peak_after(event)));
-            impact.map(Occurrence::Impact).iter().chain(&peak.map(Occurrence::Peak)).for_each(&mut *show);
-        }
         Ok(())
     }
 
     /// Makes the next impact known, beyond a release, too; what is found does not depend on the steps.
     fn look_ahead(&mut self) {
-        self.next_event(self.time + self.horizon(), false);
+        self.search_from(self.time);
         self.look_beyond_release();
-        self.calm_until = self.calm();
+        self.calm_until = self.motion.calm_until(&self.noise);
+    }
+
+    /// Searches for the next event as far ahead of `time`, s, as events are predicted.
+    fn search_from(&mut self, time: f64) {
+        let horizon = self.noise.horizon(1.0 / self.parameters.frequency);
+        self.motion.next_event(&mut self.noise, time + horizon, false);
+    }
+
+    fn forces(&self) -> Forces<'_> {
+        Forces { parameters: &self.parameters, membrane: &self.membrane, voltages: &self.voltages }
+    }
+
+    /// The parts that take part in a contact, and the end of the present hold interval, s.
+    fn parts(&mut self) -> (&mut Motion, Forces<'_>, Option<f64>, &mut Ledger, &mut Budget) {
+        let Self { parameters, membrane, voltages, motion, noise, ledger, budget, .. } = self;
+        (motion, Forces { parameters, membrane, voltages }, noise.limit(), ledger, budget)
+    }
+
+    fn tangential(&self) -> Tangential<'_> {
+        let Self { parameters, membrane, motion, noise, tangent, .. } = self;
+        Tangential { parameters, membrane, motion, noise, tangent }
     }
 }

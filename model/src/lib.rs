@@ -15,29 +15,29 @@
 //! ```
 #![deny(unsafe_code)]
 
+mod accounting;
 mod cases;
-mod compliant;
-mod cylinder;
-mod elementary;
+mod contact;
 mod error;
-mod flight;
 mod harvester;
-mod holds;
 mod limits;
 mod membrane;
+mod motion;
 mod noise;
+mod numerics;
+mod paper;
 mod parameters;
-mod pulse;
+mod sensitivity;
 
+pub use accounting::ledger::{Energies, Totals, Works};
 pub use cases::{Case, saw_tooth_limit};
-pub use compliant::{ContactSnapshot, Phase};
-pub use cylinder::{CylinderMotion, Drive};
+pub use contact::{ContactState, Phase, Point, Ramp};
 pub use error::ModelError;
-pub use flight::Side;
-pub use harvester::{
-    Direction, Energies, GRAZING_SPEED, Harvester, Impact, Occurrence, Peak, Sensitivities, Snapshot, Totals,
-};
+pub use harvester::{Event, Harvester, Impact, Peak, Snapshot};
 pub use limits::{Excess, Limit, NeglectedMass};
 pub use membrane::Membrane;
+pub use motion::Start;
+pub use motion::pulse::{Deflection, Pulse, PulseChange, PulseShape};
+pub use motion::side::Side;
 pub use parameters::{Choice, ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
-pub use pulse::{Deflection, Pulse, PulseChange, PulseShape};
+pub use sensitivity::{Changes, Direction, GRAZING_SPEED, Sensitivities};

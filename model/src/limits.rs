@@ -119,10 +119,10 @@ impl Membrane {
     pub fn excesses(&self, deflection: f64, voltage: f64, time: f64) -> impl Iterator<Item = Excess> {
         let (stretch, field) = (self.stretch(deflection), self.field(deflection, voltage).abs());
         let exceeding = [
-            (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch()).powi(2)),
+            (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch).powi(2)),
             // Each step asks: no power is taken where even the unstretched film stands the field.
             (Limit::Field, field, if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY }),
-            (Limit::Tension, self.permittivity() * field * field, elastic_stress(stretch)),
+            (Limit::Tension, self.permittivity * field * field, elastic_stress(stretch)),
         ];
         let above = exceeding.into_iter().filter(|(_, value, bound)| value > bound);
         above.map(move |(limit, value, bound)| Excess { limit, value, bound, time })

@@ -1,190 +1,182 @@
-//! Standard normal samples by counter: sample k of a seed is the same however a run is split, saved or sharded, and
-//! whether it is made alone or with others.
-#![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
+//! The phase noise of Section 5.2: one sample xi holds for an interval, whose begins are multiples of the hold time.
 
-use crate::elementary::{ln, turned, unit};
+pub mod block;
+pub mod blocks;
+pub mod intervals;
+pub mod normal;
 
-const LOW: u64 = 0xFFFF_FFFF;
+use self::block::{BLOCK, Block, place_in_block};
+use self::blocks::Blocks;
+use crate::error::ModelError;
+use crate::paper::excitation::noisy_phase;
+use crate::parameters::{ContactLaw, NoiseModel, Parameters};
 
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3; SC 2011). A word stands in
-/// the low half of a `u64`, where vector instructions can multiply it.
-#[inline(always)]
-fn philox4x32(mut counter: [u64; 4], mut key: [u32; 2]) -> [u64; 4] {
-    const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
-    const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
-    for _ in 0..10 {
-        let products = [MULTIPLIER[0] * (counter[0] & LOW), MULTIPLIER[1] * (counter[2] & LOW)];
-        let keys = key.map(u64::from);
-        counter = [
-            products[1] >> 32 ^ counter[1] ^ keys[0],
-            products[1] & LOW,
-            products[0] >> 32 ^ counter[3] ^ keys[1],
-            products[0] & LOW,
-        ];
-        key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
+/// Farthest start from t = 0, s: times have digits below a microsecond up to there.
+const MAX_START: f64 = 1e9;
+
+/// How the hold intervals are passed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Passing {
+    /// There is no noise.
+    Never,
+    /// One by one: in a contact that lasts, with a Wiener process, under an integrator; and where they are longer than a
+    /// window of the search, so that this costs nothing.
+    Single,
+    /// Many in one go.
+    Blocks,
+}
+
+/// What never changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Settings {
+    passing: Passing,
+    model: NoiseModel,
+    seed: i32,
+    /// rad.
+    phase: f64,
+    /// sigma.
+    intensity: f64,
+    /// Length of a hold interval, s.
+    hold: f64,
+}
+
+/// The phase of the excitation, and its noise.
+#[derive(Debug, PartialEq)]
+pub struct Noise {
+    settings: Settings,
+    /// Number of the sample in force.
+    pub sample: u64,
+    /// Value of the Wiener process, sqrt(s).
+    pub walk: f64,
+    blocks: Blocks,
+}
+
+impl Clone for Noise {
+    fn clone(&self) -> Self {
+        Self { blocks: self.blocks.clone(), ..*self }
     }
-    counter
-}
 
-/// Samples that are made together, from [`QUARTER`] values of the counter.
-pub const GROUP: usize = 256;
-
-const QUARTER: usize = GROUP / 4;
-
-/// A group stands in rows as wide as the widest vectors, and goes on down each column: sums over neighbours are then
-/// sums of rows.
-pub const COLUMNS: usize = 8;
-
-/// Samples in a column.
-pub const ROWS: usize = GROUP / COLUMNS;
-
-/// Place in its group of the sample with this number there.
-#[inline(always)]
-pub const fn place(number: usize) -> usize {
-    number % ROWS * COLUMNS + number / ROWS
-}
-
-/// The 128 random bits that belong to `seed` and `counter`.
-#[inline(always)]
-fn bits(seed: i32, counter: u64) -> [u64; 2] {
-    let [a, b, c, d] = philox4x32([counter & LOW, counter >> 32, 0, 0], [seed.cast_unsigned(), 0]);
-    [a << 32 | b, c << 32 | d]
-}
-
-/// Two independent standard normal samples (Box-Muller): of the `bits`, 40 make the radius, which reaches 7.4, and 24
-/// the angle. Shorter series than double precision asks for leave an error below 1e-10
-/// of the radius.
-#[inline(always)]
-fn pair(bits: u64) -> [f64; 2] {
-    // 1 - u lies in (0, 1]: its logarithm is finite.
-    let radius = (-2.0 * ln::<6>(1.0 - unit(bits & !0xFF_FFFF))).sqrt();
-    let [sin, cos] = turned::<6>(unit(bits << 42) - 0.5, bits >> 22);
-    [radius * cos, radius * sin]
-}
-
-/// Begins where a cache line does: no vector lies across two.
-#[derive(Clone)]
-#[repr(align(64))]
-pub struct Aligned<T>(pub T);
-
-/// Makes `samples` those from number [`GROUP`] `group` on of the standard normal sequence that belongs to `seed`, each
-/// at its [`place`].
-#[inline(always)]
-pub fn normals(seed: i32, group: u64, samples: &mut [f64; GROUP]) {
-    let mut words = Aligned([0; 2 * QUARTER]);
-    for k in 0..QUARTER {
-        [words.0[k], words.0[k + QUARTER]] = bits(seed, group * QUARTER as u64 + k as u64);
-    }
-    for k in 0..2 * QUARTER {
-        [samples[k], samples[k + 2 * QUARTER]] = pair(words.0[k]);
+    /// Keeps the blocks, if they are those of the same force.
+    fn clone_from(&mut self, source: &Self) {
+        self.blocks.clone_from(&source.blocks);
+        (self.settings, self.sample, self.walk) = (source.settings, source.sample, source.walk);
     }
 }
 
-/// Sample `index` of the standard normal sequence that belongs to `seed`, as [`normals`] makes it.
-pub fn normal(seed: i32, index: u64) -> f64 {
-    const N: u64 = QUARTER as u64;
-    #[allow(clippy::cast_possible_truncation)] // less than GROUP
-    let (group, place) = (index / GROUP as u64, place((index % GROUP as u64) as usize) as u64);
-    let [first, second] = bits(seed, group * N + place % N);
-    let [cos, sin] = pair(if (place / N).is_multiple_of(2) { first } else { second });
-    if place < 2 * N { cos } else { sin }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn philox_gives_the_known_answers_of_its_authors() {
-        // Random123, file kat_vectors, lines "philox4x32 10".
-        let zero = [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8];
-        assert_eq!(philox4x32([0; 4], [0; 2]), zero);
-        let ones = [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd];
-        assert_eq!(philox4x32([LOW; 4], [u32::MAX; 2]), ones);
-        let counter = [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344];
-        let pi = [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1];
-        assert_eq!(philox4x32(counter, [0xa409_3822, 0x299f_31d0]), pi);
-    }
-
-    /// Samples `from` to `to`, both multiples of [`GROUP`].
-    fn samples(seed: i32, from: u64, to: u64) -> Vec<f64> {
-        let n = GROUP as u64;
-        let in_order = |group| {
-            let mut samples = [0.0; GROUP];
-            normals(seed, group, &mut samples);
-            (0..GROUP).map(move |number| samples[place(number)])
+impl Noise {
+    /// The noise at sample number `sample`, where a Wiener process is at `walk`.
+    pub fn new(p: &Parameters, sample: u64, walk: f64) -> Self {
+        let is_fast = p.noise_model == NoiseModel::Held
+            && p.contact_law == ContactLaw::Impulsive
+            && p.noise_hold <= 1.0 / p.frequency;
+        let passing = match (p.is_noisy(), is_fast) {
+            (false, _) => Passing::Never,
+            (true, false) => Passing::Single,
+            (true, true) => Passing::Blocks,
         };
-        (from / n..to / n).flat_map(in_order).collect()
+        let (model, seed, phase) = (p.noise_model, p.seed, p.phase);
+        let settings = Settings { passing, model, seed, phase, intensity: p.phase_noise, hold: p.noise_hold };
+        Self { settings, sample, walk, blocks: Blocks::new(p) }
     }
 
-    fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-        let n = values.len() as f64;
-        values.sum::<f64>() / n
+    /// The noise at `start`, s; a start before t = 0 has sample 0.
+    pub fn at_start(p: &Parameters, start: f64) -> Result<Self, ModelError> {
+        /// Beyond this the grid of sample times has no digits to tell neighbours apart.
+        const MAX_SAMPLES: f64 = 4_503_599_627_370_496.0; // 2^52
+        let max = if p.is_noisy() { MAX_START.min(MAX_SAMPLES * p.noise_hold) } else { MAX_START };
+        if !(start >= -MAX_START && start <= max) {
+            return Err(ModelError::Bounds { name: "start time", value: start, unit: "s", min: -MAX_START, max });
+        }
+        let mut noise = Self::new(p, 0, 0.0);
+        noise.sample = if p.is_noisy() { noise.sample_at(start) } else { 0 };
+        Ok(noise)
     }
 
-    const MANY: u64 = 1 << 21;
-
-    /// Five standard errors of the mean of [`MANY`] values with this variance.
-    fn five_errors(variance: f64) -> f64 {
-        5.0 * (variance / MANY as f64).sqrt()
-    }
-
-    #[test]
-    fn one_by_one_or_together_samples_have_the_same_bits() {
-        for first in [0, 256 * 777, 1 << 40] {
-            let together = samples(-3, first, first + 512);
-            for (k, sample) in together.iter().enumerate() {
-                assert_eq!(sample.to_bits(), normal(-3, first + k as u64).to_bits(), "{first} + {k}");
-            }
+    /// From now on an integrator passes the intervals.
+    pub fn pass_singly(&mut self) {
+        if self.in_blocks() {
+            self.settings.passing = Passing::Single;
         }
     }
 
-    #[test]
-    fn samples_have_the_moments_of_a_standard_normal() {
-        for seed in [7, -1] {
-            let samples = samples(seed, 0, MANY);
-            let moment = |p: i32| mean(samples.iter().map(|xi| xi.powi(p)));
-            // E x^2p = (2 p - 1)!!: 1, 3, 15, 105, 945, 10395, 135135, ...
-            let expected = [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0), (6, 15.0, 10_395.0 - 225.0)];
-            for (p, value, variance) in expected {
-                assert!((moment(p) - value).abs() < five_errors(variance), "moment {p}: {}", moment(p));
-            }
+    /// Whether hold intervals are passed many in one go.
+    pub fn in_blocks(&self) -> bool {
+        self.settings.passing == Passing::Blocks
+    }
+
+    /// Number of the hold interval that `time`, s, is in; 0 before t = 0.
+    pub fn sample_at(&self, time: f64) -> u64 {
+        let hold = self.settings.hold;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+        let mut sample = (time / hold) as u64;
+        // The quotient is rounded, the grid is the product.
+        while (sample + 1) as f64 * hold <= time {
+            sample += 1;
+        }
+        while sample > 0 && sample as f64 * hold > time {
+            sample -= 1;
+        }
+        sample
+    }
+
+    /// Length of a hold interval, s.
+    pub fn hold(&self) -> f64 {
+        self.settings.hold
+    }
+
+    /// Begin of hold interval `sample`, s.
+    pub fn begin_of(&self, sample: u64) -> f64 {
+        sample as f64 * self.settings.hold
+    }
+
+    /// What remains of the present hold interval after `time`, s.
+    pub fn rest_after(&self, time: f64) -> f64 {
+        self.settings.hold - (time - self.begin_of(self.sample))
+    }
+
+    /// End of the present hold interval, s; none without noise.
+    pub fn limit(&self) -> Option<f64> {
+        (self.settings.passing != Passing::Never).then(|| self.begin_of(self.sample + 1))
+    }
+
+    /// How far ahead events are predicted, s, with this `period` of the excitation.
+    pub fn horizon(&self, period: f64) -> f64 {
+        if self.in_blocks() { period.min(BLOCK as f64 * self.settings.hold) } else { period }
+    }
+
+    /// xi in hold interval `sample`; a Wiener process is known at present only.
+    pub fn xi(&self, sample: u64) -> f64 {
+        match self.settings.model {
+            NoiseModel::Held => normal::normal(self.settings.seed, sample),
+            NoiseModel::Wiener => self.walk,
         }
     }
 
-    #[test]
-    fn samples_fill_the_tails_as_a_standard_normal_does() {
-        let samples = samples(11, 0, MANY);
-        // erfc(z / sqrt 2): P(|xi| > z).
-        for (z, p) in [(0.5, 0.617_075), (1.0, 0.317_311), (2.0, 0.045_500_3), (3.0, 2.699_80e-3), (4.0, 6.334_25e-5)] {
-            for sign in [1.0, -1.0] {
-                let beyond = mean(samples.iter().map(|xi| f64::from(u8::from(sign * xi > z))));
-                assert!((beyond - 0.5 * p).abs() < five_errors(0.5 * p), "beyond {z}: {beyond}");
-            }
-        }
-        let largest = samples.iter().fold(0.0_f64, |largest, xi| largest.max(xi.abs()));
-        assert!((4.5..6.5).contains(&largest), "{largest}");
+    /// Phase of the harmonic force in hold interval `sample`, rad.
+    pub fn phase(&self, sample: u64) -> f64 {
+        if self.settings.passing == Passing::Never { self.settings.phase } else { self.phase_with(self.xi(sample)) }
     }
 
-    #[test]
-    fn samples_do_not_depend_on_each_other() {
-        let samples = samples(5, 0, MANY + 1024);
-        // Neighbours, those that come from the same counter or bits, those of other columns, and of the next group.
-        for lag in [1, 2, 3, ROWS / 4, ROWS / 2, 3 * ROWS / 4, ROWS, 2 * ROWS, GROUP, 4 * GROUP] {
-            let pairs = || samples[..samples.len() - 1024].iter().zip(&samples[lag..]);
-            let product = mean(pairs().map(|(a, b)| a * b));
-            assert!(product.abs() < five_errors(1.0), "lag {lag}: {product}");
-            let squares = mean(pairs().map(|(a, b)| (a * a - 1.0) * (b * b - 1.0)));
-            assert!(squares.abs() < five_errors(4.0), "squares, lag {lag}: {squares}");
-        }
+    fn phase_with(&self, xi: f64) -> f64 {
+        noisy_phase(self.settings.phase, self.settings.intensity, xi)
     }
 
-    #[test]
-    fn samples_of_other_seeds_are_independent() {
-        let [a, b, c] = [1, 2, -1].map(|seed| samples(seed, 0, MANY));
-        for (a, b) in [(&a, &b), (&a, &c), (&b, &c)] {
-            let product = mean(a.iter().zip(b).map(|(a, b)| a * b));
-            assert!(product.abs() < five_errors(1.0), "{product}");
+    /// The same from the block of this interval, which has xi at hand.
+    pub fn phase_in_block(&mut self, sample: u64) -> f64 {
+        let xi = self.block(sample).sample(place_in_block(sample));
+        self.phase_with(xi)
+    }
+
+    /// The block with hold interval `sample`.
+    pub fn block(&mut self, sample: u64) -> &Block {
+        self.blocks.block(sample)
+    }
+
+    /// The next sample comes into force.
+    pub fn take_next(&mut self) {
+        if self.settings.model == NoiseModel::Wiener {
+            self.walk += self.settings.hold.sqrt() * normal::normal(self.settings.seed, self.sample);
         }
+        self.sample += 1;
     }
 }

@@ -2,6 +2,7 @@
 //! choices.
 
 use crate::error::ModelError;
+use crate::paper::{excitation, gap};
 
 /// Vacuum permittivity, F/m (CODATA 2022). The paper rounds it to 8.85e-12.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
@@ -247,6 +248,11 @@ impl Parameters {
         parameters
     }
 
+    /// Whether the phase of the excitation is noisy.
+    pub fn is_noisy(&self) -> bool {
+        self.phase_noise > 0.0
+    }
+
     /// Checks each parameter against its bounds, and those that depend on each other.
     ///
     /// # Errors
@@ -278,7 +284,7 @@ impl Parameters {
 
     /// s = d + 2 w - 2 `r_b`, m: the largest distance that the ball moves inside the cylinder (Section 3.2).
     pub fn travel(&self) -> f64 {
-        self.cylinder_length + 2.0 * self.frame_width - 2.0 * self.ball_radius
+        gap::travel(self.cylinder_length, self.frame_width, self.ball_radius)
     }
 
     /// `R_2` = lambda `R_1`, m (Section 2.2).
@@ -293,13 +299,12 @@ impl Parameters {
 
     /// Amplitude of the cylinder's motion under the harmonic force, A / (M (2 pi f0)^2), m (Section 5.1).
     pub fn cylinder_amplitude(&self) -> f64 {
-        let omega = core::f64::consts::TAU * self.frequency;
-        self.amplitude / (self.cylinder_mass * omega * omega)
+        excitation::cylinder_amplitude(self.amplitude, self.cylinder_mass, self.frequency)
     }
 
     /// gamma, the cylinder's amplitude over half the ball's travel, Eq. (16).
     pub fn normalized_amplitude(&self) -> f64 {
-        self.cylinder_amplitude() / (self.travel() / 2.0)
+        excitation::normalized_amplitude(self.cylinder_amplitude(), self.travel() / 2.0)
     }
 }
 

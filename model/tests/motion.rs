@@ -7,7 +7,7 @@ mod common;
 use common::{Impact, Stepper};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use videg_model::{Case, Harvester, ModelError, NoiseModel, Occurrence, Parameters, Side};
+use videg_model::{Case, Event, Harvester, ModelError, NoiseModel, Parameters, Side};
 
 /// Impacts up to `until`, found by going from one predicted impact to the next.
 fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
@@ -15,8 +15,8 @@ fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
     let mut list = Vec::from_iter(at_start);
     while harvester.time() < until {
         let target = harvester.next_impact().unwrap_or(until).min(harvester.time() + 0.05).min(until);
-        let show = |shown: &Occurrence| {
-            let Occurrence::Impact(impact) = shown else { return };
+        let show = |shown: &Event| {
+            let Event::Impact(impact) = shown else { return };
             assert_eq!(impact.time, target, "not foreseen");
             list.push(Impact { time: impact.time, speed: impact.speed });
         };

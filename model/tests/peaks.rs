@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)] // helpers outside of #[test] functions fail a test, too
 
 use approx::assert_relative_eq;
-use videg_model::{Case, ContactLaw, Harvester, Occurrence, Parameters, Peak};
+use videg_model::{Case, ContactLaw, Event, Harvester, Parameters, Peak};
 
 /// The peaks of fig14 under `law` in its first 5 s, and the number of impacts.
 fn peaks(law: ContactLaw) -> (Harvester, Vec<Peak>, usize) {
@@ -12,8 +12,8 @@ fn peaks(law: ContactLaw) -> (Harvester, Vec<Peak>, usize) {
     start
         .clone()
         .advance_with(5.0, |shown| match shown {
-            Occurrence::Impact(_) => impacts += 1,
-            Occurrence::Peak(peak) => peaks.push(*peak),
+            Event::Impact(_) => impacts += 1,
+            Event::Peak(peak) => peaks.push(*peak),
         })
         .unwrap();
     (start, peaks, impacts)

@@ -5,7 +5,7 @@ use fmu_export::{
     Variable,
 };
 use videg_model::{
-    ContactLaw, Harvester as Model, Impact, Membrane, ModelError, Occurrence, Parameters, Peak, PulseShape, Side,
+    ContactLaw, Event, Harvester as Model, Impact, Membrane, ModelError, Parameters, Peak, PulseShape, Side,
 };
 
 use crate::limits;
@@ -124,7 +124,7 @@ impl Harvester {
     fn check_limits_closely(&mut self, log: &Logger) {
         let Ok(model) = &self.model else { return };
         limits::check_present(model, self.voltages, log);
-        let flat = [Side::Left, Side::Right].into_iter().all(|side| model.deflection(side).value == 0.0);
+        let flat = Side::BOTH.into_iter().all(|side| model.deflection(side).value == 0.0);
         self.checked = if flat { self.voltages } else { [f64::NAN; 2] };
     }
 
@@ -212,14 +212,14 @@ impl Slave for Harvester {
             return Err(elsewhere(t, model.time()));
         }
         let mut number = model.totals().impacts;
-        let show = |shown: &Occurrence| match shown {
-            Occurrence::Impact(impact) => {
+        let show = |event: &Event| match event {
+            Event::Impact(impact) => {
                 number += 1;
                 if log.is_enabled(LogCategory::Events) {
                     log.event(describe(number, impact));
                 }
             }
-            Occurrence::Peak(peak) => limits::check(&Membrane::new(parameters), peak, log),
+            Event::Peak(peak) => limits::check(&Membrane::new(parameters), peak, log),
         };
         let advanced = model
             .set_external_force(self.external_force, self.external_force_rate)
@@ -285,8 +285,8 @@ fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveErr
 
 /// Whether a step of `h`, s, is more work than anybody waits for.
 fn is_too_long(parameters: &Parameters, h: f64) -> bool {
-    let Parameters { frequency, phase_noise, noise_hold, .. } = *parameters;
-    h * frequency > MAX_PERIODS || phase_noise > 0.0 && h > most_holds(parameters) * noise_hold
+    let Parameters { frequency, noise_hold, .. } = *parameters;
+    h * frequency > MAX_PERIODS || parameters.is_noisy() && h > most_holds(parameters) * noise_hold
 }
 
 /// Hold intervals that a step may have.

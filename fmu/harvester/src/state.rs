@@ -2,8 +2,8 @@
 
 use fmu_export::{StateError, StateReader, StateWriter};
 use videg_model::{
-    ContactLaw, ContactSnapshot, Harvester as Model, NoiseModel, OutsideGap, Parameters, Phase, Pulse, PulseChange,
-    Side, Snapshot, Totals,
+    Changes, ContactLaw, ContactState, Harvester as Model, NoiseModel, OutsideGap, Parameters, Phase, Point, Pulse,
+    PulseChange, Ramp, Side, Snapshot, Start, Totals, Works,
 };
 
 use crate::slave::Harvester;
@@ -83,10 +83,10 @@ fn read_parameters(from: &mut StateReader<'_>) -> Result<Parameters, StateError>
 
 fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
     out.f64(snapshot.time);
-    write_all(snapshot.cylinder, out);
-    write_all(snapshot.external, out);
-    write_all(snapshot.ball, out);
-    write_all(snapshot.flight, out);
+    write_start(snapshot.cylinder, out);
+    write_all([snapshot.external, snapshot.external_rate], out);
+    write_start(snapshot.ball, out);
+    write_start(snapshot.relative, out);
     write_side(snapshot.resting, out);
     out.u64(snapshot.noise_sample);
     out.f64(snapshot.noise_walk);
@@ -98,32 +98,38 @@ fn write_snapshot(snapshot: &Snapshot, out: &mut StateWriter) {
         }
     }
     write_contact(snapshot.contact.as_ref(), out);
-    snapshot.voltages.iter().for_each(|ramp| write_all(*ramp, out));
+    snapshot.voltages.iter().for_each(|Ramp { start, value, rate }| write_all([*start, *value, *rate], out));
     let totals = &snapshot.totals;
     for count in [totals.impacts, totals.chatters, totals.releases] {
         out.u64(count);
     }
     write_all([totals.last_speed, totals.voltage_gain, totals.energy], out);
-    write_all(snapshot.ledger, out);
+    let Works { wall, electrical, loss, contact_time } = snapshot.works;
+    write_all([wall, electrical, loss, contact_time], out);
     out.bool(snapshot.changes.is_some());
-    snapshot.changes.into_iter().for_each(|changes| write_all(changes, out));
+    if let Some(Changes { since, displacement, rate, last_speed, voltage_gain, energy, wall, loss }) = snapshot.changes
+    {
+        write_all([since, displacement, rate, last_speed, voltage_gain, energy, wall, loss], out);
+    }
     out.f64(snapshot.second);
     out.u64(snapshot.second_events);
 }
 
+/// Fields are read in the order in which they stand here.
 fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
     Ok(Snapshot {
         time: from.f64()?,
-        cylinder: array(from)?,
-        external: array(from)?,
-        ball: array(from)?,
-        flight: array(from)?,
+        cylinder: read_start(from)?,
+        external: from.f64()?,
+        external_rate: from.f64()?,
+        ball: read_start(from)?,
+        relative: read_start(from)?,
         resting: read_side(from)?,
         noise_sample: from.u64()?,
         noise_walk: from.f64()?,
         pulses: [read_pulses(from)?, read_pulses(from)?],
         contact: read_contact(from)?,
-        voltages: [array(from)?, array(from)?],
+        voltages: [read_ramp(from)?, read_ramp(from)?],
         totals: Totals {
             impacts: from.u64()?,
             chatters: from.u64()?,
@@ -132,11 +138,30 @@ fn read_snapshot(from: &mut StateReader<'_>) -> Result<Snapshot, StateError> {
             voltage_gain: from.f64()?,
             energy: from.f64()?,
         },
-        ledger: array(from)?,
-        changes: if from.bool()? { Some(array(from)?) } else { None },
+        works: Works { wall: from.f64()?, electrical: from.f64()?, loss: from.f64()?, contact_time: from.f64()? },
+        changes: if from.bool()? { Some(read_changes(from)?) } else { None },
         second: from.f64()?,
         second_events: from.u64()?,
     })
+}
+
+fn read_changes(from: &mut StateReader<'_>) -> Result<Changes, StateError> {
+    let [since, displacement, rate, last_speed, voltage_gain, energy, wall, loss] = array(from)?;
+    Ok(Changes { since, displacement, rate, last_speed, voltage_gain, energy, wall, loss })
+}
+
+fn write_start(Start { time, position, velocity }: Start, out: &mut StateWriter) {
+    write_all([time, position, velocity], out);
+}
+
+fn read_start(from: &mut StateReader<'_>) -> Result<Start, StateError> {
+    let [time, position, velocity] = array(from)?;
+    Ok(Start { time, position, velocity })
+}
+
+fn read_ramp(from: &mut StateReader<'_>) -> Result<Ramp, StateError> {
+    let [start, value, rate] = array(from)?;
+    Ok(Ramp { start, value, rate })
 }
 
 fn write_side(side: Option<Side>, out: &mut StateWriter) {
@@ -155,25 +180,26 @@ fn read_side(from: &mut StateReader<'_>) -> Result<Option<Side>, StateError> {
 /// The branches of the membrane's force, in the order of their numbers in the state.
 const PHASES: [Phase; 3] = [Phase::Loading, Phase::Unloading, Phase::Held];
 
-fn write_contact(contact: Option<&ContactSnapshot>, out: &mut StateWriter) {
+fn write_contact(contact: Option<&ContactState>, out: &mut StateWriter) {
     write_side(contact.map(|contact| contact.side), out);
-    let Some(ContactSnapshot { phase, since, largest, start, credited, proposal, .. }) = contact else { return };
+    let Some(ContactState { phase, since, largest, start, credited, proposal, .. }) = contact else { return };
     out.u8(match phase {
         Phase::Loading => 0,
         Phase::Unloading => 1,
         Phase::Held => 2,
     });
     write_all([*since, *largest, *credited, *proposal], out);
-    write_all(*start, out);
+    write_all([start.time, start.x, start.v], out);
 }
 
-fn read_contact(from: &mut StateReader<'_>) -> Result<Option<ContactSnapshot>, StateError> {
+fn read_contact(from: &mut StateReader<'_>) -> Result<Option<ContactState>, StateError> {
     let Some(side) = read_side(from)? else { return Ok(None) };
     let number = from.u8()?;
     let phase = PHASES.get(usize::from(number)).copied();
     let phase = phase.ok_or_else(|| StateError::Invalid(format!("{number} is no branch of the force")))?;
     let [since, largest, credited, proposal] = array(from)?;
-    Ok(Some(ContactSnapshot { side, phase, since, largest, start: array(from)?, credited, proposal }))
+    let [time, x, v] = array(from)?;
+    Ok(Some(ContactState { side, phase, since, largest, start: Point { time, x, v }, credited, proposal }))
 }
 
 fn read_pulses(from: &mut StateReader<'_>) -> Result<Vec<Pulse>, StateError> {

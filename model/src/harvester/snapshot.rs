@@ -1,21 +1,20 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
-use super::energy::{Ledger, LedgerChange};
-use super::events::{Event, Search};
-use super::phase::{Noise, phase};
-use super::tangent::Tangent;
-use super::{Ball, Harvester, Totals};
-use crate::compliant::{ContactSnapshot, Ramp, Touch};
-use crate::cylinder::{CylinderMotion, Drive};
+use super::Harvester;
+use super::integrator::MAX_LAG;
+use crate::accounting::budget::Budget;
+use crate::accounting::ledger::{Ledger, Totals, Works};
+use crate::contact::{Contact, ContactState, Ramp};
 use crate::error::ModelError;
-use crate::flight::{Flight, Side};
-use crate::holds::{BLOCK, Holds};
 use crate::membrane::Membrane;
+use crate::motion::cylinder::{CylinderMotion, Drive};
+use crate::motion::pulse::{Pulse, PulseShape, Pulses};
+use crate::motion::side::Side;
+use crate::motion::{Ball, Motion, Prediction, Search, Start};
+use crate::noise::Noise;
+use crate::noise::block::BLOCK;
 use crate::parameters::{ContactLaw, Parameters};
-use crate::pulse::{Pulse, PulseChange, PulseShape, Pulses};
-
-/// Phase-noise samples that an integrator may be behind: it may pause at an event before the event is handled.
-pub(super) const MAX_LAG: f64 = 1e6;
+use crate::sensitivity::{Changes, Tangent};
 
 /// Everything that a [`Harvester`] carries from one step to the next, besides its parameters.
 ///
@@ -25,16 +24,18 @@ pub(super) const MAX_LAG: f64 = 1e6;
 pub struct Snapshot {
     /// Present time, s.
     pub time: f64,
-    /// Start of the cylinder's present motion, s; `z_M`, m, and `z_M'`, m/s, there.
-    pub cylinder: [f64; 3],
-    /// External force over M at that start, m/s^2, and its rate, m/s^3.
-    pub external: [f64; 2],
-    /// Last event of the ball, s; `z_m`, m, and `z_m'`, m/s, there.
-    pub ball: [f64; 3],
+    /// Start of the cylinder's present motion.
+    pub cylinder: Start,
+    /// External force over M at that start, m/s^2.
+    pub external: f64,
+    /// Its rate, m/s^3.
+    pub external_rate: f64,
+    /// Last event of the ball.
+    pub ball: Start,
     /// The membrane on which the ball rests.
     pub resting: Option<Side>,
-    /// Start of the present search for events, s; `z_M` - `z_m`, m, and its rate, m/s, there.
-    pub flight: [f64; 3],
+    /// Start of the present search for events: `z_M` - `z_m` and its rate.
+    pub relative: Start,
     /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
     /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
     pub noise_sample: u64,
@@ -43,18 +44,15 @@ pub struct Snapshot {
     /// Pulses under way on the left and on the right membrane, the largest peak first.
     pub pulses: [Vec<Pulse>; 2],
     /// The present contact under the compliant law.
-    pub contact: Option<ContactSnapshot>,
-    /// Voltages across the left and the right membrane: time, s, value then, V, and rate, V/s.
-    pub voltages: [[f64; 3]; 2],
+    pub contact: Option<ContactState>,
+    /// Voltages across the left and the right membrane.
+    pub voltages: [Ramp; 2],
     /// Sums over all impacts so far.
     pub totals: Totals,
-    /// Work of the walls (at rest less the ball's kinetic energy) and of the Maxwell force, energy lost, J, and time in
-    /// contact, s, up to the last event.
-    pub ledger: [f64; 4],
-    /// What [`Harvester::sensitivities`] carry besides the changes of the pulses: the time from which they count, s; changes
-    /// of `z_M` - `z_m`, m, and its rate, m/s, at the ball's last event; changes of last speed, m/s, voltage gain, V, and energy,
-    /// J; changes of the work of the walls and of the energy lost, J, as the ledger has them. None before anybody asked.
-    pub changes: Option<[f64; 8]>,
+    /// Sums of the energy up to the last event.
+    pub works: Works,
+    /// What [`Harvester::sensitivities`] carry besides the changes of the pulses; none before anybody asked.
+    pub changes: Option<Changes>,
     /// Number of the second in which events are being counted.
     pub second: f64,
     /// Events counted in it.
@@ -64,40 +62,29 @@ pub struct Snapshot {
 impl Harvester {
     /// The dynamic state.
     pub fn snapshot(&self) -> Snapshot {
-        let Self { cylinder, ball, noise, tangent, ledger, .. } = self;
-        let ([displacement, rate], [last_speed, voltage_gain, energy]) = (tangent.motion, tangent.totals);
-        let LedgerChange { wall, loss } = tangent.ledger;
+        let Self { motion, noise, tangent, ledger, budget, .. } = self;
         // What follows from an anchor does so again, to the last bit, from nothing else.
-        let anchor = self.search.anchor.unwrap_or_else(|| self.present_boundary());
-        let is_behind = self.search.anchor.is_some();
-        let start = if is_behind { self.hold_start(anchor.sample) } else { cylinder.start };
-        let flight_start = if is_behind { start } else { self.search.flight.start };
+        let state = motion.search.anchor.unwrap_or_else(|| motion.hold_state(noise.sample));
+        let begin = motion.search.anchor.map(|anchor| noise.begin_of(anchor.sample));
+        let start = |time: f64, position, velocity| Start { time: begin.unwrap_or(time), position, velocity };
         Snapshot {
             time: self.time,
-            cylinder: [start, anchor.position, anchor.velocity],
-            external: [anchor.external, cylinder.drive.external_rate],
-            ball: [ball.since, ball.position, ball.velocity],
-            resting: ball.resting,
-            flight: [flight_start, anchor.dz, anchor.rate],
-            noise_sample: anchor.sample,
+            cylinder: start(motion.cylinder.start, state.position, state.velocity),
+            external: state.external,
+            external_rate: motion.cylinder.drive.external_rate,
+            ball: motion.last,
+            resting: motion.ball.support(),
+            relative: start(motion.flight.start, state.dz, state.rate),
+            noise_sample: state.sample,
             noise_walk: noise.walk,
-            pulses: self.pulses.clone().map(Pulses::into_inner),
-            contact: self.touch.as_ref().map(Touch::snapshot),
-            voltages: self.voltages.map(|ramp| [ramp.start, ramp.value, ramp.rate]),
-            totals: self.totals,
-            ledger: [ledger.wall, ledger.electrical, ledger.loss, ledger.contact_time],
-            changes: (!tangent.idle).then_some([
-                tangent.since,
-                displacement,
-                rate,
-                last_speed,
-                voltage_gain,
-                energy,
-                wall,
-                loss,
-            ]),
-            second: self.second,
-            second_events: self.second_events,
+            pulses: self.pulses.under_way.clone(),
+            contact: motion.ball.contact().map(|contact| contact.state),
+            voltages: self.voltages,
+            totals: ledger.totals,
+            works: ledger.works,
+            changes: (!tangent.idle).then_some(tangent.changes),
+            second: budget.second,
+            second_events: budget.events,
         }
     }
 
@@ -108,15 +95,13 @@ impl Harvester {
     /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
     pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
         let mut harvester = Self::rebuild(parameters, snapshot, BLOCK as f64)?;
-        harvester.placed = false;
-        harvester.search = if harvester.touch.is_some() {
-            Search::new(harvester.search.flight)
-        } else {
-            Search::resumed(harvester.search.flight, snapshot.time)
-        };
-        harvester.plan_touch();
-        let due = harvester.next_event(snapshot.time, true).filter(|event| event.time() <= snapshot.time);
-        if let Some(Event::Impact { time, .. } | Event::Release { time }) = due {
+        harvester.motion.resume_search(snapshot.time);
+        let (motion, forces, limit, ..) = harvester.parts();
+        motion.plan_contact(forces, limit);
+        let due = harvester.motion.next_event(&mut harvester.noise, snapshot.time, true);
+        if let Some(Prediction::Impact { time, .. } | Prediction::Release { time }) =
+            due.filter(|event| event.time() <= snapshot.time)
+        {
             // All of them have happened; a state that says otherwise could hold any number.
             check("event before the present time", time, false)?;
         }
@@ -124,64 +109,51 @@ impl Harvester {
         Ok(harvester)
     }
 
-    /// The same for a harvester whose states are placed by an integrator ([`Harvester::place`]).
+    /// The same for a harvester whose states are set by an integrator ([`Harvester::place`]).
     ///
     /// # Errors
     /// As [`Harvester::restore`].
     pub fn restore_placed(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        Self::rebuild(parameters, snapshot, MAX_LAG)
+        let mut harvester = Self::rebuild(parameters, snapshot, MAX_LAG)?;
+        harvester.leave_to_integrator();
+        Ok(harvester)
     }
 
     /// `lag`: how many phase-noise samples may be due and not taken.
-    fn rebuild(parameters: &Parameters, snapshot: &Snapshot, lag: f64) -> Result<Self, ModelError> {
-        parameters.validate()?;
-        snapshot.validate(parameters, lag)?;
-        let p = *parameters;
-        let noise = Noise { sample: snapshot.noise_sample, walk: snapshot.noise_walk };
-        let [external, external_rate] = snapshot.external;
-        let drive = Drive {
-            amplitude: p.amplitude / p.cylinder_mass,
-            frequency: p.frequency,
-            phase: phase(&p, &noise),
-            external,
-            external_rate,
-        };
-        let [start, position, velocity] = snapshot.cylinder;
+    fn rebuild(p: &Parameters, snapshot: &Snapshot, lag: f64) -> Result<Self, ModelError> {
+        p.validate()?;
+        snapshot.validate(p, lag)?;
+        let noise = Noise::new(p, snapshot.noise_sample, snapshot.noise_walk);
+        let drive = Drive::new(p, noise.phase(noise.sample), [snapshot.external, snapshot.external_rate]);
+        let Start { time: start, position, velocity } = snapshot.cylinder;
         let cylinder = CylinderMotion::new(start, position, velocity, drive);
-        let [since, position, velocity] = snapshot.ball;
-        let ball = Ball { since, position, velocity, resting: snapshot.resting };
-        let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| {
-            let [since, displacement, rate, last_speed, voltage_gain, energy, wall, loss] = changes;
-            let mut tangent = Tangent::of_force(since, p.cylinder_mass);
-            tangent.motion = [displacement, rate];
-            tangent.totals = [last_speed, voltage_gain, energy];
-            tangent.ledger = LedgerChange { wall, loss };
-            tangent
+        let ball = match (snapshot.contact, snapshot.resting) {
+            (Some(state), _) => Ball::InContact(Contact::resumed(state)),
+            (None, Some(side)) => Ball::Resting(side),
+            (None, None) => Ball::Free,
+        };
+        let rate = if snapshot.resting.is_some() { 0.0 } else { snapshot.relative.velocity };
+        let relative = Start { velocity: rate, ..snapshot.relative };
+        let mut motion = Motion::new(p, cylinder, snapshot.ball, ball, relative);
+        motion.search = Search::none();
+        let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| Tangent {
+            changes,
+            ..Tangent::of_force(changes.since, p.cylinder_mass)
         });
-        let [wall, electrical, loss, contact_time] = snapshot.ledger;
-        let [start, dz, rate] = snapshot.flight;
-        let rate = if ball.resting.is_some() { 0.0 } else { rate };
-        let flight = Flight::new(&cylinder, &cylinder.at(start), [dz, rate], p.travel() / 2.0);
+        let membrane = Membrane::new(p);
+        let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         Ok(Self {
-            parameters: p,
-            membrane: Membrane::new(&p),
-            shape: PulseShape::new(p.stiffness_exponent, p.restitution),
+            parameters: *p,
+            membrane,
             time: snapshot.time,
-            cylinder,
-            ball,
+            motion,
             noise,
-            holds: Holds::new(&p),
-            search: Search::none(flight),
-            pulses: snapshot.pulses.clone().map(Pulses::from_inner),
-            touch: snapshot.contact.as_ref().map(Touch::restored),
-            voltages: snapshot.voltages.map(|[start, value, rate]| Ramp { start, value, rate }),
-            totals: snapshot.totals,
-            ledger: Ledger { wall, electrical, loss, contact_time },
+            voltages: snapshot.voltages,
+            pulses: Pulses { shape, under_way: snapshot.pulses.clone() },
+            ledger: Ledger::new(p, membrane.rest_capacitance, snapshot.totals, snapshot.works),
+            budget: Budget::new(p, snapshot.second, snapshot.second_events),
             tangent,
-            placed: true,
             calm_until: f64::NEG_INFINITY,
-            second: snapshot.second,
-            second_events: snapshot.second_events,
         })
     }
 }
@@ -191,37 +163,51 @@ const MAX_COUNT: u64 = 1 << 53;
 
 impl Snapshot {
     fn validate(&self, parameters: &Parameters, lag: f64) -> Result<(), ModelError> {
-        let Self { time, totals, .. } = *self;
-        check("time", time, time.is_finite())?;
-        for value in self.cylinder.into_iter().chain(self.external).chain(self.ball).chain(self.flight) {
-            check("motion", value, value.is_finite())?;
+        let Self { time, cylinder, ball, relative, totals, works, .. } = *self;
+        let periods_since = |start: f64| (time - start) * parameters.frequency;
+        let finite = |name, values: &[f64]| values.iter().try_for_each(|value| check(name, *value, value.is_finite()));
+        finite("time", &[time])?;
+        for Start { time, position, velocity } in [cylinder, ball, relative] {
+            finite("motion", &[time, position, velocity])?;
         }
-        let changes = self.pulses.iter().flatten().flat_map(|pulse| {
-            let PulseChange { start, speed, peak } = pulse.change;
-            [start, speed, peak]
-        });
-        for change in changes.chain(self.changes.into_iter().flatten()) {
-            check("change", change, change.is_finite())?;
+        finite("motion", &[self.external, self.external_rate])?;
+        for pulse in self.pulses.iter().flatten() {
+            finite("change", &[pulse.change.start, pulse.change.speed, pulse.change.peak])?;
         }
-        let since = self.changes.map(|[since, ..]| since);
-        for start in [self.cylinder[0], self.ball[0], self.flight[0]].into_iter().chain(since) {
+        if let Some(c) = &self.changes {
+            let motion = [c.since, c.displacement, c.rate];
+            finite("change", &[motion, [c.last_speed, c.voltage_gain, c.energy]].concat())?;
+            finite("change", &[c.wall, c.loss])?;
+        }
+        let since = self.changes.map(|changes| changes.since);
+        for start in [cylinder.time, ball.time, relative.time].into_iter().chain(since) {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
-            check("start of a motion", start, start <= time && (time - start) * parameters.frequency < 9.0e15)?;
+            check("start of a motion", start, start <= time && periods_since(start) < 9.0e15)?;
         }
-        check("Wiener process", self.noise_walk, self.noise_walk.is_finite())?;
-        if parameters.phase_noise > 0.0 {
+        finite("Wiener process", &[self.noise_walk])?;
+        if parameters.is_noisy() {
             let (sample, hold) = (self.noise_sample as f64, parameters.noise_hold);
             let in_force = (sample + 1.0 + lag) * hold > time && sample * hold <= time.max(0.0) + hold;
             check("noise sample", sample, in_force)?;
         }
         for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
-            check("sum over the impacts", sum, sum.is_finite() && sum >= 0.0)?;
+            check_size("sum over the impacts", sum)?;
         }
-        for value in self.voltages.into_iter().flatten().chain(self.ledger) {
-            check("voltage or sum of work", value, value.is_finite())?;
+        for Ramp { start, value, rate } in self.voltages {
+            finite("voltage or sum of work", &[start, value, rate])?;
         }
-        self.contact.iter().try_for_each(|contact| validate_contact(contact, parameters, time))?;
-        check("second", self.second, self.second.is_finite())?;
+        finite("voltage or sum of work", &[works.wall, works.electrical, works.loss, works.contact_time])?;
+        if let Some(ContactState { since, largest, start, credited, proposal, .. }) = self.contact {
+            let is_compliant = parameters.contact_law == ContactLaw::Compliant && self.resting.is_none();
+            check("contact since", since, since <= start.time && is_compliant)?;
+            check("start of a contact", start.time, start.time <= time && periods_since(start.time) <= 2.0)?;
+            finite("deflection", &[start.x])?;
+            finite("rate of a deflection", &[start.v])?;
+            check_size("largest deflection", largest)?;
+            check_size("credited excess", credited)?;
+            check("first step", proposal, proposal.is_finite() && proposal > 0.0)?;
+        }
+        finite("second", &[self.second])?;
         for count in [totals.impacts, totals.chatters, totals.releases, self.second_events] {
             check("number of events", count as f64, count <= MAX_COUNT)?;
         }
@@ -229,28 +215,22 @@ impl Snapshot {
     }
 }
 
-fn validate_contact(contact: &ContactSnapshot, parameters: &Parameters, time: f64) -> Result<(), ModelError> {
-    let ContactSnapshot { since, largest, start: [start, x, v], credited, proposal, .. } = *contact;
-    check("contact since", since, since <= start && parameters.contact_law == ContactLaw::Compliant)?;
-    check("start of a contact", start, start <= time && (time - start) * parameters.frequency <= 2.0)?;
-    check("deflection", x, x.is_finite())?;
-    check("rate of a deflection", v, v.is_finite())?;
-    check("largest deflection", largest, largest.is_finite() && largest >= 0.0)?;
-    check("credited excess", credited, credited.is_finite() && credited >= 0.0)?;
-    check("first step", proposal, proposal.is_finite() && proposal > 0.0)
-}
-
 fn validate_pulses(pulses: &[Pulse], time: f64) -> Result<(), ModelError> {
     check("number of pulses", pulses.len() as f64, pulses.len() <= Pulses::CAPACITY)?;
     for pulse in pulses {
         check("start of a pulse", pulse.start, pulse.start.is_finite() && pulse.start <= time)?;
-        check("speed of a pulse", pulse.speed, pulse.speed.is_finite() && pulse.speed >= 0.0)?;
-        check("peak of a pulse", pulse.peak, pulse.peak.is_finite() && pulse.peak >= 0.0)?;
+        check_size("speed of a pulse", pulse.speed)?;
+        check_size("peak of a pulse", pulse.peak)?;
     }
     let ascent = pulses.windows(2).find(|pair| pair[0].peak < pair[1].peak);
     check("order of the pulses", ascent.map_or(0.0, |pair| pair[1].peak), ascent.is_none())
 }
 
-fn check(name: &'static str, value: f64, holds: bool) -> Result<(), ModelError> {
-    if holds { Ok(()) } else { Err(ModelError::Snapshot { name, value }) }
+/// That a value that is never negative is finite, too.
+fn check_size(name: &'static str, value: f64) -> Result<(), ModelError> {
+    check(name, value, value.is_finite() && value >= 0.0)
+}
+
+fn check(name: &'static str, value: f64, is_possible: bool) -> Result<(), ModelError> {
+    if is_possible { Ok(()) } else { Err(ModelError::Snapshot { name, value }) }
 }

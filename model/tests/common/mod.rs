@@ -134,8 +134,13 @@ impl Stepper {
     pub fn power(&self, from: f64, until: f64) -> f64 {
         let membrane = Membrane::new(&self.p);
         let counted = self.impacts.iter().filter(|impact| impact.time > from && impact.time <= until);
-        let energy: f64 =
-            counted.map(|i| membrane.impact_energy(membrane.deflection(i.speed), self.p.bias_voltage)).sum();
+        let energy: f64 = counted
+            .map(|i| {
+                0.5 * self.p.bias_voltage.powi(2)
+                    * membrane.rest_capacitance()
+                    * membrane.capacitance_excess(membrane.deflection(i.speed))
+            })
+            .sum();
         energy / (until - from)
     }
 }

@@ -1,0 +1,176 @@
+//! The forces of a contact: membrane with hysteresis, Maxwell force, and what accelerates the wall.
+
+use super::step::Point;
+use crate::membrane::Membrane;
+use crate::motion::cylinder::CylinderMotion;
+use crate::motion::flight::Flight;
+use crate::motion::side::Side;
+use crate::paper::{excitation, force};
+use crate::parameters::Parameters;
+
+/// A voltage that is linear in time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ramp {
+    /// Time at which it has `value`, s.
+    pub start: f64,
+    /// V.
+    pub value: f64,
+    /// V/s.
+    pub rate: f64,
+}
+
+impl Ramp {
+    /// Voltage at `time`, s.
+    pub(crate) fn at(&self, time: f64) -> f64 {
+        self.value + self.rate * (time - self.start)
+    }
+
+    /// Whether it stays at `value`, V.
+    pub(crate) fn stays_at(&self, value: f64) -> bool {
+        self.value == value && self.rate == 0.0
+    }
+}
+
+/// On which branch of the membrane's force a contact is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Deeper than ever in this contact: the force is K x^n.
+    Loading,
+    /// Anywhere below the largest deflection of this contact: r^2 K x^n.
+    Unloading,
+    /// At rest at the largest deflection: the push is less than K x^n, so it goes no deeper, and more than r^2 K x^n, so it
+    /// does not come back. The force balances the push, as friction does.
+    Held,
+}
+
+/// Everything that acts during a contact; deflection x is counted from the membrane's rest plane, inwards.
+pub(crate) struct Law<'a> {
+    pub(crate) parameters: &'a Parameters,
+    pub(crate) membrane: &'a Membrane,
+    /// The cylinder as it would move without the contact.
+    pub(crate) cylinder: &'a CylinderMotion,
+    /// The ball likewise, relative to the cylinder.
+    pub(crate) flight: &'a Flight,
+    pub(crate) side: Side,
+    pub(crate) voltage: Ramp,
+}
+
+/// Position, m, and velocity, m/s, that the contact adds to the cylinder's.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Recoil {
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+}
+
+impl Law<'_> {
+    /// Mass that answers to forces between ball and cylinder, kg: m, or with reaction m M / (m + M).
+    pub(crate) fn mass(&self) -> f64 {
+        self.parameters.ball_mass * (1.0 - self.parameters.recoil_share())
+    }
+
+    /// Force of the membrane, N, on this branch; odd in x, so that it is smooth where a step passes zero.
+    pub(super) fn spring(&self, phase: Phase, x: f64) -> f64 {
+        let force = self.loading(x);
+        match phase {
+            Phase::Loading => force,
+            Phase::Unloading | Phase::Held => self.recovered() * force,
+        }
+    }
+
+    /// K x^n, N: Eq. (2).
+    pub(super) fn loading(&self, x: f64) -> f64 {
+        force::force(self.parameters.stiffness, self.parameters.stiffness_exponent, x)
+    }
+
+    /// r^2: the share of the work of loading that comes back.
+    pub(super) fn recovered(&self) -> f64 {
+        self.parameters.restitution * self.parameters.restitution
+    }
+
+    /// Work, J, of the force K x^n from 0 to `x`, m: Eq. (9).
+    pub(crate) fn loading_work(&self, x: f64) -> f64 {
+        force::work(self.loading(x), self.parameters.stiffness_exponent, x)
+    }
+
+    /// Energy, J, that the membrane gives back from `x`, m.
+    pub(crate) fn elastic(&self, x: f64) -> f64 {
+        self.recovered() * self.loading_work(x)
+    }
+
+    /// Energy, J, lost in a contact whose largest deflection is `largest`, m.
+    pub(crate) fn loss(&self, largest: f64) -> f64 {
+        (1.0 - self.recovered()) * self.loading_work(largest)
+    }
+
+    /// Maxwell force, N, that pulls the ball inwards at `x`, m, `elapsed` after `time`, s: 1/2 U^2 dC/dx.
+    pub(super) fn maxwell(&self, time: f64, elapsed: f64, x: f64) -> f64 {
+        if !self.parameters.electrostatic_feedback {
+            return 0.0;
+        }
+        let voltage = self.voltage.at(time) + self.voltage.rate * elapsed;
+        0.5 * voltage * voltage * self.membrane.capacitance_slope(x)
+    }
+
+    /// Largest deflection, m, with feedback: a Maxwell force may exceed that of a membrane whose exponent is small at any
+    /// depth.
+    pub(crate) fn deepest(&self) -> f64 {
+        /// In units of `R_2`: no membrane reaches that.
+        const BOUND: f64 = 100.0;
+        BOUND * self.membrane.radius()
+    }
+
+    /// Whether `x`, m, is deeper than is resolved.
+    pub(crate) fn is_too_deep(&self, x: f64) -> bool {
+        self.parameters.electrostatic_feedback && x > self.deepest()
+    }
+
+    /// Size of the terms of the push about `time`, s, whose rounding it carries, m/s^2.
+    pub(super) fn push_size(&self, time: f64) -> f64 {
+        let drive = &self.cylinder.drive;
+        drive.amplitude + (drive.external + drive.external_rate * (time - self.cylinder.start)).abs()
+    }
+
+    /// Force on the ball, N, outwards.
+    pub(crate) fn total(&self, phase: Phase, point: &Point) -> f64 {
+        match phase {
+            Phase::Held => self.mass() * self.push(point.time, 0.0),
+            _ => self.spring(phase, point.x) - self.maxwell(point.time, 0.0, point.x),
+        }
+    }
+
+    /// Relative acceleration, m/s^2, inwards, that a free ball would have `elapsed` after `time`, s. The two are kept
+    /// apart: their sum has too few digits for short steps late in a run.
+    pub(super) fn push(&self, time: f64, elapsed: f64) -> f64 {
+        let drive = &self.cylinder.drive;
+        let cosine = (drive.angle(time) + drive.omega() * elapsed).cos();
+        let external = drive.external + drive.external_rate * (time - self.cylinder.start + elapsed);
+        self.side.sign() * excitation::acceleration(drive.amplitude, cosine, external)
+    }
+
+    /// What the contact adds to the cylinder's motion when deflection and rate are `x`, m, and `v`, m/s.
+    pub(crate) fn recoil(&self, time: f64, x: f64, v: f64) -> Recoil {
+        Recoil::new(self.parameters.recoil_share(), self.flight, self.side, &Point { time, x, v })
+    }
+}
+
+impl Parameters {
+    /// Share of the relative motion that the cylinder makes in a contact: m / (m + M) with reaction, else 0.
+    pub(crate) fn recoil_share(&self) -> f64 {
+        if self.reaction { self.ball_mass / (self.ball_mass + self.cylinder_mass) } else { 0.0 }
+    }
+}
+
+impl Recoil {
+    /// What a contact adds to the cylinder's motion.
+    ///
+    /// Both forces between the bodies are opposite and equal. They change the relative motion by the difference between x
+    /// and the deflection that free bodies would have, of which the cylinder makes its `share`.
+    pub(crate) fn new(share: f64, flight: &Flight, side: Side, &Point { time, x, v }: &Point) -> Self {
+        if share == 0.0 {
+            return Self::default();
+        }
+        let [dz, rate] = flight.at(time - flight.start);
+        let (position, velocity) = (side.sign() * (flight.half_travel() + x) - dz, side.sign() * v - rate);
+        Self { position: share * position, velocity: share * velocity }
+    }
+}

@@ -1,0 +1,176 @@
+//! What a harvester shows at its present time.
+
+use super::Harvester;
+use crate::accounting::ledger::{Energies, Totals};
+use crate::membrane::Membrane;
+use crate::motion::pulse::Deflection;
+use crate::motion::side::Side;
+use crate::parameters::{ContactLaw, Parameters};
+use crate::sensitivity::{Sensitivities, membrane_changes};
+
+impl Harvester {
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The membrane, the same at both ends.
+    pub fn membrane(&self) -> &Membrane {
+        &self.membrane
+    }
+
+    /// Present time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// `z_M`, m.
+    pub fn cylinder_position(&self) -> f64 {
+        self.motion.cylinder_position_at(self.time)
+    }
+
+    /// `z_M'`, m/s.
+    pub fn cylinder_velocity(&self) -> f64 {
+        self.motion.cylinder_velocity_at(self.time)
+    }
+
+    /// `z_M''`, m/s^2, Eq. (7).
+    pub fn cylinder_acceleration(&self) -> f64 {
+        self.motion.cylinder.acceleration(self.time) + self.recoil_acceleration()
+    }
+
+    /// What the contact adds to `z_M''`, m/s^2.
+    fn recoil_acceleration(&self) -> f64 {
+        let p = &self.parameters;
+        if p.reaction { -self.motion.contact_force(self.forces(), self.time) / p.cylinder_mass } else { 0.0 }
+    }
+
+    /// `z_m`, m.
+    pub fn ball_position(&self) -> f64 {
+        self.motion.ball_position_at(self.time)
+    }
+
+    /// `z_m'`, m/s.
+    pub fn ball_velocity(&self) -> f64 {
+        self.motion.ball_velocity_at(self.time)
+    }
+
+    /// `z_m''`, m/s^2: that of the cylinder while the ball rests, that of the forces of a contact, else 0.
+    pub fn ball_acceleration(&self) -> f64 {
+        match self.resting() {
+            Some(_) => self.cylinder_acceleration(),
+            None => self.motion.contact_force(self.forces(), self.time) / self.parameters.ball_mass,
+        }
+    }
+
+    /// dz = `z_M` - `z_m`, m.
+    pub fn relative_displacement(&self) -> f64 {
+        let [dz, _] = self.motion.relative_at(self.time);
+        dz
+    }
+
+    /// Deflection of the membrane at `side` and its rate.
+    pub fn deflection(&self, side: Side) -> Deflection {
+        match self.parameters.contact_law {
+            ContactLaw::Impulsive => self.pulses.at(side, self.time),
+            ContactLaw::Compliant => self.motion.contact_deflection(side, self.time),
+        }
+    }
+
+    /// Capacitance of the membrane at `side`, F, Eq. (1).
+    pub fn capacitance(&self, side: Side) -> f64 {
+        self.membrane.capacitance(self.deflection(side).value)
+    }
+
+    /// Time derivative of the capacitance at `side`, F/s.
+    pub fn capacitance_rate(&self, side: Side) -> f64 {
+        let deflection = self.deflection(side);
+        self.membrane.capacitance_slope(deflection.value) * deflection.rate
+    }
+
+    /// The membrane on which the ball rests: it does not move relative to it. Under the compliant law that is a ball which
+    /// the wall's push holds at a deflection; one that swings about its equilibrium does not rest.
+    pub fn resting(&self) -> Option<Side> {
+        self.motion.resting()
+    }
+
+    /// Sums over all impacts so far.
+    pub fn totals(&self) -> &Totals {
+        &self.ledger.totals
+    }
+
+    /// Mechanical energies and works since the start.
+    ///
+    /// Wall, electrical and loss are integrals and sums on their own, from which the balance of the ball can be audited. The
+    /// work of the excitation follows from the cylinder's kinetic energy.
+    pub fn energies(&self) -> Energies {
+        let (p, mut works) = (&self.parameters, self.ledger.works);
+        let (ball, mut elastic) = (self.ledger.kinetic(self.ball_velocity()), 0.0);
+        if let Some((work, stored, lost)) = self.motion.contact_energies(self.forces(), self.time) {
+            works.wall += work.wall;
+            works.electrical += work.electrical;
+            elastic = stored;
+            works.loss += lost;
+        } else if self.motion.ball.support().is_some() {
+            works.wall += ball;
+        }
+        let of_cylinder = |velocity: f64| 0.5 * p.cylinder_mass * velocity * velocity;
+        let cylinder = of_cylinder(self.cylinder_velocity());
+        let gained = cylinder - of_cylinder(p.cylinder_velocity);
+        Energies {
+            ball,
+            cylinder,
+            elastic,
+            impact_loss: works.loss,
+            excitation: gained + if p.reaction { works.wall } else { 0.0 },
+            electrical: works.electrical,
+            wall: works.wall,
+        }
+    }
+
+    /// Time in contact since the start, s, under the compliant law; impacts of the impulsive law take none.
+    pub fn contact_time(&self) -> f64 {
+        let present = self.motion.ball.contact().map_or(0.0, |contact| self.time - contact.state.since);
+        self.ledger.works.contact_time + present
+    }
+
+    /// First-order changes of everything, per newton of the external force: that set by the last
+    /// [`Harvester::set_external_force`], moved by a constant and held since then. Of a harvester made by
+    /// [`Harvester::along`], before that is called: per unit of its direction. Of any other harvester they are zero before.
+    ///
+    /// They are those of the side that the state is on: after an event at the present time. Events stay in their order, a
+    /// ball at rest stays there. Grazing impacts ([`GRAZING_SPEED`](crate::GRAZING_SPEED)) count as none, so that all values
+    /// are finite. The membrane is flat at the instant of an impact, and its changes are zero then.
+    pub fn sensitivities(&self) -> Sensitivities {
+        let (changes, time) = (self.tangential(), self.time);
+        let ([position, velocity], [ball_position, ball_velocity]) =
+            (changes.cylinder_change(time), changes.ball_change(time));
+        let deflection = Side::BOTH.map(|side| self.pulses.change_at(side, time));
+        let of_membranes = Side::BOTH.map(|side| {
+            let value = self.deflection(side).value;
+            membrane_changes(&self.membrane, &self.tangent, value, deflection[side.index()])
+        });
+        let of_membrane = |k: usize| of_membranes.map(|of_membrane| of_membrane[k]);
+        let acceleration = changes.acceleration_change(time);
+        let after_due = self.is_due().then(|| self.after_due()).flatten();
+        let predicting = after_due.as_ref().unwrap_or(self);
+        let next_impact = predicting.next_impact_change();
+        let sums = &self.tangent.changes;
+        Sensitivities {
+            cylinder: [position, velocity, acceleration],
+            ball: [ball_position, ball_velocity, self.motion.ball.support().map_or(0.0, |_| acceleration)],
+            relative_displacement: changes.motion_change(time)[0],
+            deflection,
+            area_ratio: of_membrane(0),
+            stretch: of_membrane(1),
+            field_per_volt: of_membrane(2),
+            capacitance: of_membrane(3),
+            last_speed: sums.last_speed,
+            voltage_gain: sums.voltage_gain,
+            energy: sums.energy,
+            energies: changes.energies_change(time),
+            next_impact,
+            next_knot: predicting.next_knot_change(next_impact),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! What is predicted: the next impact, beyond a release, too, the next knot of C(t), and how their times change to first
+//! order.
+
+use super::Harvester;
+use crate::contact::{Contact, Ending};
+use crate::motion::Prediction;
+use crate::motion::side::Side;
+use crate::sensitivity::{bounded, grazes};
+
+impl Harvester {
+    /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, after its release. None
+    /// during a contact under the compliant law, and if no impact is predicted within at least one excitation period (from
+    /// the release on, if the ball rests), or, with phase noise, within at least 256 hold intervals if those are shorter;
+    /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
+    /// a period.
+    pub fn next_impact(&self) -> Option<f64> {
+        if self.is_due() {
+            return self.after_due()?.next_impact();
+        }
+        match self.motion.found_impact() {
+            Some((time, ..)) => Some(time),
+            None => self.motion.search.after_release.filter(|time| time.is_finite()),
+        }
+    }
+
+    /// The next time, s, at which a capacitance has a kink or an extremum, or the ball becomes free: the peak or the end of
+    /// a pulse, an impact, or the release of a resting ball; under the compliant law up to where the present contact is predicted
+    /// under the present force and voltages, which is at most one excitation period.
+    pub fn next_knot(&self) -> Option<f64> {
+        if self.is_due() {
+            return self.after_due()?.next_knot();
+        }
+        let pulses = self.pulses.next_knots(self.time).map(|knot| knot.time);
+        let knots = pulses.chain(self.next_impact()).chain(self.motion.found_release()).chain(self.contact_knot());
+        knots.min_by(f64::total_cmp)
+    }
+
+    /// Up to where the contact is predicted, s: to where the membrane's force changes its branch, if that is within a period.
+    /// With phase noise a contact is followed hold interval by hold interval, whose ends are no knots.
+    fn contact_knot(&self) -> Option<f64> {
+        let is_hold = |contact: &&Contact| contact.ending() == Ending::Cut && self.noise.limit().is_some();
+        self.motion.ball.contact().filter(|contact| !is_hold(contact)).map(Contact::end)
+    }
+
+    /// Whether something happens at the present time, under a force or a voltage just set.
+    pub(super) fn is_due(&self) -> bool {
+        let contact = self.motion.ball.contact().map(Contact::end);
+        contact.or(self.motion.search.found.map(Prediction::time)).is_some_and(|time| time <= self.time)
+    }
+
+    /// This harvester after what is due at its present time.
+    pub(super) fn after_due(&self) -> Option<Self> {
+        let mut ahead = self.clone();
+        ahead.advance_through_events(self.time, |_| {}).ok()?;
+        Some(ahead)
+    }
+
+    /// This harvester when its ball has just been released, if that is what comes next.
+    fn at_release(&self) -> Option<Self> {
+        let time = self.motion.found_release()?;
+        let mut ahead = self.clone();
+        ahead.go_to(time, &mut |_| {}).ok()?;
+        ahead.search_from(time);
+        Some(ahead)
+    }
+
+    pub(super) fn look_beyond_release(&mut self) {
+        if self.motion.search.after_release.is_none() {
+            let ahead = self.at_release();
+            self.motion.search.after_release = ahead.map(|ahead| ahead.next_impact().unwrap_or(f64::INFINITY));
+        }
+    }
+
+    /// The next impact, unless it grazes: time, side and relative speed.
+    fn resolved_impact(&self) -> Option<(f64, Side, f64)> {
+        let impact = self.motion.found_impact();
+        impact.filter(|(time, side, speed)| {
+            !grazes(*side, *speed, self.motion.predicted_cylinder(&self.noise).acceleration(*time))
+        })
+    }
+
+    /// Change of [`Harvester::next_impact`].
+    pub(super) fn next_impact_change(&self) -> f64 {
+        let changes = self.tangential();
+        match self.motion.found_release().zip(self.motion.ball.support()) {
+            None => self.resolved_impact().map_or(0.0, |(time, side, speed)| changes.delay(time, side, speed)),
+            Some((release, side)) => {
+                let impact = self.at_release().and_then(|ahead| ahead.resolved_impact());
+                impact.map_or(0.0, |impact| changes.delay_after_release(release, side, impact))
+            }
+        }
+    }
+
+    /// Change of [`Harvester::next_knot`].
+    pub(super) fn next_knot_change(&self, next_impact_change: f64) -> f64 {
+        let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
+        let pulses = self.pulses.next_knots(self.time);
+        let pulses = pulses.map(|knot| (knot.time, knot.change(&self.pulses.shape, &shape)));
+        let next_impact = self.next_impact().map(|time| (time, next_impact_change));
+        let release = self.motion.found_release().map(|time| (time, self.tangential().release_change(time)));
+        let knots = pulses.chain(next_impact).chain(release);
+        knots.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, change)| change)
+    }
+
+    /// Changes of [`Harvester::next_impact`] and [`Harvester::next_knot`] per unit of `z_M` - `z_m` and of its rate at the
+    /// present time.
+    pub fn next_times_by_displacement(&self) -> [[f64; 2]; 2] {
+        let next_impact = self.resolved_impact().map_or([0.0; 2], |(time, side, speed)| {
+            [1.0, time - self.time].map(|approach| bounded(-side.sign() * approach / speed))
+        });
+        let is_knot = self.next_impact().is_some() && self.next_impact() == self.next_knot();
+        [next_impact, if is_knot { next_impact } else { [0.0; 2] }]
+    }
+}

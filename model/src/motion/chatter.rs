@@ -1,0 +1,62 @@
+//! How a chattering sequence ends.
+
+use super::Motion;
+use super::cylinder::CylinderState;
+use super::side::Side;
+
+/// How exactly the motion is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Accuracy {
+    /// To rounding.
+    Exact,
+    /// By an integrator with tolerances, which cannot follow bounces so low.
+    Integrated,
+}
+
+impl Accuracy {
+    /// Height of a bounce, in units of s/2, below which a ball may count as resting; and the relative change of the wall's
+    /// acceleration over the rest of a chattering sequence below which it counts as constant, so that the rest is a geometric
+    /// series.
+    fn bounds(self) -> [f64; 2] {
+        match self {
+            Self::Exact => [1e-9, 1e-5],
+            Self::Integrated => [1e-6, 1e-3],
+        }
+    }
+}
+
+/// How a chattering sequence ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tail {
+    /// Endless bounces in a time so short that they are a geometric series.
+    Summed,
+    /// Bounces lower than rounding; what they would still gain is left out.
+    Unresolved,
+}
+
+impl Motion {
+    /// Whether a ball that leaves the `wall` at `side` with relative speed `rebound`, m/s, comes to rest there, because that
+    /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the push is
+    /// constant meanwhile. Up to `limit`, s, the phase of the force is known.
+    pub fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState, limit: f64) -> Option<Tail> {
+        let CylinderState { time, jerk, .. } = *wall;
+        let push = side.sign() * wall.acceleration;
+        if push <= 0.0 {
+            return (push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
+        }
+        let [highest, tolerance] = self.accuracy.bounds();
+        let (highest, unresolved) = (highest * self.half_travel, 4.0 * self.flight.rounding(0.0));
+        if rebound * rebound > 2.0 * push * highest.max(unresolved) {
+            return None;
+        }
+        // Flights of 2 v / a, 2 v r / a, ...: their sum.
+        let duration = 2.0 * rebound / (push * (1.0 - self.restitution));
+        let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
+        let change = duration * (jerk.abs() + 0.5 * duration * curvature);
+        let height = rebound * rebound / (2.0 * push);
+        if height <= highest && change <= tolerance * push && time + duration <= limit {
+            return Some(Tail::Summed);
+        }
+        (height <= unresolved).then_some(Tail::Unresolved)
+    }
+}

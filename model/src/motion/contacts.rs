@@ -1,0 +1,187 @@
+//! Contacts under the compliant law as part of the motion.
+
+use super::cylinder::{CylinderMotion, Drive};
+use super::flight::Flight;
+use super::pulse::Deflection;
+use super::side::Side;
+use super::{Ball, Motion, Start};
+use crate::accounting::budget::Budget;
+use crate::accounting::ledger::Ledger;
+use crate::contact::{Contact, Ending, Law, Ramp, Work};
+use crate::error::ModelError;
+use crate::membrane::Membrane;
+use crate::parameters::Parameters;
+
+/// First step to try, in units of the loading time and of the excitation period: the force sets in as x^n.
+const FIRST_STEP: f64 = 1e-3;
+
+/// Events of the budget that an internal step counts for: it takes as long as some twenty impacts.
+const STEP_COST: usize = 20;
+
+/// What the forces of a contact depend on besides the motion.
+#[derive(Clone, Copy)]
+pub struct Forces<'a> {
+    pub parameters: &'a Parameters,
+    pub membrane: &'a Membrane,
+    /// Voltages across the membranes.
+    pub voltages: &'a [Ramp; 2],
+}
+
+impl<'a> Forces<'a> {
+    fn law(self, cylinder: &'a CylinderMotion, flight: &'a Flight, side: Side) -> Law<'a> {
+        let Self { parameters, membrane, voltages } = self;
+        Law { parameters, membrane, cylinder, flight, side, voltage: voltages[side.index()] }
+    }
+}
+
+impl Motion {
+    fn law<'a>(&'a self, forces: Forces<'a>, side: Side) -> Law<'a> {
+        forces.law(&self.cylinder, &self.flight, side)
+    }
+
+    /// Force on the ball in the direction of z, N, at `time`, s.
+    pub fn contact_force(&self, forces: Forces<'_>, time: f64) -> f64 {
+        self.ball.contact().map_or(0.0, |contact| {
+            let side = contact.state.side;
+            side.sign() * self.law(forces, side).total(contact.state.phase, &contact.at(time))
+        })
+    }
+
+    /// Deflection of the membrane at `side` by the present contact, at `time`, s.
+    pub fn contact_deflection(&self, side: Side, time: f64) -> Deflection {
+        let here = self.ball.contact().filter(|contact| contact.state.side == side);
+        here.map_or(Deflection::default(), |contact| {
+            let point = contact.at(time);
+            Deflection { value: point.x.max(0.0), rate: point.v }
+        })
+    }
+
+    /// Works on the ball in the present pass of the contact, the elastic energy and the energy lost in this contact, J, up to
+    /// `time`, s.
+    pub fn contact_energies(&self, forces: Forces<'_>, time: f64) -> Option<(Work, f64, f64)> {
+        let contact = self.ball.contact()?;
+        let law = self.law(forces, contact.state.side);
+        Some((contact.work(time), law.elastic(contact.at(time).x), law.loss(contact.largest_at(time))))
+    }
+
+    /// A contact begins at `time`, s, at relative `speed`, m/s.
+    pub fn begin_contact(&mut self, forces: Forces<'_>, limit: Option<f64>, time: f64, side: Side, speed: f64) {
+        self.new_flight(&self.cylinder.at(time), [self.half_travel, speed].map(|value| side.sign() * value));
+        let period = 1.0 / forces.parameters.frequency;
+        let loading = if speed > 0.0 { forces.membrane.deflection(speed) / speed } else { period };
+        self.ball = Ball::InContact(Contact::new(side, time, speed, FIRST_STEP * loading.min(period)));
+        self.plan_contact(forces, limit);
+    }
+
+    /// Works out the present pass, which reaches one excitation period or to the next noise sample, `limit`, at most.
+    pub fn plan_contact(&mut self, forces: Forces<'_>, limit: Option<f64>) {
+        let Self { cylinder, flight, ball, .. } = self;
+        let Ball::InContact(contact) = ball else { return };
+        let period_end = contact.state.start.time + 1.0 / forces.parameters.frequency;
+        let limit = limit.map_or(period_end, |limit| limit.min(period_end));
+        contact.plan(&forces.law(cylinder, flight, contact.state.side), limit);
+    }
+
+    /// The pass of the contact has ended.
+    pub fn follow_contact(
+        &mut self,
+        forces: Forces<'_>,
+        limit: Option<f64>,
+        (ledger, budget): (&mut Ledger, &mut Budget),
+    ) -> Result<(), ModelError> {
+        let Some(contact) = self.ball.contact() else { return Ok(()) };
+        let (time, steps) = (contact.end(), contact.steps());
+        let law = self.law(forces, contact.state.side);
+        let deflection = contact.at(time).x;
+        if law.is_too_deep(deflection) {
+            let voltage = law.voltage.at(time);
+            return Err(ModelError::TooDeep { time, deflection, bound: law.deepest(), voltage });
+        }
+        if steps == 0 {
+            return Err(budget.exceeded(time)); // no step is short enough
+        }
+        (0..STEP_COST * steps).try_for_each(|_| budget.spend(time))?;
+        self.book_pass(forces.membrane, ledger, time);
+        let Some(contact) = self.ball.contact() else { return Ok(()) };
+        match contact.next(&self.law(forces, contact.state.side)) {
+            Some(next) => {
+                self.ball = Ball::InContact(next);
+                self.plan_contact(forces, limit);
+            }
+            None => self.separate(forces, ledger, time),
+        }
+        Ok(())
+    }
+
+    /// Books the works of the pass up to `time`, s, and, at a turning point, what Eqs. (12) and (13) give for the largest
+    /// deflection.
+    fn book_pass(&mut self, membrane: &Membrane, ledger: &mut Ledger, time: f64) {
+        let Ball::InContact(contact) = &mut self.ball else { return };
+        let work = contact.work(time);
+        ledger.works.wall += work.wall;
+        ledger.works.electrical += work.electrical;
+        if contact.ending() == Ending::Turn && time == contact.end() {
+            let (excess, credited) = (membrane.capacitance_excess(contact.largest_at(time)), contact.state.credited);
+            ledger.credit((excess - credited).max(0.0));
+            contact.state.credited = excess.max(credited);
+        }
+    }
+
+    /// The ball leaves the membrane at `time`, s.
+    fn separate(&mut self, forces: Forces<'_>, ledger: &mut Ledger, time: f64) {
+        let (position, velocity) = (self.cylinder_position_at(time), self.ball_velocity_at(time));
+        let cylinder = self.recoiling_cylinder(time, self.drive_at(time));
+        let Ball::InContact(contact) = core::mem::replace(&mut self.ball, Ball::Free) else { return };
+        let side = contact.state.side;
+        let (sign, rate) = (side.sign(), contact.at(time).v);
+        ledger.works.loss += self.law(forces, side).loss(contact.largest_at(time));
+        ledger.works.contact_time += time - contact.state.since;
+        if forces.parameters.reaction {
+            self.cylinder = cylinder;
+        }
+        self.last = Start { time, position: position - sign * self.half_travel, velocity };
+        self.new_flight(&self.cylinder.at(time), [sign * self.half_travel, sign * rate]);
+    }
+
+    /// The cylinder's motion from `time`, s, on, the recoil of the contact included.
+    fn recoiling_cylinder(&self, time: f64, drive: Drive) -> CylinderMotion {
+        CylinderMotion::new(time, self.cylinder_position_at(time), self.cylinder_velocity_at(time), drive)
+    }
+
+    /// The contact goes on from `time`, s, under other voltages.
+    pub fn change_voltages_in_contact(
+        &mut self,
+        forces: Forces<'_>,
+        limit: Option<f64>,
+        ledger: &mut Ledger,
+        time: f64,
+    ) {
+        self.book_pass(forces.membrane, ledger, time);
+        if let Ball::InContact(contact) = &mut self.ball {
+            *contact = contact.continued(time);
+        }
+        self.plan_contact(forces, limit);
+    }
+
+    /// The contact goes on from `time`, s, under another `drive`.
+    pub fn restart_contact(
+        &mut self,
+        forces: Forces<'_>,
+        limit: Option<f64>,
+        ledger: &mut Ledger,
+        (time, drive): (f64, Drive),
+    ) {
+        let Some(contact) = self.ball.contact() else { return };
+        let next = contact.continued(time);
+        let sign = contact.state.side.sign();
+        let velocity = self.ball_velocity_at(time);
+        let cylinder = self.recoiling_cylinder(time, drive);
+        self.book_pass(forces.membrane, ledger, time);
+        self.cylinder = cylinder;
+        let [dz, rate] = [self.half_travel + next.state.start.x, next.state.start.v].map(|value| sign * value);
+        self.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), [dz, rate], self.half_travel);
+        self.last = Start { time, position: self.cylinder.position - dz, velocity };
+        self.ball = Ball::InContact(next);
+        self.plan_contact(forces, limit);
+    }
+}

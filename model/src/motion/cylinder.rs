@@ -1,0 +1,235 @@
+//! Motion of the cylinder, Eq. (7), in closed form.
+
+use core::f64::consts::TAU;
+
+use crate::numerics::elementary::{round, sin_cos};
+use crate::numerics::product::cycle_fraction;
+use crate::paper::excitation;
+use crate::parameters::Parameters;
+
+/// Force on the cylinder over its mass: harmonic, plus an external part that is linear in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// A / M, m/s^2.
+    pub amplitude: f64,
+    /// `f_0`, Hz.
+    pub frequency: f64,
+    /// Phase, rad, the phase noise included.
+    pub phase: f64,
+    /// External force over M at the start of the motion, m/s^2.
+    pub external: f64,
+    /// Its rate, m/s^3.
+    pub external_rate: f64,
+}
+
+impl Drive {
+    /// The force of a harvester with these parameters at this `phase`, rad, with an external part over M, m/s^2, and its rate,
+    /// m/s^3.
+    pub fn new(p: &Parameters, phase: f64, [external, external_rate]: [f64; 2]) -> Self {
+        let amplitude = p.amplitude / p.cylinder_mass;
+        Self { amplitude, frequency: p.frequency, phase, external, external_rate }
+    }
+
+    /// 2 pi `f_0`, rad/s.
+    pub fn omega(&self) -> f64 {
+        TAU * self.frequency
+    }
+
+    /// True if the force never changes.
+    pub fn is_constant(&self) -> bool {
+        self.amplitude == 0.0 && self.external_rate == 0.0
+    }
+
+    /// 2 pi `f_0` t + phase at `time` t, s, reduced by whole turns before the phase is added, so that a long run loses
+    /// no digits.
+    pub fn angle(&self, time: f64) -> f64 {
+        TAU * cycle_fraction(self.frequency, time) + self.phase
+    }
+
+    /// The phase in turns, but for whole ones.
+    fn own_turns(&self) -> f64 {
+        let own = self.phase / TAU;
+        own - round(own)
+    }
+}
+
+/// Changes of a harmonic force.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DriveChange {
+    /// Of A / M, m/s^2.
+    pub amplitude: f64,
+    /// Of `f_0`, Hz.
+    pub frequency: f64,
+    /// Of the phase, rad.
+    pub phase: f64,
+}
+
+impl DriveChange {
+    /// Of 2 pi `f_0` t + phase at `time` t, s.
+    fn angle(&self, time: f64) -> f64 {
+        TAU * self.frequency * time + self.phase
+    }
+}
+
+/// Motion of the cylinder from one change of the force to the next: position and velocity at `start` and the force
+/// since then. Values are evaluated from the start, never accumulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CylinderMotion {
+    /// Time from which this motion holds, s.
+    pub start: f64,
+    /// `z_M` at the start, m.
+    pub position: f64,
+    /// `z_M'` at the start, m/s.
+    pub velocity: f64,
+    /// Force over mass.
+    pub drive: Drive,
+    /// The phase of the harmonic force, in turns.
+    own_turns: f64,
+    /// Sine and cosine of its angle at the start.
+    sin_start: f64,
+    cos_start: f64,
+    /// A / M over omega, m/s, and over omega^2, m.
+    speed: f64,
+    swing: f64,
+}
+
+/// The cylinder at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct CylinderState {
+    /// t, s.
+    pub time: f64,
+    /// `z_M`, m.
+    pub position: f64,
+    /// `z_M'`, m/s: Eq. (7) integrated once.
+    pub velocity: f64,
+    /// `z_M''`, m/s^2: Eq. (7).
+    pub acceleration: f64,
+    /// `z_M'''`, m/s^3.
+    pub jerk: f64,
+    /// Angle of the harmonic force, in turns, and its sine and cosine.
+    pub turns: f64,
+    /// Its sine and cosine.
+    pub sine: [f64; 2],
+}
+
+impl CylinderMotion {
+    /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
+    pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
+        let own_turns = drive.own_turns();
+        let [sin_start, cos_start] = sin_cos(4.0 * (cycle_fraction(drive.frequency, start) + own_turns));
+        let speed = drive.amplitude / drive.omega();
+        let swing = speed / drive.omega();
+        Self { start, position, velocity, drive, own_turns, sin_start, cos_start, speed, swing }
+    }
+
+    /// Amplitude of the oscillation under the harmonic force alone, m.
+    pub(crate) fn swing(&self) -> f64 {
+        self.swing
+    }
+
+    /// The angle of the harmonic force at `time`, s, in turns.
+    #[inline]
+    fn turns(&self, time: f64) -> f64 {
+        cycle_fraction(self.drive.frequency, time) + self.own_turns
+    }
+
+    /// All of the motion at `time`, s.
+    #[inline]
+    pub(crate) fn at(&self, time: f64) -> CylinderState {
+        let Drive { amplitude, external, external_rate, .. } = self.drive;
+        let turns = self.turns(time);
+        let sine = sin_cos(4.0 * turns);
+        let ([sin, cos], elapsed) = (sine, time - self.start);
+        let drift = self.velocity - self.speed * self.sin_start;
+        let displacement = 0.5 * external + elapsed * external_rate * (1.0 / 6.0);
+        CylinderState {
+            time,
+            position: self.position + self.swing * (self.cos_start - cos) + elapsed * (drift + elapsed * displacement),
+            velocity: self.velocity
+                + self.speed * (sin - self.sin_start)
+                + elapsed * (external + 0.5 * external_rate * elapsed),
+            acceleration: excitation::acceleration(amplitude, cos, external) + external_rate * elapsed,
+            jerk: external_rate - amplitude * self.drive.omega() * sin,
+            turns,
+            sine,
+        }
+    }
+
+    /// `z_M''`, m/s^2, at `time`, s: Eq. (7).
+    pub fn acceleration(&self, time: f64) -> f64 {
+        self.at(time).acceleration
+    }
+
+    /// `z_M'''`, m/s^3, at `time`, s.
+    pub fn jerk(&self, time: f64) -> f64 {
+        self.at(time).jerk
+    }
+
+    /// `z_M'`, m/s, at `time`, s: Eq. (7) integrated once.
+    pub fn velocity(&self, time: f64) -> f64 {
+        self.at(time).velocity
+    }
+
+    /// `z_M`, m, at `time`, s: Eq. (7) integrated twice.
+    pub fn position(&self, time: f64) -> f64 {
+        self.at(time).position
+    }
+
+    /// First-order changes of position, m, and velocity, m/s, at `time`, s, with the harmonic force; the values at the start
+    /// stay.
+    pub fn change(&self, time: f64, drive: &DriveChange) -> [f64; 2] {
+        let (elapsed, omega) = (time - self.start, self.drive.omega());
+        let stiffer = TAU * drive.frequency / omega;
+        let speed = self.drive.amplitude / omega;
+        let speed_change = drive.amplitude / omega - speed * stiffer;
+        let swing_change = (speed_change - speed * stiffer) / omega;
+        let [sin, cos] = sin_cos(4.0 * self.turns(time));
+        let [from, to] = [self.start, time].map(|time| drive.angle(time));
+        let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
+        let drift = speed_change * self.sin_start + speed * self.cos_start * from;
+        let velocity = speed_change * (sin - self.sin_start) + speed * (cos * to - self.cos_start * from);
+        [position - elapsed * drift, velocity]
+    }
+
+    /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
+    pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
+        let [sin, cos] = sin_cos(4.0 * self.turns(time));
+        drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
+    }
+
+    /// The same motion described from `time`, s, on, under another drive.
+    #[must_use]
+    pub fn continued(&self, time: f64, drive: Drive) -> Self {
+        let here = self.at(time);
+        Self::new(time, here.position, here.velocity, drive)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn velocity_and_acceleration_are_the_derivatives_of_position() {
+        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: -0.2 };
+        let motion = CylinderMotion::new(0.37, 0.01, -0.2, drive);
+        for k in 0..50 {
+            let (t, h) = (0.4 + 0.06 * f64::from(k), 1e-4);
+            let slope =
+                |f: &dyn Fn(f64) -> f64| (8.0 * (f(t + h) - f(t - h)) - (f(t + 2.0 * h) - f(t - 2.0 * h))) / (12.0 * h);
+            assert_relative_eq!(slope(&|t| motion.position(t)), motion.velocity(t), epsilon = 1e-10);
+            assert_relative_eq!(slope(&|t| motion.velocity(t)), motion.acceleration(t), epsilon = 1e-9);
+            assert_relative_eq!(slope(&|t| motion.acceleration(t)), motion.jerk(t), epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_motion_continued_with_the_same_force_goes_on_as_before() {
+        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: 0.0 };
+        let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive);
+        let continued = motion.continued(1.3, drive);
+        assert_relative_eq!(motion.position(2.9), continued.position(2.9), max_relative = 1e-13);
+        assert_relative_eq!(motion.velocity(2.9), continued.velocity(2.9), max_relative = 1e-13);
+    }
+}

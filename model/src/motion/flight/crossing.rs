@@ -1,0 +1,166 @@
+//! Where dz crosses a membrane.
+//!
+//! One sine and cosine give all derivatives. So the gap is taken as its Taylor series about a place near the crossing, whose
+//! root costs no more sines; there the next series is taken, until one more step from its root, with the gap to all digits,
+//! is the last. The first place is one where sine and cosine are known beforehand.
+
+use super::zeros::Knot;
+use super::{Angle, Crossing, Flight};
+use crate::motion::side::Side;
+use crate::numerics::elementary::fraction;
+
+/// Bisection alone needs at most some 110 to exhaust the digits of a double.
+const MAX_SERIES: u32 = 200;
+
+/// A root of the first series need not be better than what that leaves out: the last change of a step, relative to it.
+const ROUGH: f64 = 0.3;
+
+/// The gap about a place: coefficients of the powers of the time since then, s.
+struct Series([f64; 8]);
+
+impl Series {
+    /// Series of `gap` less `sign` times what dz adds to it.
+    #[inline]
+    fn new(gap: f64, sign: f64, [_, d1, d2, d3, d4, d5, d6, d7]: [f64; 8]) -> Self {
+        let [c1, c2, c3] = [-sign * d1, -sign * d2 * (1.0 / 2.0), -sign * d3 * (1.0 / 6.0)];
+        let [c4, c5] = [-sign * d4 * (1.0 / 24.0), -sign * d5 * (1.0 / 120.0)];
+        Self([gap, c1, c2, c3, c4, c5, -sign * d6 * (1.0 / 720.0), -sign * d7 * (1.0 / 5040.0)])
+    }
+
+    /// Value, first and half the second derivative.
+    #[inline]
+    fn at(&self, x: f64) -> [f64; 3] {
+        let Self([c0, c1, c2, c3, c4, c5, c6, c7]) = self;
+        let square = x * x;
+        let four = square * square;
+        [
+            ((c0 + x * c1) + square * (c2 + x * c3)) + four * ((c4 + x * c5) + square * (c6 + x * c7)),
+            ((c1 + x * (2.0 * c2)) + square * (3.0 * c3 + x * (4.0 * c4)))
+                + four * ((5.0 * c5 + x * (6.0 * c6)) + square * (7.0 * c7)),
+            ((c2 + x * (3.0 * c3)) + square * (6.0 * c4 + x * (10.0 * c5))) + four * (15.0 * c6 + x * (21.0 * c7)),
+        ]
+    }
+
+    /// The step of Halley's method from where the series has this value, slope and half the second derivative; none if
+    /// that is not on the way down.
+    #[inline]
+    fn halley([value, slope, half_curvature]: [f64; 3]) -> Option<f64> {
+        (slope < 0.0).then(|| -value * slope / (slope * slope - value * half_curvature))
+    }
+
+    /// The step of Halley's method from the place itself.
+    #[inline]
+    fn first_step(&self) -> Option<f64> {
+        let Self([c0, c1, c2, ..]) = *self;
+        Self::halley([c0, c1, c2])
+    }
+
+    /// The root of the first three terms ahead, where the gap is still open; none if they have none.
+    #[inline]
+    fn root_of_parabola(&self) -> Option<f64> {
+        let Self([c0, c1, c2, ..]) = *self;
+        let root = (c1 * c1 - 4.0 * c0 * c2).sqrt();
+        let step = 2.0 * c0 / (root - c1);
+        (step > 0.0).then_some(step)
+    }
+
+    /// About the root that Halley's method finds from `start` on.
+    #[inline]
+    fn rough_root(&self, start: f64) -> Option<f64> {
+        const MAX_STEPS: u32 = 8;
+        let mut step = start;
+        for _ in 0..MAX_STEPS {
+            let change = Self::halley(self.at(step))?;
+            step += change;
+            if change.abs() <= ROUGH * step.abs() {
+                return Some(step);
+            }
+        }
+        None
+    }
+}
+
+impl Flight {
+    /// When, and how fast, dz comes to be `beyond`, m, outside of the membrane at `side`, on a piece on which it rises or
+    /// falls all the way to there.
+    pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> Crossing {
+        let (sign, level) = (side.sign(), self.room(side) + beyond);
+        let (mut low, mut high) = (from.tau, to.tau);
+        let (begin, angle) = self.steepest(side, from, to).unwrap_or((from.tau, from.angle));
+        let first = self.series(begin, &angle, level, sign);
+        let start = if begin == from.tau { first.root_of_parabola() } else { first.first_step() };
+        let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
+        let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
+        for _ in 0..MAX_SERIES {
+            let angle = self.angle(tau);
+            let series = self.series(tau, &angle, level, sign);
+            if series.0[0] > 0.0 {
+                low = tau;
+            } else {
+                high = tau;
+            }
+            if high - low <= f64::EPSILON * high {
+                return self.contact(side, high);
+            }
+            let Some(step) = series.first_step().filter(|step| (low..=high).contains(&(tau + step))) else {
+                tau = 0.5 * (low + high);
+                continue;
+            };
+            let [_, slope, half_curvature] = series.at(step);
+            // With all digits: in the series, the straight part of the flight would carry the rounding of `tau` along.
+            let there = angle.swept.further(self.omega() * step);
+            let gap = level - sign * self.change(tau + step, &there);
+            let change = Series::halley([gap, slope, half_curvature]);
+            if let Some(change) = change.filter(|_| self.is_found(tau, step, gap / slope, slope)) {
+                let elapsed = (tau + (step + change)).clamp(low, high);
+                let there = angle.swept.further(self.omega() * (step + change));
+                let speed = sign * self.slope(elapsed, &there);
+                return Crossing { elapsed, side, speed: speed.max(0.0) };
+            }
+            let next = tau + step;
+            tau = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        self.contact(side, tau)
+    }
+
+    /// A contact `elapsed`, s, after the start.
+    fn contact(&self, side: Side, elapsed: f64) -> Crossing {
+        let [_, rate] = self.at(elapsed);
+        Crossing { elapsed, side, speed: (side.sign() * rate).max(0.0) }
+    }
+
+    /// The gap about `tau`, s, where the angle is this one.
+    #[inline]
+    fn series(&self, tau: f64, angle: &Angle, level: f64, sign: f64) -> Series {
+        let derivatives = self.derivatives(tau, angle);
+        Series::new(level - sign * derivatives[0], sign, derivatives)
+    }
+
+    /// Whether the `step`, s, of Halley's method from `tau` and one more of that method lead to the crossing, if Newton's method
+    /// would put that off by `rest`, s, from there.
+    ///
+    /// An error e becomes K e^3 by a step. The first step has left K step^3 = rest, so that the next leaves rest^4 / step^3.
+    /// Where the method crawls along a flat gap, the rest is larger than the step.
+    #[inline]
+    fn is_found(&self, tau: f64, step: f64, rest: f64, slope: f64) -> bool {
+        let allowed = 0.25 * f64::EPSILON * tau;
+        let square = (self.omega() * step).powi(2);
+        let left_out = self.swing * (square * square) * (square * square) * (1.0 / 40_320.0);
+        let is_complete = left_out <= allowed * slope.abs();
+        let (rest, step) = (rest.abs(), step.abs());
+        is_complete && (rest <= allowed || (rest <= 0.01 * step && rest.powi(4) <= allowed * step.powi(3)))
+    }
+
+    /// Where on the way from one extremum to the next the harmonic part is steepest: sine and cosine are known there. It
+    /// is counted from the begin of the flight, so that nobody waits for the extrema.
+    #[inline]
+    fn steepest(&self, side: Side, from: &Knot, to: &Knot) -> Option<(f64, Angle)> {
+        let first = fraction(0.25 * side.sign() - self.turns) * self.period;
+        let tau = if first >= from.tau {
+            first
+        } else {
+            from.tau + fraction(0.25 * side.sign() - self.turns_at(from.tau)) * self.period
+        };
+        (tau < to.tau).then(|| (tau, Angle::known(self.sine, [side.sign(), 0.0], self.omega() * tau)))
+    }
+}

@@ -1,0 +1,276 @@
+//! The deflection of a membrane in time after an impact, under the impulsive law.
+//!
+//! The paper's impact takes no time; C(t) needs a pulse of finite length. Loading follows the paper's own energy
+//! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
+//! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
+
+use crate::motion::side::Side;
+use crate::numerics::roots::convex_root;
+use crate::numerics::series::hypergeometric;
+
+/// Changes of a pulse per unit of what is moved, to first order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PulseChange {
+    /// Of the time of the impact, s.
+    pub start: f64,
+    /// Of the relative speed of the impact, m/s.
+    pub speed: f64,
+    /// Of the largest deflection, m.
+    pub peak: f64,
+}
+
+/// One pulse: an impact and what it does to the membrane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Time of the impact, s.
+    pub start: f64,
+    /// Relative speed of the impact, m/s.
+    pub speed: f64,
+    /// Largest deflection delta, m, Eq. (10).
+    pub peak: f64,
+    /// First-order changes, as [`Harvester::sensitivities`](crate::Harvester::sensitivities) has them.
+    pub change: PulseChange,
+}
+
+/// Deflection and its rate at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deflection {
+    /// Deflection x, m.
+    pub value: f64,
+    /// dx/dt, m/s.
+    pub rate: f64,
+}
+
+/// The shape that all pulses of one exponent n share: y = x / delta against the fraction of the loading time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseShape {
+    pub(crate) exponent: f64,
+    /// Loading time times impact speed over delta: sqrt(pi) Gamma(1 + 1/(n+1)) / Gamma(1/2 + 1/(n+1)).
+    loading: f64,
+    /// Length of the unloading over that of the loading.
+    pub(crate) stretch: f64,
+}
+
+impl PulseShape {
+    /// Smallest restitution by which a pulse is stretched: at r = 0 the mirror image would never end.
+    pub const MIN_RESTITUTION: f64 = 0.01;
+
+    /// Shape for force exponent n of Eq. (2) and restitution r of Eq. (11).
+    pub fn new(exponent: f64, restitution: f64) -> Self {
+        // The two series meet where y^(n+1) = 1/2; each converges there at least as fast as 2^-k.
+        let half = 0.5_f64.powf(1.0 / (exponent + 1.0));
+        let loading = half * lower_series(exponent, 0.5) + upper_series(exponent, 0.5) * 0.5_f64.sqrt();
+        Self { exponent, loading, stretch: 1.0 / restitution.max(Self::MIN_RESTITUTION) }
+    }
+
+    /// Time from the impact to the largest deflection, s.
+    pub fn loading_time(&self, pulse: &Pulse) -> f64 {
+        if pulse.speed > 0.0 { self.loading * pulse.peak / pulse.speed } else { 0.0 }
+    }
+
+    /// Time of the largest deflection, s.
+    pub fn peak_time(&self, pulse: &Pulse) -> f64 {
+        pulse.start + self.loading_time(pulse)
+    }
+
+    /// Time at which the membrane is flat again, s.
+    pub fn end_time(&self, pulse: &Pulse) -> f64 {
+        pulse.start + self.loading_time(pulse) * (1.0 + self.stretch)
+    }
+
+    /// Deflection at `time`, s; zero before and after the pulse.
+    pub fn at(&self, pulse: &Pulse, time: f64) -> Deflection {
+        let loading_time = self.loading_time(pulse);
+        let elapsed = time - pulse.start;
+        if elapsed <= 0.0 || elapsed >= loading_time * (1.0 + self.stretch) {
+            return Deflection::default();
+        }
+        if elapsed <= loading_time {
+            let (y, slope) = self.loading_curve(elapsed / loading_time);
+            return Deflection { value: pulse.peak * y, rate: pulse.speed * slope };
+        }
+        let (y, slope) = self.loading_curve(1.0 - (elapsed - loading_time) / (loading_time * self.stretch));
+        Deflection { value: pulse.peak * y, rate: -pulse.speed * slope / self.stretch }
+    }
+
+    /// y and dy/d(t v / delta) = sqrt(1 - y^(n+1)) at `fraction` (0 to 1) of the loading time.
+    ///
+    /// Inverts t v / delta = integral of dy / sqrt(1 - y^(n+1)) by Newton's method. The integral is close to y at small
+    /// y and close to a multiple of q = sqrt(1 - y^(n+1)) below its end, so each half is nearly linear in its own variable.
+    fn loading_curve(&self, fraction: f64) -> (f64, f64) {
+        let power = self.exponent + 1.0;
+        let target = fraction.clamp(0.0, 1.0) * self.loading;
+        let half = 0.5_f64.powf(1.0 / power);
+        if target <= half * lower_series(self.exponent, 0.5) {
+            let y = convex_root(target, half, |y| {
+                let w = y.powf(power);
+                (y * lower_series(self.exponent, w) - target, 1.0 / (1.0 - w).sqrt())
+            });
+            return (y, (1.0 - y.powf(power)).max(0.0).sqrt());
+        }
+        let rest = self.loading - target;
+        let q = convex_root(rest * power / 2.0, 0.5_f64.sqrt(), |q| {
+            let complement = q * q;
+            let slope = 2.0 / power * (1.0 - complement).powf(1.0 / power - 1.0);
+            (q * upper_series(self.exponent, complement) - rest, slope)
+        });
+        ((1.0 - q * q).powf(1.0 / power), q)
+    }
+}
+
+/// Integral of dy / sqrt(1 - y^(n+1)) from 0 to y, over y, at w = y^(n+1): 2F1(1/2, a; 1 + a; w) with a = 1 / (n+1).
+fn lower_series(exponent: f64, w: f64) -> f64 {
+    let a = 1.0 / (exponent + 1.0);
+    hypergeometric(w, |k| (0.5 + k) / (1.0 + k) * (a + k) / (a + k + 1.0))
+}
+
+/// The same integral from y to 1, over q = sqrt(1 - y^(n+1)), at c = q^2: 2a 2F1(1 - a, 1/2; 3/2; c) with a = 1 / (n+1).
+fn upper_series(exponent: f64, complement: f64) -> f64 {
+    let a = 1.0 / (exponent + 1.0);
+    2.0 * a * hypergeometric(complement, |k| (1.0 - a + k) / (1.0 + k) * (0.5 + k) / (1.5 + k))
+}
+
+/// A time at which a pulse peaks or ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Knot<'a> {
+    /// Time, s.
+    pub(crate) time: f64,
+    pub(crate) pulse: &'a Pulse,
+    pub(crate) is_end: bool,
+}
+
+/// Pulses under way on both membranes, the largest peak first. Where they overlap, the larger deflection wins.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Pulses {
+    pub(crate) shape: PulseShape,
+    pub(crate) under_way: [Vec<Pulse>; 2],
+}
+
+impl Clone for Pulses {
+    fn clone(&self) -> Self {
+        Self { shape: self.shape, under_way: self.under_way.clone() }
+    }
+
+    /// Takes no memory that is there already.
+    fn clone_from(&mut self, source: &Self) {
+        self.shape = source.shape;
+        self.under_way.clone_from(&source.under_way);
+    }
+}
+
+impl Pulses {
+    /// Pulses kept at a time on a membrane; of more, the one that ends first is dropped.
+    pub(crate) const CAPACITY: usize = 256;
+
+    /// Adds the pulse of a new impact at `side`, and forgets those that have ended.
+    pub(crate) fn push(&mut self, side: Side, pulse: Pulse) {
+        let Self { shape, under_way } = self;
+        let list = &mut under_way[side.index()];
+        list.retain(|old| shape.end_time(old) > pulse.start);
+        if list.len() >= Self::CAPACITY {
+            let ends = list.iter().map(|pulse| shape.end_time(pulse)).enumerate();
+            if let Some((first, _)) = ends.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                list.remove(first);
+            }
+        }
+        // Largest peak first, so that `largest` can stop early.
+        let position = list.partition_point(|old| old.peak >= pulse.peak);
+        list.insert(position, pulse);
+    }
+
+    /// Deflection of the membrane at `side` at `time`, s.
+    pub(crate) fn at(&self, side: Side, time: f64) -> Deflection {
+        self.largest(side, time).map_or(Deflection::default(), |(_, deflection)| deflection)
+    }
+
+    /// The pulse with the largest deflection at `time`, s; none if the membrane is flat.
+    pub(crate) fn largest(&self, side: Side, time: f64) -> Option<(&Pulse, Deflection)> {
+        let mut largest: Option<(&Pulse, Deflection)> = None;
+        for pulse in &self.under_way[side.index()] {
+            let value = largest.map_or(0.0, |(_, deflection)| deflection.value);
+            if pulse.peak <= value {
+                break;
+            }
+            let deflection = self.shape.at(pulse, time);
+            if deflection.value > value {
+                largest = Some((pulse, deflection));
+            }
+        }
+        largest
+    }
+
+    /// The first time after `time`, s, at which a pulse peaks or ends, of each membrane that is not flat.
+    pub(crate) fn next_knots(&self, time: f64) -> impl Iterator<Item = Knot<'_>> {
+        self.under_way.iter().filter_map(move |pulses| {
+            let knots = pulses.iter().flat_map(|pulse| {
+                let peak = Knot { time: self.shape.peak_time(pulse), pulse, is_end: false };
+                [peak, Knot { time: self.shape.end_time(pulse), pulse, is_end: true }]
+            });
+            knots.filter(|knot| knot.time > time).min_by(|a, b| a.time.total_cmp(&b.time))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Loading time times impact speed over delta for the linear spring, n = 1: a quarter of a sine's period.
+    const LINEAR_LOADING: f64 = core::f64::consts::FRAC_PI_2;
+
+    fn pulse(start: f64, speed: f64, peak: f64) -> Pulse {
+        Pulse { start, speed, peak, change: PulseChange::default() }
+    }
+
+    #[test]
+    fn loading_obeys_the_energy_balance_and_unloading_is_its_mirror_image_stretched_by_the_restitution() {
+        for (exponent, restitution) in [(1.0, 1.0), (2.6, 0.6), (4.0, 0.5)] {
+            let shape = PulseShape::new(exponent, restitution);
+            let pulse = pulse(1.0, 0.4, 0.0026);
+            let time = shape.loading_time(&pulse);
+            for k in 1..100 {
+                let t = time * f64::from(k) / 100.0;
+                let x = shape.at(&pulse, 1.0 + t);
+                let kinetic = (x.rate / pulse.speed).powi(2);
+                assert_relative_eq!(kinetic + (x.value / pulse.peak).powf(exponent + 1.0), 1.0, epsilon = 1e-12);
+                let h = time * 1e-4;
+                let slope = (shape.at(&pulse, 1.0 + t + h).value - shape.at(&pulse, 1.0 + t - h).value) / (2.0 * h);
+                assert_relative_eq!(slope, x.rate, epsilon = 1e-7 * pulse.speed);
+                if exponent == 1.0 {
+                    assert_relative_eq!(x.value, pulse.peak * (LINEAR_LOADING * t / time).sin(), epsilon = 1e-15);
+                }
+                let fall = shape.at(&pulse, 1.0 + time + (time - t) / restitution);
+                assert_relative_eq!(fall.value, x.value, max_relative = 1e-11);
+                assert_relative_eq!(fall.rate, -restitution * x.rate, max_relative = 1e-11);
+            }
+            assert_relative_eq!(shape.at(&pulse, 1.0 + time).value, pulse.peak, max_relative = 1e-14);
+            assert_eq!(shape.at(&pulse, shape.end_time(&pulse) + 1e-9).value, 0.0);
+        }
+    }
+
+    #[test]
+    fn the_loading_time_has_its_closed_form() {
+        // sqrt(pi) Gamma(1 + a) / Gamma(1/2 + a), a = 1/(n + 1), with `gamma` of Python's math module.
+        for (exponent, expected) in
+            [(2.6, 1.341_987_686_916_841_2), (1.0, LINEAR_LOADING), (10.0, 1.120_767_003_918_876)]
+        {
+            assert_relative_eq!(PulseShape::new(exponent, 1.0).loading, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_larger_of_two_overlapping_pulses_wins() {
+        let shape = PulseShape::new(2.6, 0.5);
+        let mut pulses = Pulses { shape, under_way: Default::default() };
+        let both = [pulse(0.0, 1.0, 0.004), pulse(0.001, 0.1, 0.001)];
+        for pulse in both {
+            pulses.push(Side::Left, pulse);
+        }
+        for k in 0..1000 {
+            let t = f64::from(k) * 1e-4;
+            let [big, small] = both.map(|pulse| shape.at(&pulse, t).value);
+            assert_eq!(pulses.at(Side::Left, t).value, big.max(small), "at {t} s");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The search for the next event.
+
+use super::cylinder::CylinderState;
+use super::events::{Prediction, Search};
+use super::flight::Flight;
+use super::side::Side;
+use super::{Ball, Motion};
+use crate::noise::Noise;
+
+impl Motion {
+    /// The membrane that a ball touches where its present flight begins, and the speed at which it approaches that, m/s.
+    pub fn touched(&self) -> Option<(Side, f64)> {
+        let Flight { dz, rate, .. } = self.flight;
+        let side = Side::of(dz);
+        let is_touching = (dz.abs() - self.half_travel).abs() <= 4.0 * f64::EPSILON * self.half_travel;
+        is_touching.then_some((side, side.sign() * rate))
+    }
+
+    /// All events up to `time`, s, have happened: windows that lie before are passed over.
+    pub fn resume_search(&mut self, time: f64) {
+        self.search = Search::new();
+        if self.ball.contact().is_none() {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            // saturates; time does not lie before the start
+            let passed = ((time - self.flight.start) / self.flight.window_length()) as u64;
+            self.search.window = passed.saturating_sub(1);
+        }
+    }
+
+    /// The future is an integrator's: a flight from where the cylinder is `here`, and no search.
+    pub fn forget_search(&mut self, here: &CylinderState, motion: [f64; 2]) {
+        self.new_flight(here, motion);
+        self.search = Search::none();
+    }
+
+    /// The next event, if there is one before the search windows have passed `until`, s. If the caller is to get there,
+    /// `follow` spares it the way.
+    pub fn next_event(&mut self, noise: &mut Noise, until: f64, follow: bool) -> Option<Prediction> {
+        let limit = noise.limit();
+        if let Ball::InContact(contact) = &self.ball {
+            let end = contact.end();
+            let sample = limit.filter(|limit| *limit <= end);
+            let change = Prediction::ContactChange { time: end };
+            return Some(sample.map_or(change, |time| Prediction::NoiseSample { time }));
+        }
+        let start = self.flight.start;
+        let in_blocks = noise.in_blocks();
+        let limit_elapsed = match limit {
+            Some(_) if in_blocks => noise.rest_after(start),
+            Some(time) => time - start,
+            None => f64::INFINITY,
+        };
+        while !self.search.has_ended() {
+            if let Some(ahead) = self.search.ahead {
+                self.search_ahead(noise, ahead, until, follow);
+                break;
+            }
+            let begin = self.search.window as f64 * self.flight.window_length();
+            if begin >= limit_elapsed && in_blocks {
+                self.search.window = 0;
+                self.search.ahead = Some(self.next_interval(noise));
+                continue;
+            }
+            if begin >= limit_elapsed {
+                self.search.found = limit.map(|time| Prediction::NoiseSample { time });
+                break;
+            }
+            if start + begin > until {
+                break;
+            }
+            self.search_window(limit_elapsed, limit.unwrap_or(f64::INFINITY));
+        }
+        if in_blocks && self.search.found.is_some() {
+            self.search.window = 0; // whether it was found from here or ahead
+        }
+        self.search.found
+    }
+
+    /// The time, s, up to which nothing happens and the search has nothing more to predict. It follows from what has been
+    /// found, not from the present time, so that no step of a caller changes it.
+    pub fn calm_until(&self, noise: &Noise) -> f64 {
+        if noise.limit().is_some() {
+            return f64::NEG_INFINITY; // there is always a hold interval to enter
+        }
+        if let Ball::InContact(contact) = &self.ball {
+            return contact.end();
+        }
+        let Search { window, found, exhausted, .. } = &self.search;
+        match found {
+            Some(event) => event.time(),
+            None if *exhausted => f64::INFINITY,
+            None => {
+                let searched = self.flight.start + *window as f64 * self.flight.window_length();
+                let horizon = self.flight.window_length();
+                // Less the rounding of this difference and of the sum that the search compares with.
+                searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
+            }
+        }
+    }
+
+    /// Searches one window of the flight or of the rest; both limits mean the end of the hold interval, s since the start and s.
+    fn search_window(&mut self, limit: f64, end: f64) {
+        let Self { cylinder, ball, flight, search, .. } = self;
+        let time = |elapsed: f64| (flight.start + elapsed).min(end);
+        if let Some(side) = ball.support() {
+            let release = flight.release_in_window(side, search.window, limit);
+            search.found = release.map(|elapsed| Prediction::Release { time: time(elapsed) });
+            search.window += 1;
+            // Without a force that changes, the ball rests for ever.
+            search.exhausted = release.is_none() && cylinder.drive.is_constant() && limit == f64::INFINITY;
+            return;
+        }
+        let Some(window) = flight.skip(search.window) else {
+            if limit == f64::INFINITY {
+                search.exhausted = true;
+            } else {
+                search.window = u64::MAX;
+            }
+            return;
+        };
+        let crossing = flight.contact_in_window(window, limit);
+        search.window = window + 1;
+        search.found = crossing.map(|there| Prediction::Impact { time: time(there.elapsed), side: there.side });
+        search.speed = crossing.map_or(0.0, |there| there.speed);
+    }
+
+    /// The next impact that has been found, and its relative speed, m/s.
+    pub fn found_impact(&self) -> Option<(f64, Side, f64)> {
+        let Search { found: Some(Prediction::Impact { time, side }), speed, .. } = self.search else { return None };
+        Some((time, side, speed))
+    }
+
+    /// The release that has been found, s.
+    pub fn found_release(&self) -> Option<f64> {
+        let Some(Prediction::Release { time }) = self.search.found else { return None };
+        Some(time)
+    }
+}

@@ -1,0 +1,43 @@
+//! Roots of monotone functions by Newton's method.
+
+/// Bisection alone needs at most some 110 to exhaust the digits of a double.
+const MAX_ITERATIONS: u32 = 200;
+
+/// Root of a monotone `function` (value and slope) that is positive at `low` and not at `high`; bisection wherever Newton's
+/// method would leave the bracket.
+pub fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let (mut low, mut high) = (low, high);
+    let mut x = 0.5 * (low + high);
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = function(x);
+        if value > 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let converged = (next - x).abs() <= f64::EPSILON * x.abs();
+        x = next;
+        if converged || high - low <= f64::EPSILON * high.abs() {
+            break;
+        }
+    }
+    x
+}
+
+/// Root of a nearly linear, convex, increasing function that returns value and slope. `start` lies at or beyond the root, so
+/// the iteration falls towards it; `end` bounds the range of the function.
+pub fn convex_root(start: f64, end: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut x = start.clamp(0.0, end);
+    for _ in 0..20 {
+        let (value, slope) = function(x);
+        let next = (x - value / slope).clamp(0.0, end);
+        let change = (next - x).abs();
+        x = next;
+        if change <= 1e-15 {
+            break;
+        }
+    }
+    x
+}

@@ -1,0 +1,138 @@
+//! How an impact changes, and what it does to the changes.
+
+use super::ledger::{kinetic, work};
+use super::{Tangent, Tangential, bounded};
+use crate::membrane::Membrane;
+use crate::motion::cylinder::CylinderState;
+use crate::motion::pulse::PulseChange;
+use crate::motion::side::Side;
+use crate::paper::impact;
+use crate::parameters::Parameters;
+
+/// Relative speed, m/s, below which an impact grazes if the wall recedes from the ball faster and faster, so that a little
+/// earlier or later they would just miss each other. The factor by which an impact magnifies changes grows as one over the
+/// relative speed; a grazing impact, which penetrates by less than the rounding of the positions, counts as none: changes
+/// pass it as they would if the ball missed the membrane. Slow impacts of a ball that the wall pushes are bounces of
+/// a chattering sequence, whose changes are as small as they are.
+pub const GRAZING_SPEED: f64 = 1e-7;
+
+/// Whether an impact at relative `speed`, m/s, grazes, under the wall's `acceleration`, m/s^2.
+pub fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {
+    speed <= 0.0 || (speed < GRAZING_SPEED && side.sign() * acceleration <= 0.0)
+}
+
+/// An impact and its surroundings.
+pub struct Hit {
+    pub side: Side,
+    /// m/s.
+    pub speed: f64,
+    /// delta, m.
+    pub peak: f64,
+    /// Derivative of `C_3` / `C_2` - 1 with the deflection, 1/m.
+    pub excess_slope: f64,
+    pub wall: CylinderState,
+}
+
+/// Changes of the works that impacts and rests add, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LedgerChange {
+    pub wall: f64,
+    pub loss: f64,
+}
+
+/// How an impact changes.
+#[derive(Default)]
+pub struct HitChange {
+    pub pulse: PulseChange,
+    /// Of `z_M'`, and of how much faster than that the ball rebounds, at the time of the impact.
+    pub wall: [f64; 2],
+    /// Of what the impact adds to the ledger.
+    ledger: LedgerChange,
+    /// Of `C_3` / `C_2` - 1.
+    excess: f64,
+    /// Of `z_M` - `z_m` and its rate at the time of the impact, after it.
+    motion: [f64; 2],
+}
+
+impl Tangential<'_> {
+    /// How an impact changes; the ball has not rebounded yet.
+    pub fn change_of(&self, hit: &Hit) -> HitChange {
+        let Hit { side, speed, peak, excess_slope, .. } = *hit;
+        let CylinderState { time, acceleration, .. } = hit.wall;
+        let [_, velocity] = self.cylinder_change(time);
+        let motion = self.motion_change(time);
+        if grazes(side, speed, acceleration) {
+            return HitChange { motion, wall: [velocity, -motion[1]], ..HitChange::default() };
+        }
+        let (sign, restitution) = (side.sign(), self.parameters.restitution);
+        let delay = self.delay_by(motion[0], side, speed);
+        let wall_change = velocity + acceleration * delay;
+        let speed_change = sign * (motion[1] + acceleration * delay);
+        let rebound_change = self.tangent.rebound_change(restitution, speed, speed_change);
+        let membrane = self.tangent.membrane();
+        let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
+        HitChange {
+            pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
+            wall: [wall_change, sign * rebound_change].map(bounded),
+            ledger: self.impact_change(hit, bounded(speed_change), bounded(wall_change)),
+            excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
+            motion: [
+                sign * (self.tangent.half_travel() + impact::rebound(restitution, speed) * delay),
+                -sign * rebound_change - acceleration * delay,
+            ]
+            .map(bounded),
+        }
+    }
+
+    /// Changes of what an impact adds when its speed and the wall's velocity change by so much, m/s.
+    fn impact_change(&self, hit: &Hit, speed_change: f64, wall_change: f64) -> LedgerChange {
+        let (r, dr) = (self.parameters.restitution, self.tangent.of(|change| change.restitution));
+        let mass = self.tangent.ball_mass(self.parameters.ball_mass);
+        let (speed, wall) = ([hit.speed, speed_change], [hit.wall.velocity, wall_change]);
+        let jump = hit.side.sign() * (1.0 + r);
+        let jump_change = jump * speed_change + hit.side.sign() * dr * hit.speed;
+        let energy = 0.5 * self.parameters.ball_mass * hit.speed * hit.speed;
+        LedgerChange {
+            wall: bounded(work(mass, [jump * hit.speed, jump_change], wall)),
+            loss: bounded((1.0 - r * r) * kinetic(mass, speed) - 2.0 * r * dr * energy),
+        }
+    }
+}
+
+impl Tangent {
+    fn rebound_change(&self, restitution: f64, speed: f64, speed_change: f64) -> f64 {
+        restitution * speed_change + self.of(|change| change.restitution) * speed
+    }
+
+    /// Carries the changes over an impact with this `excess`.
+    pub fn pass_impact(&mut self, p: &Parameters, membrane: &Membrane, change: &HitChange, excess: f64) {
+        [self.changes.displacement, self.changes.rate] = change.motion;
+        self.changes.last_speed = change.pulse.speed;
+        self.changes.wall += change.ledger.wall;
+        self.changes.loss += change.ledger.loss;
+        self.credit(p, membrane, excess, change.excess);
+    }
+
+    /// The same for the endless rest of a chattering sequence behind an impact at relative `speed`.
+    pub fn pass_tail(&mut self, p: &Parameters, membrane: &Membrane, speed: f64, excess: f64) {
+        let restitution = p.restitution;
+        let by_restitution = self.of(|change| change.restitution);
+        let rebound_change = self.rebound_change(restitution, speed, self.changes.last_speed);
+        let rebound = impact::rebound(restitution, speed);
+        let change =
+            membrane.excess_of_chatter_change(rebound, restitution, rebound_change, by_restitution, self.membrane());
+        self.credit(p, membrane, excess, change);
+    }
+
+    /// The changes of what an impact with this `excess` adds: Eqs. (12) and (13).
+    fn credit(&mut self, p: &Parameters, membrane: &Membrane, excess: f64, excess_change: f64) {
+        let (bias, capacitance) = (p.bias_voltage, membrane.rest_capacitance);
+        self.changes.voltage_gain += impact::voltage_gain(bias, excess_change);
+        self.changes.energy += impact::energy(bias, capacitance, excess_change);
+        if let Some(change) = &self.parameters {
+            self.changes.voltage_gain += impact::voltage_gain(change.bias, excess);
+            self.changes.energy +=
+                (bias * change.bias * capacitance + 0.5 * bias * bias * change.membrane.rest_capacitance) * excess;
+        }
+    }
+}
