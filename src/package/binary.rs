@@ -1,13 +1,13 @@
-//! Libraries that were built elsewhere, looked at before they go into an archive.
+//! Libraries that were built elsewhere: checks before they go into an archive.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use object::read::macho::{FatArch, MachOFatFile32, MachOFatFile64};
 use object::read::{File, FileKind, NameOrOrdinal, Object, ObjectKind};
 use object::{Architecture, BinaryFormat};
 
 use super::FMUS;
-use super::error::{PackageError, Result};
+use super::error::PackageError;
 use super::platform::Platform;
 use videg_system::input;
 
@@ -31,7 +31,7 @@ impl AddedBinary {
     ///
     /// # Errors
     /// When the platform is unknown, the name tells no FMU, or the file is no such library.
-    pub fn parse(text: &str) -> Result<Self> {
+    pub fn parse(text: &str) -> Result<Self, PackageError> {
         let Some((platform, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
             return Err(PackageError::AddedForm { found: text.to_owned() });
         };
@@ -41,61 +41,59 @@ impl AddedBinary {
         let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
         let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: path.clone() })?;
         let data = input::read(&path).map_err(PackageError::io("read", &path))?;
-        check(&data, platform, &path)?;
-        Ok(Self { platform, identifier, path })
+        match check(&data, platform) {
+            Ok(()) => Ok(Self { platform, identifier, path }),
+            Err(Fault::Is(found)) => Err(PackageError::AddedLibrary { path, found, platform }),
+            Err(Fault::NoEntryPoint) => Err(PackageError::AddedExport { path, symbol: ENTRY_POINT }),
+        }
+    }
+}
+
+/// Why a file is no library of an FMU.
+enum Fault {
+    /// It is something else.
+    Is(String),
+    NoEntryPoint,
+}
+
+impl From<object::read::Error> for Fault {
+    fn from(cause: object::read::Error) -> Self {
+        Self::Is(format!("a broken file ({cause})"))
     }
 }
 
 /// Checks that `data` is a shared library of the platform with the functions of an FMU.
-fn check(data: &[u8], platform: Platform, path: &Path) -> Result<()> {
-    let refuse = |found: String| PackageError::AddedLibrary { path: path.to_path_buf(), found, platform };
-    let broken = |cause: object::read::Error| refuse(format!("a broken file ({cause})"));
-    let kind = FileKind::parse(data).map_err(|_| refuse("no library at all".to_owned()))?;
+fn check(data: &[u8], platform: Platform) -> Result<(), Fault> {
+    let kind = FileKind::parse(data).map_err(|_| Fault::Is("no library at all".to_owned()))?;
     match kind {
-        // One file for several machines: each part counts.
-        FileKind::MachOFat32 => {
-            check_parts(MachOFatFile32::parse(data).map_err(broken)?.arches(), data, platform, path)
-        }
-        FileKind::MachOFat64 => {
-            check_parts(MachOFatFile64::parse(data).map_err(broken)?.arches(), data, platform, path)
-        }
+        FileKind::MachOFat32 => check_parts(MachOFatFile32::parse(data)?.arches(), data, platform),
+        FileKind::MachOFat64 => check_parts(MachOFatFile64::parse(data)?.arches(), data, platform),
         FileKind::Elf32 | FileKind::Elf64 | FileKind::MachO32 | FileKind::MachO64 | FileKind::Pe32 | FileKind::Pe64 => {
-            check_file(&File::parse(data).map_err(broken)?, platform, path)
+            check_file(&File::parse(data)?, platform)
         }
-        other => Err(refuse(format!("a file of another kind ({other:?})"))),
+        other => Err(Fault::Is(format!("a file of another kind ({other:?})"))),
     }
 }
 
-fn check_parts<Arch: FatArch>(parts: &[Arch], data: &[u8], platform: Platform, path: &Path) -> Result<()> {
-    let refuse = |found: String| PackageError::AddedLibrary { path: path.to_path_buf(), found, platform };
+/// One file for several machines: each part counts.
+fn check_parts<Arch: FatArch>(parts: &[Arch], data: &[u8], platform: Platform) -> Result<(), Fault> {
     if parts.is_empty() {
-        return Err(refuse("a Mach-O file of no machine".to_owned()));
+        return Err(Fault::Is("a Mach-O file of no machine".to_owned()));
     }
-    let broken = |cause: object::read::Error| refuse(format!("a broken file ({cause})"));
-    parts.iter().try_for_each(|part| {
-        let part = part.data(data).map_err(broken)?;
-        check_file(&File::parse(part).map_err(broken)?, platform, path)
-    })
+    parts.iter().try_for_each(|part| check_file(&File::parse(part.data(data)?)?, platform))
 }
 
-fn check_file(file: &File<'_>, platform: Platform, path: &Path) -> Result<()> {
-    let refuse = |found: String| Err(PackageError::AddedLibrary { path: path.to_path_buf(), found, platform });
-    let (format, bits) = (file.format(), if file.is_64() { 64 } else { 32 });
-    let machine = file.architecture();
+fn check_file(file: &File<'_>, platform: Platform) -> Result<(), Fault> {
+    let (format, machine) = (file.format(), file.architecture());
     if format != format_of(platform) || !machines_of(platform).contains(&machine) {
-        return refuse(format!("a {} file of {bits} bits for {machine:?}", format_name(format)));
+        let bits = if file.is_64() { 64 } else { 32 };
+        return Err(Fault::Is(format!("a {} file of {bits} bits for {machine:?}", format_name(format))));
     }
     if file.kind() != ObjectKind::Dynamic {
-        return refuse(format!("no shared library ({:?})", file.kind()));
+        return Err(Fault::Is(format!("no shared library ({:?})", file.kind())));
     }
-    let mut exports = match file.exports() {
-        Ok(exports) => exports,
-        Err(cause) => return refuse(format!("a broken file ({cause})")),
-    };
-    if exports.any(|export| export.is_ok_and(|export| is_entry_point(export.name()))) {
-        return Ok(());
-    }
-    Err(PackageError::AddedExport { path: path.to_path_buf(), symbol: ENTRY_POINT })
+    let is_there = file.exports()?.any(|export| export.is_ok_and(|export| is_entry_point(export.name())));
+    if is_there { Ok(()) } else { Err(Fault::NoEntryPoint) }
 }
 
 fn is_entry_point(name: NameOrOrdinal<&[u8]>) -> bool {

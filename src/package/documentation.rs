@@ -1,10 +1,9 @@
-//! What an FMU carries for people: a page about the model, its picture, the licenses.
+//! Documentation in an FMU: a page about the model, its picture, the licenses.
 
 use askama::Template;
 
 use super::contents::Contents;
 use super::error::{PackageError, Result};
-use super::picture;
 use fmu_import::{Causality, EnumerationItem, Kind, ModelDescription, Variable};
 
 /// The licenses, wherever this program runs.
@@ -15,6 +14,10 @@ const LICENSES: [(&str, &str); 4] = [
     ("license.txt", include_str!("license.txt")),
     ("spdx.txt", "SPDX-License-Identifier: MIT OR Apache-2.0\n"),
 ];
+
+/// The pictures, which tools show as icons; `model.png` is made of them.
+const HARVESTER_PICTURE: &str = include_str!("../../fmu/harvester/documentation/model.svg");
+const CIRCUIT_PICTURE: &str = include_str!("../../fmu/circuit/documentation/model.svg");
 
 /// Headings, in the order in which a user needs them.
 const GROUPS: [(Causality, &str); 5] = [
@@ -63,14 +66,10 @@ struct Row {
 /// Adds page, picture and licenses to an archive.
 ///
 /// # Errors
-/// When the page cannot be written or the picture not drawn.
+/// When the page or the picture cannot be written.
 pub(super) fn add(contents: &mut Contents) -> Result<()> {
-    let description = contents.description();
-    let (page, picture) = (page(description)?, picture::draw(description)?);
-    if let Some(page) = page {
+    if let Some((page, picture)) = page_and_picture(contents.description())? {
         contents.entries.add_bytes("documentation/index.html", page.into_bytes());
-    }
-    if let Some(picture) = picture {
         contents.entries.add_bytes("model.png", picture);
     }
     for (name, text) in LICENSES {
@@ -79,23 +78,26 @@ pub(super) fn add(contents: &mut Contents) -> Result<()> {
     Ok(())
 }
 
-/// The page of a model; none for a model unknown here.
-fn page(description: &ModelDescription) -> Result<Option<String>> {
-    let identifier = description.co_simulation.model_identifier.clone();
+/// The page and the PNG picture of a model; none for a model unknown here.
+fn page_and_picture(description: &ModelDescription) -> Result<Option<(String, Vec<u8>)>> {
+    let identifier = &description.co_simulation.model_identifier;
     let page = Page {
         name: description.model_name.clone(),
         description: description.description.clone().unwrap_or_default(),
+        identifier: identifier.clone(),
         guid: description.guid.clone(),
         tool: description.generation_tool.clone().unwrap_or_default(),
         groups: GROUPS.iter().filter_map(|(causality, heading)| group(description, *causality, heading)).collect(),
-        identifier: identifier.clone(),
     };
-    let text = match identifier.as_str() {
-        "VibroImpactHarvester" => HarvesterPage { page }.render(),
-        "HarvestingCircuit" => CircuitPage { page }.render(),
+    let (page, picture) = match identifier.as_str() {
+        "VibroImpactHarvester" => (HarvesterPage { page }.render(), HARVESTER_PICTURE),
+        "HarvestingCircuit" => (CircuitPage { page }.render(), CIRCUIT_PICTURE),
         _ => return Ok(None),
     };
-    text.map(Some).map_err(|cause| PackageError::Documentation { identifier, cause })
+    let page = page.map_err(PackageError::template(format!("the documentation of {identifier}")))?;
+    let picture = videg_report::render_png(picture, 1.0)
+        .map_err(|cause| PackageError::Picture { identifier: identifier.clone(), cause })?;
+    Ok(Some((page, picture)))
 }
 
 fn group(description: &ModelDescription, causality: Causality, heading: &'static str) -> Option<Group> {
@@ -149,17 +151,17 @@ mod tests {
     use super::*;
     use crate::package::FMUS;
 
-    fn text(identifier: &str) -> (ModelDescription, String) {
+    fn described(identifier: &str) -> (ModelDescription, String, Vec<u8>) {
         let path = format!("{}/modelDescription/{identifier}.xml", env!("CARGO_MANIFEST_DIR"));
         let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), &path).unwrap();
-        let page = page(&description).unwrap().unwrap();
-        (description, page)
+        let (page, picture) = page_and_picture(&description).unwrap().unwrap();
+        (description, page, picture)
     }
 
     #[test]
-    fn each_page_has_its_text_and_a_row_for_every_variable() {
+    fn each_page_has_its_text_loads_nothing_and_has_a_row_for_every_variable() {
         for fmu in FMUS {
-            let (description, page) = text(fmu.identifier);
+            let (description, page, _) = described(fmu.identifier);
             for heading in ["What it is", "Equations", "How it is solved", "Assumptions and limits", "Parameters"] {
                 assert!(page.contains(&format!(">{heading}</h")), "{}: {heading}", fmu.identifier);
             }
@@ -167,13 +169,6 @@ mod tests {
                 assert!(page.contains(&format!("<td><code>{}</code></td>", variable.name)), "{}", variable.name);
             }
             assert_eq!(page.matches("<tr><td>").count(), description.variables.len());
-        }
-    }
-
-    #[test]
-    fn a_page_loads_nothing_and_is_ascii() {
-        for fmu in FMUS {
-            let (_, page) = text(fmu.identifier);
             for loaded in ["src=", "href=", "url(", "@import", "<script"] {
                 assert!(!page.contains(loaded), "{}: {loaded}", fmu.identifier);
             }
@@ -183,9 +178,41 @@ mod tests {
 
     #[test]
     fn rows_say_what_the_description_says() {
-        let (_, page) = text("VibroImpactHarvester");
+        let (_, page, _) = described("VibroImpactHarvester");
         let row = "<tr><td><code>ball.mass</code></td><td>kg</td><td>0.0035</td><td>1e-9 to 1e6</td>";
         assert!(page.contains(row), "{page}");
         assert!(page.contains("<td>enumeration</td><td>impulsive</td>"), "{page}");
+    }
+
+    #[test]
+    fn pictures_are_png_files_of_600_by_400_pixels() {
+        for fmu in FMUS {
+            let (_, _, picture) = described(fmu.identifier);
+            assert_eq!(picture.get(..8), Some(&b"\x89PNG\r\n\x1a\n"[..]), "{}", fmu.identifier);
+            assert_eq!(picture.get(16..24), Some(&[0, 0, 2, 88, 0, 0, 1, 144][..]), "{}", fmu.identifier);
+        }
+    }
+
+    #[test]
+    fn the_picture_of_the_harvester_is_to_scale() {
+        let (description, ..) = described("VibroImpactHarvester");
+        let millimetres = |name: &str| match description.variable(name).unwrap().kind {
+            Kind::Real { start: Some(start), .. } => 1e3 * start,
+            _ => panic!("{name} is a Real with a start value"),
+        };
+        let Kind::Real { start: Some(stretch), .. } = description.variable("membrane.prestretch").unwrap().kind else {
+            panic!("the pre-stretch is a Real with a start value");
+        };
+        let (length, width) = (millimetres("cylinder.length"), millimetres("frame.width"));
+        let inner = stretch * millimetres("membrane.initialRadius");
+        let membrane = length / 2.0 + width;
+        for drawn in [
+            format!("class=\"ball\" r=\"{}\"", millimetres("ball.radius")),
+            format!("class=\"cylinder\" x=\"-{}\" y=\"{inner}\" width=\"{length}\"", length / 2.0),
+            format!("class=\"frame\" d=\"M-{} {inner}h{width}v", membrane + width),
+            format!("class=\"membrane\" d=\"M-{membrane}-"),
+        ] {
+            assert!(HARVESTER_PICTURE.contains(&drawn), "{drawn}");
+        }
     }
 }

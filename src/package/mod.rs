@@ -1,8 +1,7 @@
 //! Packager: from the compiled libraries to `.fmu` archives, and from those to the `.ssp` that connects them.
 //!
 //! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
-//! documentation: a page from a template in `fmu/*/documentation`, a picture drawn from the start values, licenses; and the
-//! experiments of `fmu/*/extra`.
+//! documentation: a page and a picture from `fmu/*/documentation`, licenses; and the experiments of `fmu/*/extra`.
 //! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
 //! is packaged always belongs to the sources. Without it, the FMUs inside the program are taken (the feature
 //! `embedded-fmus`), or else the libraries beside it.
@@ -28,7 +27,6 @@ mod entries;
 mod error;
 mod fresh;
 mod locate;
-mod picture;
 mod platform;
 mod put;
 mod references;

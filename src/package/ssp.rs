@@ -1,25 +1,23 @@
 //! The system package: both FMUs, their connections and their parameters in one archive, after SSP 1.0.
+//!
+//! Its documents are templates (`ssp/`). Ecos reads only documents with these very prefixes of the namespaces.
 
-mod annotation;
-mod document;
-
+use std::fmt;
 use std::path::Path;
 
-use serde::Serialize;
+use askama::Template;
+use askama::filters::Escaper;
 
-use self::document::{
-    BaseUnit, Component, Connection, Connector, Parameter, ParameterSet, Real, SystemStructureDescription, Unit,
-};
 use super::entries::Entries;
 use super::error::{PackageError, Result};
 use crate::scenario::Setting;
-use fmu_import::{Causality, Kind, ModelDescription, Value, Variable};
+use fmu_import::{BaseUnit, Causality, Kind, ModelDescription, Value, Variable};
 
 /// Names of the components.
 const HARVESTER: &str = "harvester";
 const CIRCUIT: &str = "circuit";
 
-/// The connections: from, to, and the variable that both call the same.
+/// The connections: from, to, and the name that the variable has in both.
 const CONNECTIONS: [(&str, &str, &str); 4] = [
     (HARVESTER, CIRCUIT, "left.capacitance"),
     (HARVESTER, CIRCUIT, "right.capacitance"),
@@ -30,12 +28,14 @@ const CONNECTIONS: [(&str, &str, &str); 4] = [
 /// Communication step, s, if the harvester proposes none.
 const STEP: f64 = 1e-3;
 
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// An FMU in the package.
 #[derive(Debug, Clone, Copy)]
 pub struct Part<'a> {
     /// The archive.
     pub fmu: &'a Path,
-    /// What is in it.
+    /// Its model description.
     pub description: &'a ModelDescription,
     /// What to set, the last of a name wins. Start values are left out.
     pub settings: &'a [Setting],
@@ -56,6 +56,56 @@ pub struct SystemPackage<'a> {
     pub circuit: Part<'a>,
 }
 
+#[derive(Template)]
+#[template(path = "ssp/SystemStructure.ssd")]
+struct SystemStructure<'a> {
+    description: String,
+    components: Vec<Component<'a>>,
+    units: Vec<Unit<'a>>,
+    step: String,
+    stop_time: String,
+}
+
+struct Component<'a> {
+    name: &'static str,
+    fmu: String,
+    values: String,
+    connectors: Vec<Connector<'a>>,
+}
+
+/// A Real variable that others may be connected with.
+struct Connector<'a> {
+    name: &'a str,
+    kind: &'static str,
+    unit: Option<&'a str>,
+}
+
+/// A unit in SI base units.
+struct Unit<'a> {
+    name: &'a str,
+    base: &'a BaseUnit,
+    factor: String,
+    offset: String,
+}
+
+#[derive(Template)]
+#[template(path = "ssp/parameters.ssv")]
+struct ParameterSet<'a> {
+    name: &'a str,
+    parameters: &'a [Parameter],
+}
+
+struct Parameter {
+    name: String,
+    value: Value,
+}
+
+impl Parameter {
+    fn text(&self) -> String {
+        if let Value::Real(value) = self.value { number(value) } else { self.value.to_string() }
+    }
+}
+
 impl SystemPackage<'_> {
     /// Writes the archive; returns the names of the parameters that it sets, as `component.name`.
     ///
@@ -67,35 +117,39 @@ impl SystemPackage<'_> {
         let mut components = Vec::new();
         for (name, part) in [(HARVESTER, &self.harvester), (CIRCUIT, &self.circuit)] {
             let parameters = part.parameters()?;
-            let qualified = |it: &Parameter| Parameter { name: format!("{name}.{}", it.name), value: it.value.clone() };
-            all.extend(parameters.iter().map(qualified));
             let fmu = format!("resources/{}.fmu", part.description.co_simulation.model_identifier);
             let values = format!("resources/{name}.ssv");
-            entries.add_bytes(&values, xml("the parameter values", &ParameterSet::new(self.case, parameters))?);
             entries.add_file(&fmu, part.fmu);
-            components.push(Component::new(name, fmu, part.connectors(), values));
+            self.add_parameters(&mut entries, &values, &parameters)?;
+            components.push(Component { name, fmu, values, connectors: part.connectors() });
+            all.extend(parameters.into_iter().map(|it| Parameter { name: format!("{name}.{}", it.name), ..it }));
         }
-        let set: Vec<_> = all.iter().map(|parameter| parameter.name.clone()).collect();
         // The same once more under full names, for tools that do not follow the bindings of components.
-        entries.add_bytes("resources/system.ssv", xml("the parameter values", &ParameterSet::new(self.case, all))?);
-        let description = format!("Vibro-impact harvester and its circuit. {}", self.description);
-        let parts = (components, connections());
-        let step = self.harvester.description.default_experiment.step_size.unwrap_or(STEP);
-        let times = (step, self.until);
-        let structure = SystemStructureDescription::new("Harvester", description, parts, self.units(), times);
-        entries.add_bytes("SystemStructure.ssd", xml("SystemStructure.ssd", &structure)?);
+        self.add_parameters(&mut entries, "resources/system.ssv", &all)?;
+        let structure = SystemStructure {
+            description: format!("Vibro-impact harvester and its circuit. {}", self.description),
+            components,
+            units: self.units(),
+            step: number(self.harvester.description.default_experiment.step_size.unwrap_or(STEP)),
+            stop_time: number(self.until),
+        };
+        add_document(&mut entries, "SystemStructure.ssd", &structure)?;
         entries.write(archive)?;
-        Ok(set)
+        Ok(all.into_iter().map(|parameter| parameter.name).collect())
+    }
+
+    fn add_parameters(&self, entries: &mut Entries, file: &str, parameters: &[Parameter]) -> Result<()> {
+        add_document(entries, file, &ParameterSet { name: self.case, parameters })
     }
 
     /// The units of both FMUs, each once.
-    fn units(&self) -> Vec<Unit> {
+    fn units(&self) -> Vec<Unit<'_>> {
         let mut units: Vec<Unit> = Vec::new();
-        for unit in [self.harvester, self.circuit].iter().flat_map(|part| &part.description.units) {
+        for unit in [&self.harvester, &self.circuit].into_iter().flat_map(|part| &part.description.units) {
             if let Some(base) = &unit.base
                 && units.iter().all(|known| known.name != unit.name)
             {
-                units.push(Unit { name: unit.name.clone(), base: BaseUnit::new(base) });
+                units.push(Unit { name: &unit.name, base, factor: number(base.factor), offset: number(base.offset) });
             }
         }
         units
@@ -113,37 +167,26 @@ impl Part<'_> {
             let Some(setting) = self.settings.iter().rfind(|setting| setting.name == variable.name) else { continue };
             let value = Value::parse(self.description, variable, &setting.value).map_err(fmu_import::FmiError::from)?;
             if !is_start(variable, &value) {
-                parameters.push(Parameter { name: variable.name.clone(), value: document::Value::new(&value) });
+                parameters.push(Parameter { name: variable.name.clone(), value });
             }
         }
         Ok(parameters)
     }
 
     /// All Real outputs, and the inputs that are connected.
-    fn connectors(&self) -> Vec<Connector> {
-        let kind = |variable: &Variable| match (&variable.kind, variable.causality) {
-            (Kind::Real { .. }, Causality::Output) => Some("output"),
-            (Kind::Real { .. }, Causality::Input) => {
-                CONNECTIONS.iter().any(|(_, _, name)| *name == variable.name).then_some("input")
-            }
-            _ => None,
-        };
-        let connector = |variable: &Variable| {
-            let real = Real { unit: variable.unit().map(str::to_owned) };
-            kind(variable).map(|kind| Connector { name: variable.name.clone(), kind, real })
-        };
-        self.description.variables.iter().filter_map(connector).collect()
+    fn connectors(&self) -> Vec<Connector<'_>> {
+        let is_connected = |variable: &Variable| CONNECTIONS.iter().any(|(_, _, name)| *name == variable.name);
+        let reals = self.description.variables.iter().filter(|it| matches!(it.kind, Kind::Real { .. }));
+        let connectors = reals.filter_map(|variable| {
+            let kind = match variable.causality {
+                Causality::Output => "output",
+                Causality::Input if is_connected(variable) => "input",
+                _ => return None,
+            };
+            Some(Connector { name: &variable.name, kind, unit: variable.unit() })
+        });
+        connectors.collect()
     }
-}
-
-fn connections() -> Vec<Connection> {
-    let connection = |(from, to, name)| Connection {
-        start_element: from,
-        start_connector: name,
-        end_element: to,
-        end_connector: name,
-    };
-    CONNECTIONS.into_iter().map(connection).collect()
 }
 
 fn is_start(variable: &Variable, value: &Value) -> bool {
@@ -157,11 +200,35 @@ fn is_start(variable: &Variable, value: &Value) -> bool {
     }
 }
 
-fn xml(name: &'static str, document: &impl Serialize) -> Result<Vec<u8>> {
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let mut serializer = quick_xml::se::Serializer::new(&mut text);
-    serializer.indent(' ', 2);
-    document.serialize(serializer).map_err(|cause| PackageError::Xml { document: name, cause })?;
-    text.push('\n');
-    Ok(text.into_bytes())
+/// Adds a document, which ends with a line feed.
+fn add_document(entries: &mut Entries, file: &str, document: &impl Template) -> Result<()> {
+    let text = document.render().map_err(PackageError::template(file))?;
+    entries.add_bytes(file, (text + "\n").into_bytes());
+    Ok(())
+}
+
+/// A number as XML Schema spells it; reading it gives the same bits.
+fn number(value: f64) -> String {
+    match value {
+        f64::INFINITY => "INF".to_owned(),
+        f64::NEG_INFINITY => "-INF".to_owned(),
+        _ => format!("{value:?}"),
+    }
+}
+
+/// Escapes the value of an XML attribute.
+#[derive(Clone, Copy)]
+pub(super) struct Xml;
+
+impl Escaper for Xml {
+    fn write_escaped_str<W: fmt::Write>(&self, mut to: W, text: &str) -> fmt::Result {
+        text.chars().try_for_each(|character| match character {
+            '<' => to.write_str("&lt;"),
+            '>' => to.write_str("&gt;"),
+            '&' => to.write_str("&amp;"),
+            '"' => to.write_str("&quot;"),
+            '\t' | '\n' | '\r' => write!(to, "&#{};", u32::from(character)),
+            other => to.write_char(other),
+        })
+    }
 }

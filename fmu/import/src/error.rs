@@ -20,179 +20,63 @@ pub type Result<T> = std::result::Result<T, FmiError>;
 
 /// Why an FMU could not be opened, loaded or called.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum FmiError {
     /// The file system refused.
     #[error("cannot {action} {}: {cause}", path.display())]
-    Io {
-        /// What was tried.
-        action: &'static str,
-        /// On which file.
-        path: PathBuf,
-        /// What the system said.
-        cause: io::Error,
-    },
+    Io { action: &'static str, path: PathBuf, cause: io::Error },
     /// The file is no zip archive, or a broken one.
     #[error("{}: not a readable FMU (zip) archive: {cause}", path.display())]
-    NotAnArchive {
-        /// The file.
-        path: PathBuf,
-        /// What the reader said.
-        cause: zip::result::ZipError,
-    },
+    NotAnArchive { path: PathBuf, cause: zip::result::ZipError },
     /// The archive has no file of this name.
     #[error("{}: the archive has no {entry}", path.display())]
-    MissingEntry {
-        /// The archive.
-        path: PathBuf,
-        /// The name of the missing file.
-        entry: &'static str,
-    },
+    MissingEntry { path: PathBuf, entry: &'static str },
     /// The archive breaks a safety rule.
     #[error("{}: refused: {reason}", path.display())]
-    Refused {
-        /// The archive.
-        path: PathBuf,
-        /// The broken rule.
-        reason: Refusal,
-    },
+    Refused { path: PathBuf, reason: Refusal },
     /// The model description cannot be used.
     #[error("{origin}: {cause}")]
-    Description {
-        /// Where it came from.
-        origin: String,
-        /// What is wrong with it.
-        cause: DescriptionError,
-    },
+    Description { origin: String, cause: DescriptionError },
     /// There is no binary for this machine.
     #[error("{}: no binary for this platform (wanted {wanted}, the FMU has: {})", path.display(), list(found))]
-    NoBinary {
-        /// The archive.
-        path: PathBuf,
-        /// The entry looked for.
-        wanted: String,
-        /// Platforms that the FMU brings.
-        found: Vec<String>,
-    },
+    NoBinary { path: PathBuf, wanted: String, found: Vec<String> },
     /// The dynamic linker refused the library.
     #[error("cannot load {}: {cause}", path.display())]
-    Load {
-        /// The library, as a path into the archive.
-        path: PathBuf,
-        /// What the linker said.
-        cause: libloading::Error,
-    },
+    Load { path: PathBuf, cause: libloading::Error },
     /// The library lacks a function of the co-simulation interface.
     #[error("{} does not export {symbol}, which FMI 2.0 for co-simulation requires", path.display())]
-    MissingSymbol {
-        /// The library, as a path into the archive.
-        path: PathBuf,
-        /// The missing function.
-        symbol: &'static str,
-    },
+    MissingSymbol { path: PathBuf, symbol: &'static str },
     /// The library speaks another version of FMI or uses other C types.
     #[error("{}: {function} returned \"{found}\", allowed is \"{allowed}\"", path.display())]
-    WrongInterface {
-        /// The library, as a path into the archive.
-        path: PathBuf,
-        /// The function asked.
-        function: &'static str,
-        /// What it returned.
-        found: String,
-        /// What it should return.
-        allowed: &'static str,
-    },
+    WrongInterface { path: PathBuf, function: &'static str, found: String, allowed: &'static str },
     /// `fmi2Instantiate` returned NULL.
     #[error(
         "fmi2Instantiate of '{instance}' (model {model}, guid {guid}) failed{}; a model description that belongs \
              to another build of the library is a usual reason",
         tail(messages)
     )]
-    Instantiate {
-        /// Name of the instance.
-        instance: String,
-        /// Model identifier.
-        model: String,
-        /// The guid of the model description, which the library compares with its own.
-        guid: String,
-        /// What the FMU logged meanwhile.
-        messages: Vec<LogRecord>,
-    },
+    Instantiate { instance: String, model: String, guid: String, messages: Vec<LogRecord> },
     /// A call returned something else than OK or Warning.
     #[error("{}", failed(function, instance, *status, messages))]
-    Call {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// What it returned.
-        status: Status,
-        /// The FMU's last log messages, oldest first.
-        messages: Vec<LogRecord>,
-    },
+    Call { function: &'static str, instance: String, status: Status, messages: Vec<LogRecord> },
     /// An earlier call returned Fatal: no instance of this FMU may be called any more.
     #[error("{function} of '{instance}' was not called: the FMU {model} reported a fatal error before")]
-    Dead {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// Model identifier.
-        model: String,
-    },
+    Dead { function: &'static str, instance: String, model: String },
     /// The FMU does not offer an optional function.
     #[error("{function} of '{instance}' was not called: the FMU does not declare {capability}")]
-    NotSupported {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// The flag of the model description that would allow it.
-        capability: &'static str,
-    },
+    NotSupported { function: &'static str, instance: String, capability: &'static str },
     /// Slices that belong together have different lengths.
     #[error("{function} of '{instance}': {references} value references but {values} {what}")]
-    Length {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// Number of value references.
-        references: usize,
-        /// Number of the others.
-        values: usize,
-        /// What the others are.
-        what: &'static str,
-    },
+    Length { function: &'static str, instance: String, references: usize, values: usize, what: &'static str },
     /// A state of one instance was given to another.
     #[error("{function} of '{instance}': the state belongs to another instance, '{owner}'")]
-    ForeignState {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// Name of the instance that made the state.
-        owner: String,
-    },
+    ForeignState { function: &'static str, instance: String, owner: String },
     /// A serialised state is too large.
     #[error("{function} of '{instance}': a state of {found} bytes, allowed are {allowed}")]
-    StateSize {
-        /// The function.
-        function: &'static str,
-        /// Name of the instance.
-        instance: String,
-        /// Its size.
-        found: usize,
-        /// Bound.
-        allowed: usize,
-    },
+    StateSize { function: &'static str, instance: String, found: usize, allowed: usize },
     /// The process of an isolated FMU cannot be started.
     #[error("cannot start {} {} for the FMU: {cause}", program.display(), super::isolated::WORKER_VERB)]
-    Worker {
-        /// The program.
-        program: PathBuf,
-        /// What the system said.
-        cause: String,
-    },
+    Worker { program: PathBuf, cause: String },
     /// The process of an isolated FMU cannot use the library; in its words.
     #[error("{0}")]
     Refusal(String),
@@ -201,22 +85,10 @@ pub enum FmiError {
     Isolated(Box<Ending>),
     /// A text holds a zero byte, or a name is empty.
     #[error("{what} \"{}\" cannot be passed to an FMU: it is empty or holds a zero byte", text.escape_debug())]
-    Text {
-        /// What the text is.
-        what: &'static str,
-        /// The text.
-        text: String,
-    },
+    Text { what: &'static str, text: String },
     /// A variable does not exist.
     #[error("model {model} has no variable \"{name}\"{}", hint(suggestion.as_ref()))]
-    UnknownVariable {
-        /// Name of the model.
-        model: String,
-        /// What was asked for.
-        name: String,
-        /// The nearest existing name.
-        suggestion: Option<String>,
-    },
+    UnknownVariable { model: String, name: String, suggestion: Option<String> },
     /// A value does not suit its variable.
     #[error(transparent)]
     Value(#[from] ValueError),
