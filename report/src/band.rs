@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::clip::Window;
 use super::figure::{Band, Bars};
-use super::layout::whole;
+use super::metrics::whole;
 use super::reduce::reduce_within;
 use super::trace::{DENSITY, Space};
 

@@ -3,36 +3,19 @@
 //! What the library would write down mark by mark - the cells of a map, the dots of a cloud - lies as compact paths
 //! between its layers.
 
-use std::fmt::Display;
-
-use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
-use plotters::coord::Shift;
-use plotters::coord::cartesian::Cartesian2d;
+use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::element::PathElement;
-use plotters::prelude::{DrawingArea, IntoDrawingArea, RGBColor, SVGBackend, WHITE};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontStyle, IntoFont, ShapeStyle, TextStyle};
+use plotters::prelude::{IntoDrawingArea, SVGBackend, WHITE};
+use plotters::style::FontStyle;
+use plotters::style::text_anchor::HPos;
 
-use super::axis::Axis;
+use super::canvas::{Canvas, Chart, FINE_GRID, GRID, INK, failed, stroke, text, units, write};
 use super::cells::ramp_markup;
-use super::colors::{REFERENCE, palette};
 use super::error::ReportError;
-use super::labels::{draw_axis_labels, draw_bar_labels, draw_header, put};
-use super::layout::{BAR_GAP, BAR_WIDTH, PanelPlan, Plan, TEXT_SIZE, TITLE_ROW, TITLE_SIZE};
+use super::labels::{draw_axis_labels, draw_bar_labels, draw_header};
+use super::layout::{PanelPlan, Plan};
 use super::marks::{clouds, draw_areas, draw_lines, draw_traces, draw_whiskers};
-use super::trace::Key;
-
-/// The library draws on whole pixels: ten of them are one px of the figure.
-pub(super) const UNITS: f64 = 10.0;
-/// The SVG backend divides font sizes by this.
-const FONT_FACTOR: f64 = 1.24;
-
-pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
-const GRID: RGBColor = RGBColor(228, 228, 228);
-const FINE_GRID: RGBColor = RGBColor(241, 241, 241);
-
-pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub(super) type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+use super::metrics::{BAR_GAP, BAR_WIDTH, TEXT_SIZE, TITLE_ROW, TITLE_SIZE};
 
 /// Draws the figure: all that goes into its SVG element.
 pub(super) fn draw(plan: &Plan) -> Result<String, ReportError> {
@@ -74,7 +57,7 @@ fn layer(plan: &Plan, paint: impl FnOnce(&Canvas<'_>) -> Result<(), ReportError>
 fn draw_title(canvas: &Canvas, plan: &Plan) -> Result<(), ReportError> {
     let style = text(TITLE_SIZE, FontStyle::Bold, HPos::Left);
     for (row, line) in plan.title.iter().enumerate() {
-        put(canvas, line, &style, (plan.title_left, TITLE_SIZE + row as f64 * TITLE_ROW))?;
+        write(canvas, line, &style, (plan.title_left, TITLE_SIZE + row as f64 * TITLE_ROW))?;
     }
     Ok(())
 }
@@ -135,27 +118,4 @@ fn draw_frame(chart: &mut Chart) -> Result<(), ReportError> {
     let corners = [(x.start, y.start), (x.end, y.start), (x.end, y.end), (x.start, y.end), (x.start, y.start)];
     chart.draw_series([PathElement::new(corners, stroke(INK, 0.8))]).map_err(failed)?;
     Ok(())
-}
-
-pub(super) fn text(size: f64, weight: FontStyle, side: HPos) -> TextStyle<'static> {
-    let font = ("sans-serif", size * UNITS * FONT_FACTOR).into_font().style(weight);
-    TextStyle::from(font).color(&INK).pos(Pos::new(side, VPos::Center))
-}
-
-pub(super) fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
-    color.stroke_width(units(width).unsigned_abs())
-}
-
-pub(super) fn ink(key: Key) -> RGBColor {
-    let (red, green, blue) = key.color.map_or(REFERENCE, palette);
-    RGBColor(red, green, blue)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "sizes are checked to be some thousand px")]
-pub(super) fn units(px: f64) -> i32 {
-    (px * UNITS).round() as i32
-}
-
-pub(super) fn failed(error: impl Display) -> ReportError {
-    ReportError::Draw(error.to_string())
 }

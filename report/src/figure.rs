@@ -1,7 +1,8 @@
 //! What a figure shows: panels, series, reference lines.
 
 /// Panels, rendered by [`render_svg`](super::render_svg).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
+#[must_use]
 pub struct Figure<'a> {
     /// Drawn above the panels, and the accessible name; an empty title takes no space.
     pub title: String,
@@ -18,32 +19,28 @@ pub struct Figure<'a> {
 impl<'a> Figure<'a> {
     /// A figure of 720 px without panels.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), caption: String::new(), width: 720.0, columns: 1, panels: Vec::new() }
+        Self { title: title.into(), width: 720.0, columns: 1, ..Self::default() }
     }
 
     /// Sets the long description.
-    #[must_use]
     pub fn caption(mut self, caption: impl Into<String>) -> Self {
         self.caption = caption.into();
         self
     }
 
     /// Puts `columns` panels side by side.
-    #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns;
         self
     }
 
     /// Sets the nominal width in px.
-    #[must_use]
     pub fn width(mut self, width: f64) -> Self {
         self.width = width;
         self
     }
 
     /// Adds a panel behind the others.
-    #[must_use]
     pub fn panel(mut self, panel: Panel<'a>) -> Self {
         self.panels.push(panel);
         self
@@ -51,8 +48,9 @@ impl<'a> Figure<'a> {
 }
 
 /// One pair of axes with its series.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "independent properties, each with a builder of its own")]
+#[must_use]
 pub struct Panel<'a> {
     /// Short title at the upper left, such as `(a)`.
     pub title: String,
@@ -95,59 +93,42 @@ impl<'a> Panel<'a> {
             title: title.into(),
             x_label: x_label.into(),
             y_label: y_label.into(),
-            x_names: Vec::new(),
-            x_range: None,
-            y_range: None,
-            share_x_with_next: false,
             height: 130.0,
-            series: Vec::new(),
-            lines: Vec::new(),
-            bands: Vec::new(),
-            bars: Vec::new(),
-            map: None,
-            log_x: false,
-            log_y: false,
-            equal_aspect: false,
+            ..Self::default()
         }
     }
 
     /// Sets the ends of the x axis.
-    #[must_use]
     pub fn x_range(mut self, low: f64, high: f64) -> Self {
         self.x_range = Some((low, high));
         self
     }
 
     /// Names places on the x axis, which then has no numbers; for a linear axis.
-    #[must_use]
     pub fn x_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = (f64, S)>) -> Self {
         self.x_names = names.into_iter().map(|(x, name)| (x, name.into())).collect();
         self
     }
 
     /// Sets the ends of the y axis.
-    #[must_use]
     pub fn y_range(mut self, low: f64, high: f64) -> Self {
         self.y_range = Some((low, high));
         self
     }
 
     /// Sets the height of the frame in px.
-    #[must_use]
     pub fn height(mut self, height: f64) -> Self {
         self.height = height;
         self
     }
 
     /// Shares the x axis of the panel below in the same column.
-    #[must_use]
     pub fn share_x_with_next(mut self) -> Self {
         self.share_x_with_next = true;
         self
     }
 
     /// Adds a series; its colour is the next one of the palette.
-    #[must_use]
     pub fn series(mut self, mut series: Series<'a>) -> Self {
         series.color = series.color.or(Some(self.series.len()));
         self.series.push(series);
@@ -155,52 +136,43 @@ impl<'a> Panel<'a> {
     }
 
     /// Adds a dashed horizontal line; an empty label keeps it out of the legend.
-    #[must_use]
     pub fn line(mut self, label: impl Into<String>, value: f64) -> Self {
         self.lines.push(ReferenceLine { label: label.into(), value });
         self
     }
-}
 
-impl<'a> Panel<'a> {
     /// Adds the area between two curves, in the colour of palette entry `color`; an empty label keeps it out of the
     /// legend.
-    #[must_use]
     pub fn band(mut self, label: impl Into<String>, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
         self.bands.push(Band { label: label.into(), limits, color });
         self
     }
 
     /// Adds vertical bars in the colour of palette entry `color`.
-    #[must_use]
     pub fn bars(mut self, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
         self.bars.push(Bars { limits, color });
         self
     }
 
     /// Sets the map.
-    #[must_use]
     pub fn map(mut self, map: HeatMap<'a>) -> Self {
         self.map = Some(map);
         self
     }
 
     /// Makes the x axis logarithmic.
-    #[must_use]
     pub fn log_x(mut self) -> Self {
         self.log_x = true;
         self
     }
 
     /// Makes the y axis logarithmic.
-    #[must_use]
     pub fn log_y(mut self) -> Self {
         self.log_y = true;
         self
     }
 
     /// Draws x and y to one scale.
-    #[must_use]
     pub fn equal_aspect(mut self) -> Self {
         self.equal_aspect = true;
         self
@@ -261,6 +233,7 @@ pub struct ReferenceLine {
 
 /// Points of one quantity. A point that is not finite leaves a gap.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Series<'a> {
     /// Text in the legend; empty for none.
     pub label: String,
@@ -284,14 +257,12 @@ impl<'a> Series<'a> {
     }
 
     /// Sets how the points are drawn.
-    #[must_use]
     pub fn style(mut self, style: Style) -> Self {
         self.style = style;
         self
     }
 
     /// Sets the index into the palette, so that one quantity keeps its colour across panels.
-    #[must_use]
     pub fn color(mut self, index: usize) -> Self {
         self.color = Some(index);
         self

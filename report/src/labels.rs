@@ -2,25 +2,24 @@
 
 use plotters::element::{Circle, Cross, DashedPathElement, PathElement, Rectangle};
 use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, FontStyle, FontTransform, TextStyle};
+use plotters::style::{Color, FontStyle, FontTransform};
 
-use super::draw::{Canvas, INK, failed, ink, stroke, text, units};
+use super::canvas::{Canvas, INK, failed, ink, stroke, text, units, write};
 use super::error::ReportError;
-use super::layout::{
-    BAR_GAP, BAR_WIDTH, EDGE, LABEL_ROW, LEGEND_GAP, LEGEND_KEY, PanelPlan, ROW, TEXT_SIZE, X_LABEL_DROP,
-};
+use super::layout::PanelPlan;
 use super::legend::Entry;
 use super::marks::{CROSS, DASH, MARKER, OPACITY};
+use super::metrics::{BAR_GAP, BAR_WIDTH, EDGE, LABEL_ROW, LEGEND_GAP, LEGEND_KEY, ROW, TEXT_SIZE, X_LABEL_DROP};
 use super::trace::Shape;
 
 /// Title and legend.
 pub(super) fn draw_header(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
     let style = text(TEXT_SIZE, FontStyle::Bold, HPos::Left);
-    put(canvas, &panel.panel.title, &style, (panel.frame.0, panel.top + ROW / 2.0))?;
+    write(canvas, &panel.panel.title, &style, (panel.frame.0, panel.top + ROW / 2.0))?;
     for entry in &panel.legend {
         draw_key(canvas, entry, panel.top + entry.y)?;
         let style = text(TEXT_SIZE, FontStyle::Normal, HPos::Left);
-        put(canvas, entry.label, &style, (entry.x + LEGEND_KEY + LEGEND_GAP, panel.top + entry.y))?;
+        write(canvas, entry.label, &style, (entry.x + LEGEND_KEY + LEGEND_GAP, panel.top + entry.y))?;
     }
     Ok(())
 }
@@ -50,13 +49,13 @@ pub(super) fn draw_axis_labels(canvas: &Canvas, panel: &PanelPlan) -> Result<(),
     let top = panel.top + panel.header;
     if panel.bottom > 0.0 {
         let middle = f64::midpoint(panel.frame.0, panel.frame.1);
-        put(canvas, &panel.panel.x_label, &across, (middle, top + panel.height + X_LABEL_DROP))?;
+        write(canvas, &panel.panel.x_label, &across, (middle, top + panel.height + X_LABEL_DROP))?;
     }
     let upward = across.transform(FontTransform::Rotate270);
     let first = panel.label_rows - panel.y_label.len();
     for (row, line) in panel.y_label.iter().enumerate() {
         let x = panel.cell.0 + TEXT_SIZE + (first + row) as f64 * LABEL_ROW;
-        put(canvas, line, &upward, (x, top + panel.height / 2.0))?;
+        write(canvas, line, &upward, (x, top + panel.height / 2.0))?;
     }
     Ok(())
 }
@@ -74,15 +73,8 @@ pub(super) fn draw_bar_labels(canvas: &Canvas, panel: &PanelPlan) -> Result<(), 
         let y = bottom - panel.height * (tick - range.start) / (range.end - range.start);
         let mark = [(units(right), units(y)), (units(right + 3.0), units(y))];
         canvas.draw(&PathElement::new(mark, stroke(INK, 0.8))).map_err(failed)?;
-        put(canvas, &bar.axis.label(tick), &style, (right + EDGE, y))?;
+        write(canvas, &bar.axis.label(tick), &style, (right + EDGE, y))?;
     }
     let upward = text(TEXT_SIZE, FontStyle::Normal, HPos::Center).transform(FontTransform::Rotate270);
-    put(canvas, bar.label, &upward, (panel.cell.1 - TEXT_SIZE, f64::midpoint(top, bottom)))
-}
-
-pub(super) fn put(canvas: &Canvas, label: &str, style: &TextStyle, at: (f64, f64)) -> Result<(), ReportError> {
-    if label.is_empty() {
-        return Ok(());
-    }
-    canvas.draw_text(label, style, (units(at.0), units(at.1))).map_err(failed)
+    write(canvas, bar.label, &upward, (panel.cell.1 - TEXT_SIZE, f64::midpoint(top, bottom)))
 }

@@ -7,31 +7,13 @@ use super::cells::Cells;
 use super::error::ReportError;
 use super::figure::{Figure, Panel, Scale};
 use super::legend::{Entry, legend, wrap};
+use super::metrics::{
+    BAR_GAP, BAR_WIDTH, BOLD, DIGIT, EDGE, LABEL_ROW, LETTER, TEXT_SIZE, TICK_LABEL_DROP, TICK_ROOM, TITLE_ROW,
+    TITLE_SIZE, X_LABEL_DROP, whole,
+};
 use super::trace::{Space, Trace, finish, trace};
 
 type Point = (f64, f64);
-
-/// Font sizes and distances in px.
-pub(super) const TITLE_SIZE: f64 = 13.0;
-pub(super) const TEXT_SIZE: f64 = 11.0;
-pub(super) const ROW: f64 = 16.0;
-pub(super) const TITLE_ROW: f64 = 18.0;
-pub(super) const LABEL_ROW: f64 = 13.0;
-pub(super) const LEGEND_KEY: f64 = 18.0;
-pub(super) const LEGEND_GAP: f64 = 5.0;
-pub(super) const EDGE: f64 = 6.0;
-const TICK_ROOM: f64 = 10.0;
-/// Width of a digit and mean width of a letter, in font sizes; the reader's font is not known.
-pub(super) const DIGIT: f64 = 0.6;
-pub(super) const LETTER: f64 = 0.53;
-pub(super) const BOLD: f64 = 0.58;
-/// Distances below a frame, to the middle of the tick labels and of the x label.
-const TICK_LABEL_DROP: f64 = 13.0;
-pub(super) const X_LABEL_DROP: f64 = 28.0;
-
-/// Distance of the colour bar from the frame, and its width.
-pub(super) const BAR_GAP: f64 = 10.0;
-pub(super) const BAR_WIDTH: f64 = 11.0;
 
 /// A figure with all numbers settled, in px from the upper left corner.
 pub(super) struct Plan<'f> {
@@ -108,33 +90,28 @@ fn plan_panel<'f>(panel: &'f Panel<'f>, x: Axis, width: f64) -> Result<PanelPlan
     for (series, trace) in panel.series.iter().zip(&mut traces) {
         finish(trace, series, (&x, &y), (width, height));
     }
-    let areas = panel.bands.iter().map(|band| areas(band, space, (&x, &y), width)).collect();
-    let whiskers = panel.bars.iter().map(|bars| whiskers(bars, space, (&x, &y))).collect();
     let bottom = match (panel.share_x_with_next, panel.x_label.is_empty()) {
         (true, _) => 0.0,
         (false, true) => TICK_LABEL_DROP + EDGE,
         (false, false) => X_LABEL_DROP + EDGE,
     };
-    let bar = color_bar(panel, cells.as_ref(), height);
-    let y_label = wrap(&panel.y_label, whole(height / (LETTER * TEXT_SIZE)));
-    let (cell, frame, label_rows, legend, top, header) = ((0.0, width), (0.0, width), 0, Vec::new(), 0.0, 0.0);
     Ok(PanelPlan {
         panel,
         space,
+        areas: panel.bands.iter().map(|band| areas(band, space, (&x, &y), width)).collect(),
+        whiskers: panel.bars.iter().map(|bars| whiskers(bars, space, (&x, &y))).collect(),
         x,
         y,
-        y_label,
-        label_rows,
+        y_label: wrap(&panel.y_label, whole(height / (LETTER * TEXT_SIZE))),
+        label_rows: 0,
         traces,
-        areas,
-        whiskers,
+        bar: color_bar(panel, cells.as_ref(), height),
         cells,
-        bar,
-        legend,
-        cell,
-        frame,
-        top,
-        header,
+        legend: Vec::new(),
+        cell: (0.0, width),
+        frame: (0.0, width),
+        top: 0.0,
+        header: 0.0,
         height,
         bottom,
     })
@@ -205,15 +182,6 @@ fn x_ticks(width: f64) -> usize {
 
 fn y_ticks(height: f64) -> usize {
     whole(height / 26.0).max(2)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "sizes are checked to be positive and at most some thousand px"
-)]
-pub(super) fn whole(value: f64) -> usize {
-    value as usize
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Titles and legends above the panels, and how long words are.
 
 use super::figure::{Panel, Scale};
-use super::layout::{BOLD, LEGEND_GAP, LEGEND_KEY, LETTER, ROW, TEXT_SIZE};
+use super::metrics::{BOLD, LEGEND_GAP, LEGEND_KEY, LETTER, ROW, TEXT_SIZE, text_width};
 use super::trace::{Key, Shape, Trace};
 
 /// A legend entry at its place; `y` counts from the top of the header.
@@ -57,11 +57,6 @@ pub(super) fn wrap(label: &str, length: usize) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Width of a text in px, roughly: the reader's font is not known.
-pub(super) fn text_width(text: &str) -> f64 {
-    text.chars().count() as f64 * LETTER * TEXT_SIZE
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 use plotters::element::{Circle, Cross, DashedPathElement, EmptyElement, PathElement, Polygon};
 use plotters::style::{Color, ShapeStyle};
 
+use super::canvas::{Chart, UNITS, failed, ink, stroke, units};
 use super::cells::dots_markup;
 use super::colors::palette;
-use super::draw::{Chart, failed, ink, stroke, units};
 use super::error::ReportError;
 use super::layout::PanelPlan;
 use super::trace::{Key, Shape, Trace};
@@ -112,7 +112,7 @@ fn length(chart: &Chart, points: &[Point]) -> f64 {
         let (across, down) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
         f64::from(across).hypot(f64::from(down))
     });
-    steps.sum::<f64>() / super::draw::UNITS
+    steps.sum::<f64>() / UNITS
 }
 
 fn scaled(panel: &PanelPlan, &(x, y): &Point) -> Point {

@@ -5,6 +5,7 @@ use super::table::Table;
 
 /// A page, rendered by [`render_html`](super::render_html).
 #[derive(Debug, Clone, Default)]
+#[must_use]
 pub struct Report {
     /// Title of the page.
     pub title: String,
@@ -25,21 +26,18 @@ impl Report {
     }
 
     /// Sets the command line that made the report.
-    #[must_use]
     pub fn command(mut self, command: impl Into<String>) -> Self {
         self.command = command.into();
         self
     }
 
     /// Sets name and version of the program.
-    #[must_use]
     pub fn generated_by(mut self, program: impl Into<String>) -> Self {
         self.generated_by = program.into();
         self
     }
 
     /// Adds a section at the end.
-    #[must_use]
     pub fn section(mut self, section: Section) -> Self {
         self.sections.push(section);
         self
@@ -48,6 +46,7 @@ impl Report {
 
 /// One heading and what stands under it: notes, text, tables, figures, in this order.
 #[derive(Debug, Clone, Default)]
+#[must_use]
 pub struct Section {
     /// The heading.
     pub heading: String,
@@ -70,35 +69,30 @@ impl Section {
     }
 
     /// Adds a paragraph of plain text.
-    #[must_use]
     pub fn text(mut self, paragraph: impl Into<String>) -> Self {
         self.text.push(paragraph.into());
         self
     }
 
     /// Sets the name that links lead to: small letters, digits, `.`, `-` and `_`.
-    #[must_use]
     pub fn id(mut self, id: impl Into<String>) -> Self {
         self.id = id.into();
         self
     }
 
     /// Adds a table.
-    #[must_use]
     pub fn table(mut self, table: Table) -> Self {
         self.tables.push(table);
         self
     }
 
     /// Adds a figure: the output of [`render_svg`](super::render_svg) and a caption.
-    #[must_use]
     pub fn figure(mut self, svg: impl Into<String>, caption: impl Into<String>) -> Self {
         self.figures.push(Illustration { svg: svg.into(), chart: None, caption: caption.into() });
         self
     }
 
     /// Adds a figure that a reader can look into: the page then carries the script of the charts, some 4.7 MB.
-    #[must_use]
     pub fn drawing(mut self, drawing: Drawing, caption: impl Into<String>) -> Self {
         let Drawing { svg, chart } = drawing;
         self.figures.push(Illustration { svg, chart: Some(chart), caption: caption.into() });
@@ -106,16 +100,14 @@ impl Section {
     }
 
     /// Adds a remark.
-    #[must_use]
     pub fn note(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(Note { kind: NoteKind::Info, text: text.into() });
+        self.notes.push(Note { is_warning: false, text: text.into() });
         self
     }
 
     /// Adds a warning.
-    #[must_use]
     pub fn warning(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(Note { kind: NoteKind::Warning, text: text.into() });
+        self.notes.push(Note { is_warning: true, text: text.into() });
         self
     }
 }
@@ -134,24 +126,8 @@ pub struct Illustration {
 /// A remark, set off from the text.
 #[derive(Debug, Clone)]
 pub struct Note {
-    /// How urgent it is.
-    pub kind: NoteKind,
+    /// Whether the reader should doubt a number.
+    pub is_warning: bool,
     /// What it says, as plain text.
     pub text: String,
-}
-
-/// How urgent a note is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoteKind {
-    /// Good to know.
-    Info,
-    /// The reader should doubt a number.
-    Warning,
-}
-
-impl NoteKind {
-    /// Whether it is a warning.
-    pub fn is_warning(self) -> bool {
-        self == Self::Warning
-    }
 }

@@ -2,7 +2,7 @@
 //!
 //! Traces are those of Plotly; places of panels are left to the script, which knows the width of the screen.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::axes::group;
 use super::cells::kind;
@@ -67,26 +67,17 @@ fn panel_traces(planned: &PanelPlan) -> Vec<Value> {
 
 /// The trace on the axes of a panel.
 fn at(mut trace: Value, index: usize) -> Value {
-    if let Some(fields) = trace.as_object_mut() {
-        let number = if index == 0 { String::new() } else { (index + 1).to_string() };
-        fields.insert("panel".into(), index.into());
-        fields.insert("xaxis".into(), format!("x{number}").into());
-        fields.insert("yaxis".into(), format!("y{number}").into());
-    }
+    let number = if index == 0 { String::new() } else { (index + 1).to_string() };
+    trace["panel"] = index.into();
+    trace["xaxis"] = format!("x{number}").into();
+    trace["yaxis"] = format!("y{number}").into();
     trace
 }
 
-fn scatter(label: &str, points: &[Point]) -> Map<String, Value> {
+fn scatter(label: &str, points: &[Point]) -> Value {
     let (xs, ys): (Vec<Value>, Vec<Value>) =
         points.iter().map(|&(x, y)| (short(x, DIGITS.0), short(y, DIGITS.1))).unzip();
-    let fields = [
-        ("type", "scatter".into()),
-        ("name", words(label).into()),
-        ("showlegend", (!label.is_empty()).into()),
-        ("x", xs.into()),
-        ("y", ys.into()),
-    ];
-    fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    json!({ "type": "scatter", "name": words(label), "showlegend": !label.is_empty(), "x": xs, "y": ys })
 }
 
 fn series_trace(series: &Series, space: Space) -> Value {
@@ -101,9 +92,9 @@ fn series_trace(series: &Series, space: Space) -> Value {
         Style::Dots => ("markers", "marker", mark("circle", 2.0)),
         Style::Crosses => ("markers", "marker", mark("x", 6.0)),
     };
-    trace.insert("mode".into(), mode.into());
-    trace.insert(field.into(), look);
-    trace.into()
+    trace["mode"] = mode.into();
+    trace[field] = look;
+    trace
 }
 
 /// What is left of a series, at most [`POINTS`] points.
@@ -148,12 +139,12 @@ fn band_trace(band: &Band, space: Space) -> Value {
     }
     let mut trace = scatter(&band.label, &outline);
     let (red, green, blue) = palette(band.color);
-    trace.insert("mode".into(), "lines".into());
-    trace.insert("line".into(), json!({ "width": 0 }));
-    trace.insert("fill".into(), "toself".into());
-    trace.insert("fillcolor".into(), format!("rgba({red},{green},{blue},0.25)").into());
-    trace.insert("hoverinfo".into(), "skip".into());
-    trace.into()
+    trace["mode"] = "lines".into();
+    trace["line"] = json!({ "width": 0 });
+    trace["fill"] = "toself".into();
+    trace["fillcolor"] = format!("rgba({red},{green},{blue},0.25)").into();
+    trace["hoverinfo"] = "skip".into();
+    trace
 }
 
 fn bars_trace(bars: &Bars) -> Value {
@@ -162,13 +153,10 @@ fn bars_trace(bars: &Bars) -> Value {
     let halves: Vec<Value> = limits.iter().map(|&(_, low, high)| short(high / 2.0 - low / 2.0, DIGITS.1)).collect();
     let color = hex(palette(bars.color));
     let mut trace = scatter("", &middles);
-    trace.insert("mode".into(), "markers".into());
-    trace.insert("marker".into(), json!({ "color": color, "size": 1 }));
-    trace.insert(
-        "error_y".into(),
-        json!({ "type": "data", "array": halves, "color": color, "thickness": 1.2, "width": 3 }),
-    );
-    trace.into()
+    trace["mode"] = "markers".into();
+    trace["marker"] = json!({ "color": color, "size": 1 });
+    trace["error_y"] = json!({ "type": "data", "array": halves, "color": color, "thickness": 1.2, "width": 3 });
+    trace
 }
 
 /// The map; of kinds, an entry of the legend for each.
@@ -200,9 +188,9 @@ fn map_traces(map: &HeatMap) -> Vec<Value> {
             trace["kinds"] = names.iter().map(|name| words(name)).collect();
             traces.extend(names.iter().enumerate().map(|(k, name)| {
                 let mut key = scatter(name, &[(f64::NAN, f64::NAN)]);
-                key.insert("mode".into(), "markers".into());
-                key.insert("marker".into(), json!({ "symbol": "square", "size": 10, "color": hex(palette(k)) }));
-                Value::from(key)
+                key["mode"] = "markers".into();
+                key["marker"] = json!({ "symbol": "square", "size": 10, "color": hex(palette(k)) });
+                key
             }));
         }
     }

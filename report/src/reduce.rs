@@ -13,7 +13,7 @@ type Point = (f64, f64);
 ///
 /// Keeps at most four points for each passage through a column, in their order, and one point that
 /// is not finite for each gap.
-pub fn reduce(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
+pub(super) fn reduce(points: &[Point], columns: usize) -> Vec<Point> {
     let (low, high) = extent(points.iter().filter(|p| is_finite(p)).map(|p| p.0));
     reduce_within(points.iter().copied(), (low, high), columns)
 }

@@ -2,8 +2,9 @@
 
 use askama::Template;
 
+use super::canvas::UNITS;
 use super::check::{check, check_height};
-use super::draw::{UNITS, draw};
+use super::draw::draw;
 use super::error::ReportError;
 use super::figure::{Figure, Scale};
 use super::layout::{Plan, plan};

@@ -2,6 +2,7 @@
 
 /// A table; every row has one cell for each column.
 #[derive(Debug, Clone, Default)]
+#[must_use]
 pub struct Table {
     /// From left to right.
     pub columns: Vec<Column>,
@@ -16,7 +17,6 @@ impl Table {
     }
 
     /// Adds a row at the bottom.
-    #[must_use]
     pub fn row<C: Into<Cell>>(mut self, cells: impl IntoIterator<Item = C>) -> Self {
         self.rows.push(cells.into_iter().map(Into::into).collect());
         self
@@ -28,36 +28,19 @@ impl Table {
 pub struct Column {
     /// The heading.
     pub heading: String,
-    /// Where its cells stand.
-    pub align: Align,
+    /// Whether its cells are set to the right, in figures of equal width.
+    pub is_number: bool,
 }
 
 impl Column {
-    /// A column of words, set to the left.
+    /// A column of words.
     pub fn words(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), align: Align::Left }
+        Self { heading: heading.into(), is_number: false }
     }
 
-    /// A column of numbers, set to the right in figures of equal width.
+    /// A column of numbers.
     pub fn numbers(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), align: Align::Right }
-    }
-}
-
-/// Alignment of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Align {
-    /// Words.
-    #[default]
-    Left,
-    /// Numbers.
-    Right,
-}
-
-impl Align {
-    /// Whether the column holds numbers.
-    pub fn is_right(self) -> bool {
-        self == Self::Right
+        Self { heading: heading.into(), is_number: true }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::clip::{Window, clip};
 use super::figure::{Data, Panel, Series, Style};
-use super::layout::whole;
+use super::metrics::whole;
 use super::reduce::{is_finite, reduce_markers, reduce_within};
 
 type Point = (f64, f64);

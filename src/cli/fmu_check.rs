@@ -31,9 +31,9 @@ impl From<FmiError> for Trouble {
     }
 }
 
-/// One check and what came of it.
+/// One check and its result.
 #[derive(Serialize)]
-struct Check {
+struct CheckResult {
     name: &'static str,
     passed: bool,
     /// Why it failed, or what was left out.
@@ -44,7 +44,7 @@ struct Check {
 struct Output<'a> {
     file: &'a Path,
     passed: bool,
-    checks: Vec<Check>,
+    checks: Vec<CheckResult>,
 }
 
 /// Runs the checks; what was found goes to stdout, as text or as one JSON object.
@@ -70,20 +70,20 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
     }
 }
 
-fn check(name: &'static str, result: Result<String, String>) -> Check {
+fn check(name: &'static str, result: Result<String, String>) -> CheckResult {
     let passed = result.is_ok();
-    Check { name, passed, detail: result.unwrap_or_else(|reason| reason) }
+    CheckResult { name, passed, detail: result.unwrap_or_else(|reason| reason) }
 }
 
-/// Checks in their order, up to the first that fails.
+/// CheckList in their order, up to the first that fails.
 #[derive(Default)]
-struct Checks {
-    done: Vec<Check>,
+struct CheckList {
+    done: Vec<CheckResult>,
     /// What the FMU did to its process.
     end: Option<FmiError>,
 }
 
-impl Checks {
+impl CheckList {
     /// Adds a check; whether it has passed.
     fn add(&mut self, name: &'static str, result: Result<String, Trouble>) -> bool {
         let result = result.map_err(|trouble| match trouble {
@@ -97,7 +97,7 @@ impl Checks {
 }
 
 /// All checks, in the order in which a simulation needs them; the first that fails ends the list.
-fn checks(fmu: &Fmu) -> (Vec<Check>, Option<FmiError>) {
+fn checks(fmu: &Fmu) -> (Vec<CheckResult>, Option<FmiError>) {
     let tasks: [Task; 6] = [
         ("initialises with its start values", |instance| done(initialize(instance))),
         ("outputs are finite after initialisation", finite_outputs),
@@ -108,7 +108,7 @@ fn checks(fmu: &Fmu) -> (Vec<Check>, Option<FmiError>) {
             done(instance.terminate().and_then(|()| instance.reset()).and_then(|()| initialize(instance)))
         }),
     ];
-    let mut checks = Checks::default();
+    let mut checks = CheckList::default();
     let first = "library loads and instantiates";
     let mut instance = match fmu.instantiate("check", Logging::default()) {
         Ok(instance) => instance,

@@ -35,7 +35,10 @@ impl AddedBinary {
         let Some((platform, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
             return Err(PackageError::AddedForm { found: text.to_owned() });
         };
-        let platform = Platform::of_folder(platform)?;
+        let platform = Platform::of_folder(platform).ok_or_else(|| {
+            let (found, allowed) = (platform.to_owned(), Platform::FOLDERS.join(", "));
+            PackageError::PlatformName { found, allowed }
+        })?;
         let path = PathBuf::from(path);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));

@@ -1,5 +1,5 @@
-//! FMUs in the user's folder of caches, for a source tree that cannot be written. Their folder is named after what is in them:
-//! another program has other ones, and programs that write the same do not disturb each other.
+//! FMUs in the user's cache folder, for a read-only source tree. Their folder is named after a hash of their content, so that each
+//! program has its own.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -10,16 +10,16 @@ use sha2::{Digest as _, Sha256};
 use super::error::{PackageError, Result};
 use super::write;
 
-/// FMUs, and why they are not where users know them, if they are not.
+/// Packaged FMUs.
 #[derive(Debug)]
 pub struct Placed {
     /// In the order of [`super::FMUS`].
     pub archives: Vec<PathBuf>,
-    /// What was said when they were to be written there.
+    /// Why they are in the cache, if they are.
     pub refused: Option<PackageError>,
 }
 
-/// Writes the archives into `folder`, or else into a folder of their own below that of caches.
+/// Writes the archives into `folder`, or else into a folder of their own in the cache.
 ///
 /// # Errors
 /// When neither can be written.
@@ -39,19 +39,19 @@ pub(super) fn place(archives: &[Vec<u8>], folder: &Path, caches: Option<PathBuf>
 fn name(archives: &[Vec<u8>]) -> String {
     let hash = Sha256::digest(archives.concat());
     hash.iter().take(8).fold(concat!(env!("CARGO_PKG_VERSION"), "-").to_owned(), |mut name, byte| {
-        // A text takes whatever is written into it.
+        // Writing to a string does not fail.
         let _ = write!(name, "{byte:02x}");
         name
     })
 }
 
-/// The user's folder of caches: `XDG_CACHE_HOME`, or that of the system.
+/// The user's cache folder: `XDG_CACHE_HOME`, or that of the system.
 pub(super) fn folder() -> Option<PathBuf> {
     folder_of(|name| std::env::var_os(name), std::env::home_dir())
 }
 
 fn folder_of(variable: impl Fn(&str) -> Option<OsString>, home: Option<PathBuf>) -> Option<PathBuf> {
-    // A path that is not absolute counts as none, as the XDG specification has it.
+    // The XDG specification wants relative paths to be ignored.
     let absolute = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let of_system = || match std::env::consts::OS {
         "windows" => absolute("LOCALAPPDATA"),

@@ -1,7 +1,6 @@
-//! Building the libraries with Cargo, which alone knows whether they are fresh and where it puts them.
+//! Builds the libraries with Cargo, which knows whether they are fresh and where they are.
 
 use std::collections::VecDeque;
-use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -17,7 +16,7 @@ use super::tools;
 use fmu_import::library_extension;
 use videg_system::processes::ProcessGroup;
 
-/// How many lines of Cargo's output an error shows.
+/// Lines of Cargo's output that an error shows.
 const TAIL: usize = 40;
 
 /// One line of `cargo build --message-format=json`.
@@ -35,7 +34,7 @@ struct Artifact {
 
 /// Builds the libraries of all FMUs in release mode and returns them in the order of [`FMUS`].
 ///
-/// This may run inside `cargo run` and `cargo test`: both have given up the lock of the build folder by then.
+/// This may run inside `cargo run` and `cargo test`, which no longer lock the build folder.
 pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> Result<Vec<PathBuf>> {
     if let Some(target) = target {
         tools::check(workspace, target)?;
@@ -62,13 +61,8 @@ pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str
     FMUS.iter().map(|fmu| library(fmu.identifier)).collect()
 }
 
-/// Cargo. Inside `cargo run`, CARGO names the very one that runs.
-pub(super) fn program() -> OsString {
-    std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"))
-}
-
 fn command(workspace: &Path, target: Option<&Target>) -> Command {
-    let mut command = Command::new(program());
+    let mut command = Command::new(tools::cargo());
     command.current_dir(workspace).args(arguments(target)).arg("--message-format=json-render-diagnostics");
     // A relative folder is meant relative to where the user is.
     if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR")
@@ -86,7 +80,7 @@ fn arguments(target: Option<&Target>) -> Vec<String> {
         arguments.extend(["-p".to_owned(), fmu.package.to_owned()]);
     }
     if let Some(target) = target {
-        // What is handed on needs no symbol table, which is half of a DLL.
+        // A released library needs no symbol table, which is half of a DLL.
         arguments.extend(["--config", "profile.release.strip=\"symbols\"", "--target"].map(ToOwned::to_owned));
         arguments.push(target.argument());
     }
@@ -111,7 +105,7 @@ fn read_artifacts(stdout: impl Read, platform: Platform) -> Vec<(String, PathBuf
     artifacts
 }
 
-/// Reads Cargo's messages to the end, passes those about work on, and returns the last of the others.
+/// Passes Cargo's messages about work on, and returns the last of the others.
 fn follow(stderr: impl Read, progress: fn(&str)) -> String {
     let mut tail = VecDeque::new();
     for line in BufReader::new(stderr).lines().map_while(std::result::Result::ok) {

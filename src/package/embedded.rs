@@ -1,7 +1,7 @@
-//! FMUs inside the program, for one that goes without its source tree: the feature `embedded-fmus`.
+//! FMUs inside the program, for use without the source tree: the feature `embedded-fmus`.
 //!
-//! They are packaged before the program is compiled, for as many platforms as it will be handed over with. So one file
-//! does all that the program does in its source tree but building for other targets.
+//! They are packaged before the program is compiled, for all platforms of a release. The program then does all that it does in its
+//! source tree, except building for other targets.
 
 use std::path::Path;
 
@@ -54,12 +54,12 @@ fn has_library(archive: &[u8], library: &[u8]) -> bool {
     entries.names().any(|name| name.starts_with("binaries/") && entries.bytes(name) == Some(library))
 }
 
-/// Whether the program lies in no source tree, none was named, and nothing is to be built for other targets.
+/// Whether the program is outside of a source tree, none was named, and no other targets are asked for.
 fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
     around_program.is_none() && options.workspace.is_none() && options.targets.is_empty()
 }
 
-/// The archives with the added libraries, which take the place of those inside.
+/// The archives with the added libraries, which replace those inside.
 ///
 /// # Errors
 /// When an archive is broken or belongs to another version of the program, or a file cannot be read.
@@ -68,7 +68,7 @@ pub(super) fn with_added(archives: [&[u8]; FMUS.len()], added: &[AddedBinary]) -
     parts
         .map(|((fmu, archive), description)| {
             let entries = entries(fmu, archive, description, added)?;
-            // Packed again, the same entries may get other bytes.
+            // The same entries, packed again, may get other bytes.
             if added.is_empty() { Ok(archive.to_vec()) } else { entries.packed(&file_name(fmu)) }
         })
         .collect()
@@ -86,7 +86,7 @@ fn entries(fmu: &FmuPackage, archive: &[u8], description: &str, added: &[AddedBi
     Ok(entries)
 }
 
-/// Whether two descriptions, GUID included, differ in nothing but how their lines end, which a checkout may change.
+/// Whether two descriptions, GUID included, are equal but for the line ends, which a checkout may change.
 fn same_text(a: &[u8], b: &[u8]) -> bool {
     let lines = |text| <[u8]>::split(text, |&byte| byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
     lines(a).eq(lines(b))

@@ -1,4 +1,4 @@
-//! The entries of one archive, and writing them so that equal entries give equal bytes.
+//! The entries of an archive. Equal entries give equal bytes.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -10,9 +10,9 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 
 use super::error::{PackageError, Result};
-use super::put::put;
+use super::shared_file::write_shared;
 
-/// What goes into an archive: names with forward slashes, sorted, and the files or bytes behind them.
+/// The entries of an archive: sorted names with forward slashes, each with a file or bytes.
 #[derive(Debug, Clone, Default)]
 pub struct Entries {
     files: BTreeMap<String, Source>,
@@ -26,7 +26,7 @@ enum Source {
 }
 
 impl Entries {
-    /// Reads an archive that this program wrote. Not for what comes from outside: nothing bounds what is unpacked.
+    /// Reads an archive that this program wrote. Foreign archives need bounds, see [`fmu_import::Archive`].
     ///
     /// # Errors
     /// When it is broken.
@@ -87,13 +87,12 @@ impl Entries {
         self.files.keys().map(String::as_str)
     }
 
-    /// Writes the archive; nobody ever sees half of it. It is made in memory: what fails on the way to the disk is the
-    /// archive then, and nothing else.
+    /// Writes the archive, atomically.
     ///
     /// # Errors
     /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
-        put(archive, &self.packed(archive)?)
+        write_shared(archive, &self.packed(archive)?)
     }
 
     /// The bytes of the archive; errors name it.
@@ -126,7 +125,7 @@ impl Entries {
     }
 }
 
-/// The same on every machine and day.
+/// Attributes of an entry, which do not depend on machine or date.
 fn options(name: &str) -> SimpleFileOptions {
     SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)

@@ -1,4 +1,4 @@
-//! What can go wrong while packaging; as in the importer, every message is one line (and Cargo's own words).
+//! Errors of the packager. As in the importer, every message is one line (and Cargo's own words).
 
 use std::io;
 use std::path::{Path, PathBuf};

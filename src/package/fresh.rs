@@ -1,10 +1,10 @@
-//! Whether a library is as new as its sources, so that Cargo need not be asked.
+//! Whether a library is as new as its sources, so that Cargo need not run.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// True if the dep-info file that Cargo leaves beside `library` says that nothing it was made of, the workspace's
-/// manifest and lock file included, has changed since. In doubt, false.
+/// True if no source in the dep-info file that Cargo leaves beside `library`, nor the workspace's manifest or lock file, is newer.
+/// In doubt, false.
 pub(super) fn is_fresh(library: &Path, workspace: &Path) -> bool {
     let check = || {
         let built = modified(library)?;

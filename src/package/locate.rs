@@ -1,4 +1,4 @@
-//! Where things are: the source tree, the libraries, the model descriptions.
+//! Finds the source tree, the libraries and the model descriptions.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,15 +8,14 @@ use super::platform::Platform;
 use super::target::Target;
 use super::{FMUS, FmuPackage, NO_BUILD, Options, cargo, fresh};
 
-/// What is said to somebody who has the program alone.
+/// Reason for users who have the program alone.
 const NO_TREE: &str = if cfg!(feature = "embedded-fmus") {
     "there is no source tree to build it from"
 } else {
     "there is no source tree to build it from, and this videg was compiled without the feature embedded-fmus"
 };
 
-/// The source tree: the one that holds the running program, the one it was compiled in, or the one around the
-/// working folder.
+/// The source tree: around the running program, where it was compiled, or around the working folder.
 pub(super) fn workspace() -> Option<PathBuf> {
     let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
     around_program()
@@ -33,7 +32,7 @@ fn around(path: &Path) -> Option<PathBuf> {
     path.ancestors().find(|folder| is_workspace(folder)).map(Path::to_path_buf)
 }
 
-/// Where the library of an FMU may lie that goes with this program: not in some source tree around the working folder.
+/// Paths where the library of an FMU that belongs to this program may be: not in a source tree around the working folder.
 pub(super) fn own_libraries(fmu: &FmuPackage) -> Vec<PathBuf> {
     let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = std::env::current_exe().ok();
@@ -42,8 +41,8 @@ pub(super) fn own_libraries(fmu: &FmuPackage) -> Vec<PathBuf> {
     folders(workspace, None).iter().map(|folder| folder.join(&name)).collect()
 }
 
-/// The source tree that goes with `program`, which was `compiled` in this one. A program that has its FMUs inside was made to
-/// be handed over: where it was compiled, somebody else may have put something by now.
+/// The source tree that belongs to `program`, which was `compiled` in this one. A program with FMUs inside is handed over to others:
+/// on their machines the folder in which it was compiled may hold anything.
 fn own_workspace<'a>(program: Option<&'a Path>, compiled: &'a Path, has_fmus: bool) -> Option<&'a Path> {
     let around = program.and_then(|path| path.ancestors().find(|folder| is_workspace(folder)));
     around.or_else(|| (!has_fmus && is_workspace(compiled)).then_some(compiled))
@@ -71,9 +70,9 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
         None => NO_TREE.to_owned(),
         Some(_) if !options.build => format!("building is switched off, by option or {NO_BUILD}"),
         Some(workspace) => match cargo::build(workspace, target, options.progress) {
-            // A program that was handed over without a toolchain.
+            // There is no toolchain.
             Err(error @ PackageError::Cargo { .. }) if is_not_found(&error) => error.to_string(),
-            // Cargo cannot work in a source tree that nobody may write; nor can its libraries be out of date there.
+            // Cargo cannot work in a read-only source tree, whose libraries cannot be out of date either.
             Err(PackageError::Build { .. }) if !can_write(&build_folder(workspace)) => {
                 format!("nothing can be built into {}, which cannot be written", build_folder(workspace).display())
             }
@@ -84,8 +83,7 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
     FMUS.iter().map(|fmu| find(fmu, platform, &folders, &why)).collect()
 }
 
-/// The release libraries beside the running program, if all are there and pass `test`. What `cargo run --release` has
-/// just built passes the test of being as new as its sources.
+/// The release libraries beside the running program, if all are there and pass `test`.
 fn beside_program(platform: Platform, test: impl Fn(&Path) -> bool) -> Option<Vec<PathBuf>> {
     let program = std::env::current_exe().ok()?;
     let beside = program.parent().filter(|folder| !folder.ends_with("debug") && !folder.ends_with("deps"))?;
@@ -97,7 +95,7 @@ fn is_not_found(error: &PackageError) -> bool {
     matches!(error, PackageError::Cargo { cause, .. } if cause.kind() == io::ErrorKind::NotFound)
 }
 
-/// Folders in which libraries may lie: beside the program (tests run in `deps`), then where Cargo puts them.
+/// Folders in which libraries may be: beside the program (tests run in `deps`), then where Cargo puts them.
 fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
     let mut folders = Vec::new();
     if target.is_none() {
@@ -116,7 +114,7 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
     folders
 }
 
-/// Where Cargo puts what it builds.
+/// The build folder of Cargo.
 fn build_folder(workspace: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
 }

@@ -1,10 +1,9 @@
-//! Packager: from the compiled libraries to `.fmu` archives, and from those to the `.ssp` that connects them.
+//! Packager: from the compiled libraries to `.fmu` archives, and from those to the `.ssp` archive that connects them.
 //!
 //! An FMU is made of `modelDescription/<Id>.xml` of the source tree, the library of each platform, and
 //! documentation: a page and a picture from `fmu/*/documentation`, licenses; and the experiments of `fmu/*/extra`.
-//! Where the source tree is at hand, Cargo builds the libraries first (it does nothing when they are fresh), so what
-//! is packaged always belongs to the sources. Without it, the FMUs inside the program are taken (the feature
-//! `embedded-fmus`), or else the libraries beside it.
+//! In a source tree, Cargo builds the libraries first, so that they belong to the sources. Without one, the packager takes the FMUs
+//! inside the program (feature `embedded-fmus`), or else the libraries beside it.
 //!
 //! ```no_run
 //! use videg::package::{Options, build_all};
@@ -28,8 +27,8 @@ mod error;
 mod fresh;
 mod locate;
 mod platform;
-mod put;
 mod references;
+mod shared_file;
 mod ssp;
 mod target;
 mod tools;
@@ -62,7 +61,7 @@ pub const FMUS: [FmuPackage; 2] = [
     FmuPackage { identifier: "HarvestingCircuit", package: "videg-fmu-circuit", folder: "fmu/circuit" },
 ];
 
-/// Environment variable that keeps the packager from running Cargo, if set to anything but nothing.
+/// Environment variable that keeps the packager from running Cargo, unless it is empty.
 pub const NO_BUILD: &str = "VIDEG_NO_BUILD";
 
 /// How to package. The default is for this machine, into `target/fmu` of the source tree (without one: of the working
@@ -75,16 +74,15 @@ pub struct Options {
     pub workspace: Option<PathBuf>,
     /// Whether Cargo may be run.
     pub build: bool,
-    /// Take the libraries that lie beside the running program as they are, if they do: a program that was not started by
-    /// Cargo goes with those that it came with, whatever has become of the source tree since.
+    /// Take the libraries beside the running program as they are, if there are any, even if the source tree has changed since.
     pub as_is: bool,
-    /// What to package for, all into one archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
+    /// Platforms of the archive: `linux64` (for any Linux of the last ten years), `win64`, `darwin64`
     /// or Rust triples; none means this machine, for itself.
     pub targets: Vec<String>,
     /// Libraries that were built elsewhere. One for this machine takes the place of the one that would be built without
     /// any target.
     pub added: Vec<AddedBinary>,
-    /// Gets a line of Cargo's progress whenever something is really compiled.
+    /// Takes the lines of Cargo's progress.
     pub progress: fn(&str),
 }
 
@@ -103,8 +101,8 @@ impl Default for Options {
     }
 }
 
-/// Whether `library` has the bytes of the library of the FMU `identifier` that goes with this program: that beside it,
-/// that of the source tree that it is of, or that inside it.
+/// Whether `library` is the library of the FMU `identifier` that belongs to this program, by its bytes: the one beside it, in its
+/// source tree, or inside it.
 pub fn is_own(identifier: &str, library: &Path) -> bool {
     let Some(fmu) = FMUS.iter().find(|fmu| fmu.identifier == identifier) else { return false };
     let Ok(bytes) = std::fs::read(library) else { return false };
@@ -170,12 +168,12 @@ fn file_name(fmu: &FmuPackage) -> PathBuf {
 /// Writes archives, in the order of [`FMUS`], into `folder`.
 fn write(archives: &[Vec<u8>], folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = FMUS.iter().map(|fmu| folder.join(file_name(fmu)));
-    paths.zip(archives).map(|(path, archive)| put::put(&path, archive).map(|()| path)).collect()
+    paths.zip(archives).map(|(path, archive)| shared_file::write_shared(&path, archive).map(|()| path)).collect()
 }
 
 /// The libraries of each platform, in the order of [`FMUS`].
 fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
-    // All is checked before the first library is built, which may take minutes.
+    // Checked before the first library is built, which may take minutes.
     let targets = targets(&options.targets)?;
     check_added(&options.added, &targets)?;
     if targets.is_empty() {
@@ -202,7 +200,7 @@ fn targets(asked: &[String]) -> Result<Vec<Target>> {
     Ok(targets)
 }
 
-/// No added library may share its place with another or with a target that was asked for.
+/// Refuses two libraries of one FMU for one platform.
 fn check_added(added: &[AddedBinary], targets: &[Target]) -> Result<()> {
     for (index, binary) in added.iter().enumerate() {
         let AddedBinary { platform, identifier, path } = binary.clone();

@@ -1,6 +1,5 @@
 //! Platforms: from Rust's target triples to the folder names of FMI 2.0.
 
-use super::error::{PackageError, Result};
 use fmu_import::{HOST_PLATFORM, library_extension};
 
 /// A folder of `binaries/`. FMI 2.0 tells platforms by system and pointer size only, so an archive holds either the
@@ -15,17 +14,17 @@ impl Platform {
     /// The platform that this program runs on.
     pub const HOST: Self = Self { folder: HOST_PLATFORM };
 
+    /// All folders that FMI 2.0 names.
+    pub const FOLDERS: [&str; 6] = ["linux32", "linux64", "win32", "win64", "darwin32", "darwin64"];
+
     /// The platform of a target triple, such as `x86_64-unknown-linux-gnu`.
-    ///
-    /// # Errors
-    /// When FMI 2.0 has no name for it.
-    pub fn of_triple(triple: &str) -> Result<Self> {
-        let unknown = || PackageError::Platform { triple: triple.to_owned() };
+    /// None if FMI 2.0 has no name for it.
+    pub fn of_triple(triple: &str) -> Option<Self> {
         let architecture = triple.split('-').next().unwrap_or_default();
         let wide = match architecture {
             "x86_64" | "aarch64" | "riscv64gc" | "powerpc64le" => true,
             "i586" | "i686" | "armv7" | "arm" => false,
-            _ => return Err(unknown()),
+            _ => return None,
         };
         let has = |part| triple.split('-').any(|other| other == part);
         let folder = match (has("linux"), has("windows"), has("darwin"), wide) {
@@ -34,20 +33,14 @@ impl Platform {
             (false, true, false, true) => "win64",
             (false, true, false, false) => "win32",
             (false, false, true, true) => "darwin64",
-            _ => return Err(unknown()),
+            _ => return None,
         };
-        Ok(Self { folder })
+        Some(Self { folder })
     }
 
-    /// The platform with this folder.
-    ///
-    /// # Errors
-    /// When there is none.
-    pub fn of_folder(folder: &str) -> Result<Self> {
-        const ALL: [&str; 6] = ["linux32", "linux64", "win32", "win64", "darwin32", "darwin64"];
-        let found = ALL.iter().find(|known| **known == folder);
-        let found = found.map(|folder| Self { folder });
-        found.ok_or_else(|| PackageError::PlatformName { found: folder.to_owned(), allowed: ALL.join(", ") })
+    /// The platform with this folder, if there is one.
+    pub fn of_folder(folder: &str) -> Option<Self> {
+        Self::FOLDERS.into_iter().find(|known| *known == folder).map(|folder| Self { folder })
     }
 
     /// Name of the library inside the archive: no `lib` in front.
@@ -79,7 +72,6 @@ mod tests {
             let platform = Platform::of_triple(triple).unwrap();
             assert_eq!((platform.entry("Toy").as_str(), platform.cargo_name("Toy").as_str()), (entry, cargo));
         }
-        let error = Platform::of_triple("wasm32-unknown-unknown").unwrap_err().to_string();
-        assert!(error.starts_with("no FMI 2.0 platform for the target wasm32-unknown-unknown"), "{error}");
+        assert_eq!(Platform::of_triple("wasm32-unknown-unknown"), None);
     }
 }

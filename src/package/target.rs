@@ -1,4 +1,4 @@
-//! What a user may ask the packager to build for, and how that is built.
+//! Build targets: what a user may ask for, and how it is built.
 
 use super::error::{PackageError, Result};
 use super::platform::Platform;
@@ -32,7 +32,7 @@ impl Target {
             other => other.split_once('.').map_or((other, None), |(triple, glibc)| (triple, Some(glibc))),
         };
         let unknown = || PackageError::Platform { triple: asked.to_owned() };
-        let platform = Platform::of_triple(triple).map_err(|_| unknown())?;
+        let platform = Platform::of_triple(triple).ok_or_else(unknown)?;
         if glibc.is_some_and(|version| !triple.contains("linux-gnu") || !is_version(version)) {
             return Err(unknown());
         }

@@ -1,15 +1,19 @@
-//! The tools that a build for another system needs, so that a missing one is named instead of left to a linker's riddle.
+//! The tools that a build for another system needs: a missing one is named, with the command that installs it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::cargo;
 use super::error::{PackageError, Result};
 use super::target::Target;
 
 /// The mingw linker that Rust's Windows target runs, as Debian names it.
 const MINGW: &str = "x86_64-w64-mingw32-gcc";
+
+/// Cargo. Inside `cargo run`, CARGO names the very one that runs.
+pub(super) fn cargo() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"))
+}
 
 /// Checks that everything is there to build for `target`.
 ///
@@ -25,7 +29,7 @@ pub(super) fn check(workspace: &Path, target: &Target) -> Result<()> {
 
 fn check_zig(workspace: &Path, target: &Target) -> Result<()> {
     // Through Cargo, which also looks into its own folder.
-    if !succeeds(Command::new(cargo::program()).current_dir(workspace).args(["zigbuild", "--help"])) {
+    if !succeeds(Command::new(cargo()).current_dir(workspace).args(["zigbuild", "--help"])) {
         return Err(missing("cargo-zigbuild", target, "cargo install --locked cargo-zigbuild"));
     }
     // Where cargo-zigbuild looks.
@@ -39,7 +43,7 @@ fn check_zig(workspace: &Path, target: &Target) -> Result<()> {
 fn check_rust_target(workspace: &Path, target: &Target) -> Result<()> {
     let rustc = program("RUSTC", "rustc");
     let output = Command::new(rustc).current_dir(workspace).args(["--print", "sysroot"]).output();
-    // Without an answer nothing is known, and Cargo will say what is wrong.
+    // Cargo reports what is wrong.
     let Ok(output) = output else { return Ok(()) };
     let sysroot = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
     if !output.status.success() || sysroot.join("lib/rustlib").join(&target.triple).join("lib").is_dir() {
@@ -90,8 +94,8 @@ mod tests {
 
     #[test]
     fn a_program_counts_only_if_it_runs() {
-        assert!(succeeds(Command::new(cargo::program()).arg("--version")));
-        assert!(!succeeds(Command::new(cargo::program()).arg("no-such-command-at-all")));
+        assert!(succeeds(Command::new(cargo()).arg("--version")));
+        assert!(!succeeds(Command::new(cargo()).arg("no-such-command-at-all")));
         assert!(!succeeds(Command::new("no-such-program-at-all").arg("--version")));
     }
 }

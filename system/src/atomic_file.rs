@@ -1,6 +1,5 @@
-//! Files that appear whole or not at all: written under another name, forced to the disk, then given their own. Whatever
-//! ends a program in between, and whenever, under its own name is what was there before, or all of what is there now. A signal
-//! that ends the command-line tool removes what it has under other names (`remove_all`).
+//! Files written atomically: under another name, forced to the disk, then renamed. A crash leaves the old file or the new one,
+//! never part of one. A signal that ends the command-line tool removes its unfinished files (`remove_all`).
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -10,21 +9,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
-/// Files that this process is writing, by their other names.
+/// Unfinished files of this process.
 static PARTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn parts() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     PARTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Name under which a file is written before it is complete.
+/// Name of a file until it is complete.
 pub fn partial(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     path.with_file_name(name)
 }
 
-/// Writes `content` to `path`, whole or not at all. Of what could not be written nothing stays: a full disk needs the room.
+/// Writes `content` to `path`, atomically. After an error nothing of it stays: a full disk needs the room.
 ///
 /// # Errors
 /// Another process that writes the same file; a refusal of the file system.
@@ -32,7 +31,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     fill(path, |file| file.write_all(content.as_ref()))
 }
 
-/// Has `content` write the file at `path`, as [`write()`] does.
+/// As [`write()`], where `content` writes the file.
 ///
 /// # Errors
 /// What `content` says; another process that writes the same file; a refusal of the file system.
@@ -47,19 +46,19 @@ pub fn fill<E: From<io::Error>>(path: &Path, content: impl FnOnce(&mut AtomicFil
     }
 }
 
-/// The name of a file that this process is writing. A signal that ends the process removes the file while this value lives.
+/// Name of an unfinished file. While this value lives, a signal that ends the process removes the file.
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
 }
 
 impl Part {
-    /// Has `make` make the file, and say where it is.
+    /// Registers the file that `make` makes; `make` returns its path.
     ///
     /// # Errors
     /// What `make` says.
     pub fn begin<T, E>(make: impl FnOnce() -> Result<(T, PathBuf), E>) -> Result<(T, Self), E> {
-        // Whoever removes all comes before or after.
+        // Locked, so that `remove_all` comes before or after.
         let mut parts = parts();
         let (made, path) = make()?;
         parts.insert(path.clone());
@@ -73,16 +72,16 @@ impl Drop for Part {
     }
 }
 
-/// Removes the files that this process, which is about to end, has not finished; their names. As long as what is returned
-/// lives, it can begin no others.
+/// Removes the unfinished files of this process, which is about to end, and returns their names. While the second value lives,
+/// no other file can be begun.
 pub fn remove_all() -> (Vec<PathBuf>, impl Sized) {
     let mut parts = parts();
-    // One that has its own name by now is not there any more under the other.
+    // A file that is renamed by now is not there any more.
     let removed = std::mem::take(&mut *parts).into_iter().filter(|part| std::fs::remove_file(part).is_ok()).collect();
     (removed, parts)
 }
 
-/// A file that is being written. Dropped before it is finished, what is in it stays under its other name.
+/// A file that is being written. Dropped unfinished, it keeps its other name.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
@@ -91,7 +90,7 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins a file that will be at `path`; what is there stays until [`AtomicFile::finish`].
+    /// Begins the file that [`AtomicFile::finish`] puts at `path`.
     ///
     /// # Errors
     /// Another process that writes the same file; a refusal of the file system.
@@ -102,10 +101,10 @@ impl AtomicFile {
         Ok(Self { file, part, path: path.to_owned() })
     }
 
-    /// Forces the file to the disk and gives it its name.
+    /// Forces the file to the disk and renames it.
     ///
     /// # Errors
-    /// A refusal of the file system; nothing is left then but what was there before.
+    /// A refusal of the file system; the old file stays.
     pub fn finish(self) -> io::Result<()> {
         let finished = self.file.sync_all().and_then(|()| std::fs::rename(&self.part.path, &self.path));
         if finished.is_err() {
@@ -114,9 +113,9 @@ impl AtomicFile {
         finished
     }
 
-    /// Leaves what was there before.
+    /// Removes the file; the old one stays.
     fn discard(self) {
-        // That it could not be written is what the user is told.
+        // The user is told why it could not be written.
         let _ = std::fs::remove_file(&self.part.path);
     }
 }
@@ -131,7 +130,7 @@ impl Write for AtomicFile {
     }
 }
 
-/// Why a file that is to be written is not this process's own.
+/// Why a file cannot be locked.
 #[derive(Debug, Error)]
 pub enum LockError {
     /// It cannot be opened.
@@ -155,8 +154,7 @@ impl From<LockError> for io::Error {
     }
 }
 
-/// Opens `part`, which no other process has open to write, with what is in it. A file that has other names is refused: a
-/// backup may share it.
+/// Opens and locks `part`, with its content. A file with hard links is refused: a backup may share it.
 ///
 /// # Errors
 /// Another process that writes it; a refusal of the file system.
@@ -168,15 +166,15 @@ pub fn lock(part: &Path) -> Result<File, LockError> {
         if names(&file).map_err(LockError::Open)? > 1 {
             return Err(LockError::Open(io::Error::other(SHARED)));
         }
-        // Who had it locked before may have given it its last name in between.
+        // The process that had it locked may have renamed it in between.
         if own(&file, part)? {
             return Ok(file);
         }
     }
 }
 
-/// Opens what stands at `part`, which is made with `make`, to read and to write. A symbolic link is refused: somebody may
-/// have put it there to have written what it leads to.
+/// Opens the file at `part` to read and write; `make` makes it if it is missing. A symbolic link is refused: somebody may have put
+/// it there to have another file overwritten.
 fn open(part: &Path, make: bool) -> io::Result<File> {
     const LINK: &str = "it is a symbolic link, through which nothing is written; remove it";
     let mut options = OpenOptions::new();
@@ -201,14 +199,14 @@ pub fn own(file: &File, part: &Path) -> Result<bool, LockError> {
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return Err(LockError::Busy),
-        // Some file systems of clusters have no locks: there, who starts two of a kind mixes them up.
+        // Some file systems of clusters have no locks: there, two processes may write the same file.
         Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
         Err(TryLockError::Error(cause)) => return Err(LockError::Lock(cause)),
     }
     is_at(file, part).map_err(LockError::Lock)
 }
 
-/// Removes the file at `part` if the process that wrote it is no more: nobody has it locked, where there are locks.
+/// Removes the file at `part` if no process has it locked: the one that wrote it has ended.
 ///
 /// # Errors
 /// A process that writes it; no locks; a refusal of the file system.
@@ -235,14 +233,14 @@ fn names(file: &File) -> io::Result<u64> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?))
 }
 
-/// How many names a file has: here, nobody tells.
+/// How many names a file has: unknown here.
 #[cfg(not(unix))]
 #[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
 fn names(_file: &File) -> io::Result<u64> {
     Ok(1)
 }
 
-/// Whether `file` is what stands at `path`.
+/// Whether `file` is the one at `path`.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt as _;
@@ -255,7 +253,7 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Whether `file` is what stands at `path`: here, an open file cannot be renamed.
+/// Whether `file` is the one at `path`: here, an open file cannot be renamed.
 #[cfg(not(unix))]
 #[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
 fn is_at(_file: &File, _path: &Path) -> io::Result<bool> {
@@ -289,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_be_written_leaves_the_old_file_and_nothing_else() {
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("result.json");
         write(&path, "old").unwrap();
@@ -319,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn rests_of_an_earlier_attempt_do_not_get_into_the_file() {
+    fn an_unfinished_file_of_a_killed_process_is_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("result.json");
         fs::write(partial(&path), "a long rest of an attempt that was killed").unwrap();
@@ -382,10 +380,10 @@ mod tests {
     #[cfg(unix)]
     fn a_file_that_got_its_last_name_is_not_the_one_that_is_locked() {
         let folder = tempfile::tempdir().unwrap();
-        let [part, whole] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
+        let [part, renamed] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
         let file = lock(&part).unwrap();
         assert!(is_at(&file, &part).unwrap());
-        fs::rename(&part, &whole).unwrap();
+        fs::rename(&part, &renamed).unwrap();
         assert!(!is_at(&file, &part).unwrap());
         fs::write(&part, "").unwrap();
         assert!(!is_at(&file, &part).unwrap());

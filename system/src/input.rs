@@ -1,10 +1,10 @@
-//! Files that are read: opening another kind of thing, or reading it, may take for ever.
+//! Input files. Anything but a regular file is refused: opening or reading a pipe or a device may never end.
 
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::Path;
 
-/// Opens a regular file for reading: it has an end, and can be read twice.
+/// Opens a regular file for reading.
 ///
 /// # Errors
 /// If it is none, or the system refuses.
@@ -12,8 +12,8 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     open(path, |_| false)
 }
 
-/// Opens a file that is read once. What the program was given open, such as `/dev/stdin` or what a shell makes of `<(...)`,
-/// is one too: somebody writes it, or the user types it. A named pipe is not: it may wait for somebody who never comes.
+/// Opens a file that is read once: a regular one, or one that the program was given open, such as `/dev/stdin` or `<(...)` of a
+/// shell. A named pipe is refused: it may have no writer.
 ///
 /// # Errors
 /// If it is none, or the system refuses.

@@ -1,5 +1,5 @@
-//! What the harness asks of the operating system, with nothing left behind: folders that are gone when the program ends, files
-//! that are there whole or not at all, processes that end with the program, files read only where they have an end.
+//! Services of the operating system that leave nothing behind: temporary folders that go with the program, files written
+//! atomically, child processes that end with the program, and input files that have an end.
 
 pub mod atomic_file;
 pub mod input;

@@ -1,7 +1,6 @@
-//! Child processes, each with all that it starts and does not send away. A signal that ends the command-line tool ends them
-//! (`end_all`); where this process is killed, or is of another program, workers see it by the end of their stdin, and Cargo and
-//! ngspice go on to their own end. On Windows there are no such groups: a child alone is ended, and none when a signal ends
-//! this process.
+//! Child processes, each with its process group. A signal that ends the command-line tool ends them (`end_all`). If this process is
+//! killed, workers notice the end of their stdin, and Cargo and ngspice run to their own end. Windows has no such groups: there a
+//! child is ended alone, and not by signals.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -11,14 +10,14 @@ use std::time::{Duration, Instant};
 
 /// Held for reading while a child is started, for writing when all are ended.
 static STARTING: RwLock<()> = RwLock::new(());
-/// Numbers of those that are not reaped.
+/// Process ids of children that are not reaped.
 static RUNNING: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
 
 fn running() -> MutexGuard<'static, BTreeSet<u32>> {
     RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How often it is looked whether a child has ended.
+/// Polling interval for the end of a child.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// A child in a process group of its own. Dropping it ends the group.
@@ -26,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(5);
 pub struct ProcessGroup {
     /// For its pipes.
     pub child: Child,
-    /// Whether it is reaped, or about to be.
+    /// Whether it is reaped or about to be.
     is_over: bool,
 }
 
@@ -44,7 +43,7 @@ impl ProcessGroup {
         Ok(Self { child, is_over: false })
     }
 
-    /// Whether the child has ended. It is not reaped by that: its number stays its own, and that of its group.
+    /// Whether the child has ended. This does not reap it: its process id, and that of its group, stays its own.
     ///
     /// # Errors
     /// If the system does not tell.
@@ -86,8 +85,8 @@ impl ProcessGroup {
         Ok(true)
     }
 
-    /// Ends the group, once: when the child is reaped, its number may be given to another. The status is that of the child,
-    /// which it had already if it has ended by itself.
+    /// Ends the group, once: the id of a reaped child may be given to another process. Returns the status of the child, which may
+    /// have ended by itself.
     ///
     /// # Errors
     /// If the system does not tell.
@@ -108,7 +107,7 @@ impl Drop for ProcessGroup {
     }
 }
 
-/// Ends the children of this process, which is about to end: as long as what is returned lives, it can start no others.
+/// Ends the children of this process, which is about to end. While the returned value lives, no others can be started.
 pub fn end_all() -> impl Sized {
     let closed = STARTING.write().unwrap_or_else(PoisonError::into_inner);
     let running = running();

@@ -1,5 +1,4 @@
-//! Temporary folders of this process: nobody else may look into them, and they are gone when it ends, also when a signal
-//! ends the command-line tool.
+//! Temporary folders, readable by the user alone and removed when the process ends, also by a signal to the command-line tool.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,7 +6,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Those that are there.
+/// The folders of this process.
 static FOLDERS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn folders() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -21,7 +20,7 @@ pub struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Makes a folder whose name begins with `prefix` where the system has temporary files.
+    /// Makes a folder in the system's folder of temporary files; its name begins with `prefix`.
     ///
     /// # Errors
     /// If the system refuses.
@@ -30,19 +29,19 @@ impl TemporaryFolder {
         builder.prefix(prefix);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
-        // Whoever removes all comes before or after.
+        // Locked, so that `remove_all` comes before or after.
         let mut folders = folders();
         let path = builder.tempdir()?.keep();
         folders.insert(path.clone());
         Ok(Self { path })
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Leaves it where it is.
+    /// Keeps the folder.
     pub fn keep(self) -> PathBuf {
         folders().remove(&self.path);
         self.path.clone()
@@ -58,8 +57,7 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// Removes the temporary folders of this process, which is about to end: as long as what is returned lives, it can make no
-/// others.
+/// Removes the temporary folders of this process, which is about to end. While the returned value lives, no others can be made.
 pub fn remove_all() -> impl Sized {
     let mut folders = folders();
     while let Some(folder) = folders.pop_first() {
@@ -68,7 +66,7 @@ pub fn remove_all() -> impl Sized {
     folders
 }
 
-/// Removes a folder with all that is in it, or says on stderr that it stays.
+/// Removes a folder with its content, or reports on stderr that it stays.
 fn remove(folder: &Path) {
     // Another thread of this process may be writing into it.
     const TRIES: usize = 3;
@@ -84,21 +82,21 @@ fn remove(folder: &Path) {
         }
     }
     if let Err(cause) = result {
-        // Where nobody reads stderr any more, the folder stays without a word.
+        // An error of stderr itself cannot be reported.
         let _ = writeln!(io::stderr(), "videg: cannot remove the temporary folder {}: {cause}", folder.display());
     }
 }
 
-/// Gives the owner all rights to a folder and the folders in it: who worked there may have taken them away.
+/// Gives the owner all rights to a folder and the folders in it, which an FMU may have taken away.
 #[cfg(unix)]
 fn open_up(folder: &Path) {
     use std::os::unix::fs::PermissionsExt as _;
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
-        // What cannot be changed is found out by the next try to remove it.
+        // The next try to remove it reports what cannot be changed.
         let _ = fs::set_permissions(&folder, fs::Permissions::from_mode(0o700));
         let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
-        // The type of a symbolic link is not that of a folder, wherever it leads.
+        // A symbolic link is not followed.
         folders.extend(entries.filter(|it| it.file_type().is_ok_and(|kind| kind.is_dir())).map(|it| it.path()));
     }
 }

@@ -1,7 +1,6 @@
 //! Reading and writing the variables of an instance, by value reference (fast) and by name (comfortable).
 
-use std::ffi::{CStr, CString, c_char};
-use std::ptr;
+use std::ffi::CString;
 
 use fmu_abi::{fmi2Boolean, fmi2False};
 
@@ -10,125 +9,73 @@ use super::error::{FmiError, Result, ValueError};
 use super::instance::Instance;
 use super::value::Value;
 
-/// One getter or setter of numbers: the lengths must agree, nothing is allocated.
+/// Getters and setters of numbers: the lengths must agree, nothing is allocated.
 macro_rules! numbers {
-    ($($(#[$doc:meta])* $method:ident($value:ty) = $symbol:literal $field:ident $($mutability:ident)?;)*) => {
-        $(numbers!(@one $(#[$doc])* $method, $value, $symbol, $field, $($mutability)?);)*
-    };
-    (@one $(#[$doc:meta])* $method:ident, $value:ty, $symbol:literal, $field:ident, ) => {
-        $(#[$doc])*
-        ///
-        /// # Errors
-        /// When the slices differ in length, or the call fails.
+    ($($type:literal: $get:ident, $set:ident, $value:ty;)*) => { $(
+        #[doc = concat!("Reads ", $type, ". Does not allocate.")]
         #[inline]
-        pub fn $method(&self, references: &[u32], values: &mut [$value]) -> Result<()> {
-            self.core().same_length($symbol, references.len(), values.len(), "values")?;
-            // SAFETY: both slices hold as many items as is said.
-            self.core().call($symbol, |functions, component| unsafe {
-                (functions.$field)(component, references.as_ptr(), references.len(), values.as_mut_ptr())
-            })
+        pub fn $get(&self, references: &[u32], values: &mut [$value]) -> Result<()> {
+            let name = concat!("fmi2Get", $type);
+            self.core().same_length(name, references.len(), values.len(), "values")?;
+            self.core().call(name, |slave| slave.$get(references, values))
         }
-    };
-    (@one $(#[$doc:meta])* $method:ident, $value:ty, $symbol:literal, $field:ident, set) => {
-        $(#[$doc])*
-        ///
-        /// # Errors
-        /// When the slices differ in length, or the call fails.
+
+        #[doc = concat!("Writes ", $type, ". Does not allocate.")]
         #[inline]
-        pub fn $method(&mut self, references: &[u32], values: &[$value]) -> Result<()> {
-            self.core().same_length($symbol, references.len(), values.len(), "values")?;
-            // SAFETY: both slices hold as many items as is said.
-            self.core().call($symbol, |functions, component| unsafe {
-                (functions.$field)(component, references.as_ptr(), references.len(), values.as_ptr())
-            })
+        pub fn $set(&mut self, references: &[u32], values: &[$value]) -> Result<()> {
+            let name = concat!("fmi2Set", $type);
+            self.core().same_length(name, references.len(), values.len(), "values")?;
+            self.core().call(name, |slave| slave.$set(references, values))
         }
-    };
+    )* };
 }
 
-/// One getter or setter of derivatives of an order.
-macro_rules! derivatives {
-    ($(#[$doc:meta])* $method:ident($($self:tt)+) $values:ty, $as_ptr:ident, $symbol:literal, $field:ident) => {
-        $(#[$doc])*
-        ///
-        /// # Errors
-        /// When the slices differ in length, or the call fails.
-        pub fn $method(self: $($self)+, references: &[u32], orders: &[i32], values: $values) -> Result<()> {
-            self.core().same_length($symbol, references.len(), orders.len(), "orders")?;
-            self.core().same_length($symbol, references.len(), values.len(), "values")?;
-            // SAFETY: all slices hold as many items as is said.
-            self.core().call($symbol, |functions, component| unsafe {
-                (functions.$field)(component, references.as_ptr(), references.len(), orders.as_ptr(), values.$as_ptr())
-            })
-        }
-    };
-}
-
+#[allow(clippy::missing_errors_doc, reason = "the documentation of the type says when a call fails")]
 impl Instance {
     numbers! {
-        /// Reads Reals. Does not allocate.
-        get_real(f64) = "fmi2GetReal" get_real;
-        /// Writes Reals. Does not allocate.
-        set_real(f64) = "fmi2SetReal" set_real set;
-        /// Reads Integers and Enumerations.
-        get_integer(i32) = "fmi2GetInteger" get_integer;
-        /// Writes Integers and Enumerations.
-        set_integer(i32) = "fmi2SetInteger" set_integer set;
+        "Real": get_real, set_real, f64;
+        "Integer": get_integer, set_integer, i32;
     }
 
-    derivatives! {
-        /// Gives inputs derivatives of the orders (1, 2, ...), for the FMU to extrapolate.
-        set_real_input_derivatives(&mut Self) &[f64], as_ptr, "fmi2SetRealInputDerivatives", set_real_input_derivatives
+    /// Gives inputs derivatives of the orders (1, 2, ...), for the FMU to extrapolate.
+    pub fn set_real_input_derivatives(&mut self, references: &[u32], orders: &[i32], values: &[f64]) -> Result<()> {
+        let name = "fmi2SetRealInputDerivatives";
+        self.core().same_length(name, references.len(), orders.len(), "orders")?;
+        self.core().same_length(name, references.len(), values.len(), "values")?;
+        self.core().call(name, |slave| slave.set_input_derivatives(references, orders, values))
     }
 
-    derivatives! {
-        /// Reads derivatives of the orders (1, 2, ...) of outputs.
-        get_real_output_derivatives(&Self) &mut [f64], as_mut_ptr, "fmi2GetRealOutputDerivatives", get_real_output_derivatives
+    /// Reads derivatives of the orders (1, 2, ...) of outputs.
+    pub fn get_real_output_derivatives(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Result<()> {
+        let name = "fmi2GetRealOutputDerivatives";
+        self.core().same_length(name, references.len(), orders.len(), "orders")?;
+        self.core().same_length(name, references.len(), values.len(), "values")?;
+        self.core().call(name, |slave| slave.get_output_derivatives(references, orders, values))
     }
 
     /// Reads Booleans.
-    ///
-    /// # Errors
-    /// When the slices differ in length, or the call fails.
     pub fn get_boolean(&self, references: &[u32], values: &mut [bool]) -> Result<()> {
         let name = "fmi2GetBoolean";
         self.core().same_length(name, references.len(), values.len(), "values")?;
         let mut numbers = vec![fmi2False; values.len()];
-        // SAFETY: both slices hold as many items as is said.
-        self.core().call(name, |functions, component| unsafe {
-            (functions.get_boolean)(component, references.as_ptr(), references.len(), numbers.as_mut_ptr())
-        })?;
-        for (value, number) in values.iter_mut().zip(numbers) {
-            *value = number != fmi2False;
-        }
+        self.core().call(name, |slave| slave.get_boolean(references, &mut numbers))?;
+        values.iter_mut().zip(numbers).for_each(|(value, number)| *value = number != fmi2False);
         Ok(())
     }
 
     /// Writes Booleans.
-    ///
-    /// # Errors
-    /// When the slices differ in length, or the call fails.
     pub fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
         let name = "fmi2SetBoolean";
         self.core().same_length(name, references.len(), values.len(), "values")?;
         let numbers: Vec<_> = values.iter().map(|&value| fmi2Boolean::from(value)).collect();
-        // SAFETY: both slices hold as many items as is said.
-        self.core().call(name, |functions, component| unsafe {
-            (functions.set_boolean)(component, references.as_ptr(), references.len(), numbers.as_ptr())
-        })
+        self.core().call(name, |slave| slave.set_boolean(references, &numbers))
     }
 
     /// Reads Strings.
-    ///
-    /// # Errors
-    /// When the call fails.
     pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
-        let mut pointers = vec![ptr::null(); references.len()];
-        // SAFETY: both slices hold as many items as is said.
-        self.core().call("fmi2GetString", |functions, component| unsafe {
-            (functions.get_string)(component, references.as_ptr(), references.len(), pointers.as_mut_ptr())
-        })?;
-        // The strings live until the next call only, so they are copied.
-        Ok(pointers.into_iter().map(copied).collect())
+        let mut texts = vec![CString::default(); references.len()];
+        self.core().call("fmi2GetString", |slave| slave.get_string(references, &mut texts))?;
+        Ok(texts.iter().map(|text| text.to_string_lossy().into_owned()).collect())
     }
 
     /// Writes Strings.
@@ -141,11 +88,7 @@ impl Instance {
         let owned =
             |text: &&str| CString::new(*text).map_err(|_| FmiError::Text { what: "value", text: (*text).to_owned() });
         let texts = values.iter().map(owned).collect::<Result<Vec<_>>>()?;
-        let pointers: Vec<_> = texts.iter().map(|text| text.as_ptr()).collect();
-        // SAFETY: both slices hold as many items as is said, and the texts live until the call is over.
-        self.core().call(name, |functions, component| unsafe {
-            (functions.set_string)(component, references.as_ptr(), references.len(), pointers.as_ptr())
-        })
+        self.core().call(name, |slave| slave.set_string(references, &texts))
     }
 
     /// Computes the change of `unknowns` for the change `seed` of `knowns`: `result = d unknowns / d knowns * seed`.
@@ -164,13 +107,7 @@ impl Instance {
         self.core().require(name, supported, "providesDirectionalDerivative")?;
         self.core().same_length(name, knowns.len(), seed.len(), "seeds")?;
         self.core().same_length(name, unknowns.len(), result.len(), "results")?;
-        // SAFETY: all slices hold as many items as is said.
-        self.core().call(name, |functions, component| unsafe {
-            let (unknown_count, known_count) = (unknowns.len(), knowns.len());
-            let (unknowns, knowns) = (unknowns.as_ptr(), knowns.as_ptr());
-            let derivative = functions.get_directional_derivative;
-            derivative(component, unknowns, unknown_count, knowns, known_count, seed.as_ptr(), result.as_mut_ptr())
-        })
+        self.core().call(name, |slave| slave.directional_derivative(unknowns, knowns, seed, result))
     }
 
     /// Sets the variable of this name from text, as a user types it: numbers, `true` or `false`, text, or the name of
@@ -240,9 +177,6 @@ impl Instance {
     }
 
     /// Sets the variable with this reference, which must be of the value's type. Bounds are not checked.
-    ///
-    /// # Errors
-    /// When the call fails.
     pub fn set_value(&mut self, reference: u32, value: &Value) -> Result<()> {
         let reference = [reference];
         match value {
@@ -260,13 +194,4 @@ fn not_settable(variable: &Variable) -> ValueError {
         variability: variable.variability.as_str(),
         causality: variable.causality.as_str(),
     }
-}
-
-/// Copies a string of the FMU; NULL counts as empty.
-fn copied(pointer: *const c_char) -> String {
-    if pointer.is_null() {
-        return String::new();
-    }
-    // SAFETY: the FMU returns zero-terminated strings that live until the next call.
-    unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned()
 }

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::error::{DescriptionError, FmiError, Result};
-use super::{suggest, xml};
+use super::error::{FmiError, Result};
+use super::suggest;
 
 /// The model description of a co-simulation FMU.
 #[derive(Debug, Clone)]
@@ -266,25 +266,6 @@ impl ModelDescription {
     /// Whether there is an input of this name.
     pub fn is_input(&self, name: &str) -> bool {
         self.variable(name).is_ok_and(Variable::is_input)
-    }
-
-    /// Largest document that [`ModelDescription::parse`] takes, in bytes.
-    pub const MAX_BYTES: u64 = 32 << 20;
-
-    /// Reads a document. `origin` names it in errors.
-    ///
-    /// # Errors
-    /// When it is too large, not well-formed, of another FMI version, not for co-simulation, lacks something, or has more than a
-    /// million elements, 256 attributes of an element or 64 KiB in an attribute.
-    pub fn parse(document: &[u8], origin: &str) -> Result<Self> {
-        let read = || {
-            let found = document.len() as u64;
-            if found > Self::MAX_BYTES {
-                return Err(DescriptionError::Size { found, allowed: Self::MAX_BYTES });
-            }
-            xml::read(document)
-        };
-        read().map_err(|cause| FmiError::Description { origin: origin.to_owned(), cause })
     }
 
     /// The variable of this name.

@@ -1,52 +1,26 @@
 //! A loaded FMU, from which instances are made.
 
-use std::ffi::CString;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use libloading::Library;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 
 use super::archive::{Archive, Limits};
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
 use super::instance::Instance;
-use super::isolated::{self, Isolation, Pool};
-use super::library::{self, Functions, HOST_PLATFORM};
+use super::isolated::{Isolation, Pool};
+use super::library::{self, HOST_PLATFORM};
+use super::loaded::{Code, Loaded, c_string};
 use super::logging::Logging;
-use videg_system::temporary::TemporaryFolder;
 
 /// A co-simulation FMU, unpacked and loaded. Clones share it; it is unloaded and its folder removed with the last
 /// clone and the last instance.
 #[derive(Clone)]
 pub struct Fmu {
     loaded: Arc<Loaded>,
-}
-
-/// What the instances share.
-pub(super) struct Loaded {
-    path: PathBuf,
-    pub(super) description: ModelDescription,
-    pub(super) functions: Functions,
-    guid: CString,
-    resources: CString,
-    /// Some instance returned Fatal: no function of the library may be called any more.
-    fatal: AtomicBool,
-    // In the order of dropping: the library, or what has loaded it, goes before the folder that holds it.
-    code: Code,
-    _folder: Option<TemporaryFolder>,
-}
-
-/// Where the library of an FMU is loaded.
-pub(super) enum Code {
-    /// In this process.
-    Here(#[allow(dead_code, reason = "kept until it is dropped")] Library),
-    /// In others.
-    Isolated(Box<Pool>),
-    /// Nowhere: it is part of this program, or must not be touched any more.
-    None,
 }
 
 impl Fmu {
@@ -103,30 +77,28 @@ impl Fmu {
         let (guid, resources) =
             (c_string("guid", &description.guid)?, c_string("resource location", &file_uri(&resources))?);
         let library = folder.path().join(&entry);
-        let (code, functions) = if let Some(isolation) = decide(identifier, &library) {
-            let pool = Pool::new(isolation, path, folder.path(), &entry)?;
-            (Code::Isolated(Box::new(pool)), isolated::FUNCTIONS)
+        let code = if let Some(isolation) = decide(identifier, &library) {
+            Code::Isolated(Box::new(Pool::new(isolation, path, folder.path(), &entry)?))
         } else {
             let (library, functions) = library::load(&library, &path.join(&entry))?;
-            (Code::Here(library), functions)
+            Code::Here { functions: Box::new(functions), library: Some(library) }
         };
         let (path, fatal) = (path.into(), AtomicBool::new(false));
-        let loaded = Loaded { path, description, functions, guid, resources, fatal, code, _folder: Some(folder) };
+        let loaded = Loaded { path, description, guid, resources, fatal, code, folder: Some(folder) };
         Ok(Self { loaded: Arc::new(loaded) })
     }
 
     /// An FMU whose functions live in this program.
     #[cfg(test)]
-    pub(super) fn of(functions: &Functions, description: ModelDescription) -> Self {
+    pub(super) fn of(functions: &library::Functions, description: ModelDescription) -> Self {
         let loaded = Loaded {
             path: "memory".into(),
             guid: c_string("guid", &description.guid).unwrap(),
             resources: c"file:///nowhere".into(),
             description,
-            functions: *functions,
             fatal: AtomicBool::new(false),
-            code: Code::None,
-            _folder: None,
+            code: Code::Here { functions: Box::new(*functions), library: None },
+            folder: None,
         };
         Self { loaded: Arc::new(loaded) }
     }
@@ -143,7 +115,7 @@ impl Fmu {
 
     /// Whether its instances run in processes of their own.
     pub fn is_isolated(&self) -> bool {
-        self.loaded.pool().is_some()
+        matches!(self.loaded.code, Code::Isolated(_))
     }
 
     /// Makes an instance. Instances are independent, and may live on different threads.
@@ -159,44 +131,6 @@ impl fmt::Debug for Fmu {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.debug_struct("Fmu").field("path", &self.loaded.path).finish_non_exhaustive()
     }
-}
-
-impl Loaded {
-    pub(super) fn guid(&self) -> &CString {
-        &self.guid
-    }
-
-    pub(super) fn resources(&self) -> &CString {
-        &self.resources
-    }
-
-    /// What runs the instances in processes of their own, if they do not run in this one.
-    pub(super) fn pool(&self) -> Option<&Pool> {
-        if let Code::Isolated(pool) = &self.code { Some(pool) } else { None }
-    }
-
-    pub(super) fn is_dead(&self) -> bool {
-        self.fatal.load(Ordering::Relaxed)
-    }
-
-    pub(super) fn kill(&self) {
-        self.fatal.store(true, Ordering::Relaxed);
-    }
-}
-
-impl Drop for Loaded {
-    fn drop(&mut self) {
-        if self.is_dead() {
-            // Instances that were never freed may still run code of the library: it stays.
-            std::mem::forget(std::mem::replace(&mut self.code, Code::None));
-        }
-    }
-}
-
-/// Turns a text into a C string.
-pub(super) fn c_string(what: &'static str, text: &str) -> Result<CString> {
-    let usable = CString::new(text).ok().filter(|text| !text.is_empty());
-    usable.ok_or_else(|| FmiError::Text { what, text: text.to_owned() })
 }
 
 /// `file:///folder/file`, percent-encoded.

@@ -1,7 +1,7 @@
 //! The shared library of an FMU and the functions it exports.
 
 use std::ffi::{CStr, c_char};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fmu_abi as abi;
 use libloading::Library;
@@ -58,6 +58,7 @@ macro_rules! functions {
         }
 
         /// The table of those functions which go by the names of its fields where this stands.
+        #[cfg(test)]
         macro_rules! functions_in_scope {
             () => {
                 $crate::library::Functions { $($field),* }
@@ -102,6 +103,7 @@ functions! {
     get_boolean_status: fmi2GetBooleanStatusTYPE = "fmi2GetBooleanStatus",
     get_string_status: fmi2GetStringStatusTYPE = "fmi2GetStringStatus",
 }
+#[cfg(test)]
 #[allow(clippy::single_component_path_imports, reason = "makes the macro visible to other modules")]
 pub(crate) use functions_in_scope;
 
@@ -133,20 +135,17 @@ fn open(path: &Path) -> std::result::Result<Library, libloading::Error> {
 }
 
 fn check(functions: &Functions, path: &Path) -> Result<()> {
-    let path = || PathBuf::from(path);
-    // SAFETY: the function takes nothing and returns a static string.
-    let version = unsafe { static_text((functions.get_version)()) };
-    if !version.starts_with("2.0") {
-        let function = "fmi2GetVersion";
-        return Err(FmiError::WrongInterface { path: path(), function, found: version, allowed: "2.0" });
-    }
-    // SAFETY: as above.
-    let types = unsafe { static_text((functions.get_types_platform)()) };
-    if types != "default" {
-        let function = "fmi2GetTypesPlatform";
-        return Err(FmiError::WrongInterface { path: path(), function, found: types, allowed: "default" });
-    }
-    Ok(())
+    // SAFETY: the functions take nothing and return static strings.
+    let (version, types) =
+        unsafe { (static_text((functions.get_version)()), static_text((functions.get_types_platform)())) };
+    let (function, found, allowed) = if !version.starts_with("2.0") {
+        ("fmi2GetVersion", version, "2.0")
+    } else if types != "default" {
+        ("fmi2GetTypesPlatform", types, "default")
+    } else {
+        return Ok(());
+    };
+    Err(FmiError::WrongInterface { path: path.to_owned(), function, found, allowed })
 }
 
 /// # Safety

@@ -1,6 +1,5 @@
 //! Saved states of an instance.
 
-use std::ffi::c_char;
 use std::fmt;
 use std::ptr;
 use std::rc::Rc;
@@ -28,11 +27,8 @@ impl Drop for FmuState {
         if self.state.is_null() {
             return;
         }
-        // SAFETY: the state belongs to this component and is freed once. Where the FMU has died, `call` does nothing.
-        // A state that cannot be freed is no reason to stop.
-        let _ = self.core.call("fmi2FreeFMUstate", |functions, component| unsafe {
-            (functions.free_state)(component, &raw mut self.state)
-        });
+        // Where the FMU has died, `call` does nothing. A state that cannot be freed is no reason to stop.
+        let _ = self.core.call("fmi2FreeFMUstate", |slave| slave.free_state(&mut self.state));
     }
 }
 
@@ -55,8 +51,7 @@ impl Instance {
         let name = "fmi2GetFMUstate";
         self.require_state(name)?;
         self.require_own(name, state)?;
-        // SAFETY: the state is NULL or one of this component.
-        self.core().call(name, |functions, component| unsafe { (functions.get_state)(component, &raw mut state.state) })
+        self.core().call(name, |slave| slave.get_state(&mut state.state))
     }
 
     /// Goes back to a saved state.
@@ -67,8 +62,7 @@ impl Instance {
         let name = "fmi2SetFMUstate";
         self.require_state(name)?;
         self.require_own(name, state)?;
-        // SAFETY: the state is one of this component.
-        self.core().call(name, |functions, component| unsafe { (functions.set_state)(component, state.state) })
+        self.core().call(name, |slave| slave.set_state(state.state))
     }
 
     /// Turns a saved state into bytes.
@@ -81,16 +75,10 @@ impl Instance {
         self.require_serialization(name)?;
         self.require_own(name, state)?;
         let mut size = 0;
-        // SAFETY: the state is one of this component.
-        self.core().call("fmi2SerializedFMUstateSize", |functions, component| unsafe {
-            (functions.serialized_state_size)(component, state.state, &raw mut size)
-        })?;
+        self.core().call("fmi2SerializedFMUstateSize", |slave| slave.state_size(state.state, &mut size))?;
         self.check_size(name, size)?;
-        let mut bytes = vec![0_u8; size];
-        // SAFETY: as above, and the buffer has the size that the FMU has asked for.
-        self.core().call(name, |functions, component| unsafe {
-            (functions.serialize_state)(component, state.state, bytes.as_mut_ptr().cast::<c_char>(), size)
-        })?;
+        let mut bytes = vec![0; size];
+        self.core().call(name, |slave| slave.serialize_state(state.state, &mut bytes))?;
         Ok(bytes)
     }
 
@@ -103,10 +91,7 @@ impl Instance {
         self.require_serialization(name)?;
         self.check_size(name, bytes.len())?;
         let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
-        // SAFETY: the buffer has the size that is passed with it.
-        self.core().call(name, |functions, component| unsafe {
-            (functions.deserialize_state)(component, bytes.as_ptr().cast::<c_char>(), bytes.len(), &raw mut state.state)
-        })?;
+        self.core().call(name, |slave| slave.deserialize_state(bytes, &mut state.state))?;
         Ok(state)
     }
 

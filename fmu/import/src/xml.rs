@@ -1,32 +1,70 @@
-//! From the text of `modelDescription.xml` to [`ModelDescription`].
-//!
-//! Two passes: the first (`vet`) walks the events and refuses what must never be interpreted; the second reads the
-//! elements that are used and skips all others.
+//! From the text of `modelDescription.xml` to [`ModelDescription`]: first the elements as a tree (`element`), then the values of
+//! those that are used; all others are skipped.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::str::FromStr;
 
 use super::description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
     ModelDescription, Unit, Variability, Variable,
 };
-use super::error::DescriptionError as Error;
+use super::error::{DescriptionError as Error, FmiError};
+use element::{Element, missing, not_allowed};
 
-mod raw;
+mod element;
 mod types;
 mod variable;
-mod vet;
 
 type Result<T> = std::result::Result<T, Error>;
 
-pub(super) fn read(document: &[u8]) -> Result<ModelDescription> {
+impl ModelDescription {
+    /// Largest document that [`ModelDescription::parse`] takes, in bytes.
+    pub const MAX_BYTES: u64 = 32 << 20;
+
+    /// Reads a document. `origin` names it in errors.
+    ///
+    /// # Errors
+    /// When it is too large, not well-formed, of another FMI version, not for co-simulation, lacks something, or has more than a
+    /// million elements, 256 attributes of an element or 64 KiB in an attribute.
+    pub fn parse(document: &[u8], origin: &str) -> std::result::Result<Self, FmiError> {
+        let (found, allowed) = (document.len() as u64, Self::MAX_BYTES);
+        let description = if found > allowed { Err(Error::Size { found, allowed }) } else { read(document) };
+        description.map_err(|cause| FmiError::Description { origin: origin.to_owned(), cause })
+    }
+}
+
+fn read(document: &[u8]) -> Result<ModelDescription> {
     let document = document.strip_prefix(b"\xef\xbb\xbf").unwrap_or(document);
     let text = decode(document)?;
-    vet::vet(&text)?;
-    let raw: raw::Description =
-        quick_xml::de::from_str(&text).map_err(|error| Error::Content { cause: error.to_string() })?;
-    convert(raw)
+    let element = Element::parse(&text)?;
+    let root = "fmiModelDescription";
+    if element.name() != root {
+        return Err(Error::Root { found: element.name() });
+    }
+    let fmi_version = element.required(root, "fmiVersion")?;
+    if fmi_version != "2.0" {
+        return Err(Error::Version { found: fmi_version });
+    }
+    let enumerations = types::enumerations(&element)?;
+    let variables = variables(&element)?;
+    let co_simulation = element.child("CoSimulation")?;
+    let co_simulation = co_simulation.ok_or_else(|| missing(root, "CoSimulation element, so it cannot co-simulate"))?;
+    Ok(ModelDescription {
+        fmi_version,
+        model_name: element.required(root, "modelName")?,
+        guid: element.required(root, "guid")?,
+        description: element.attribute("description")?,
+        generation_tool: element.attribute("generationTool")?,
+        co_simulation: capabilities(co_simulation)?,
+        units: element.list("UnitDefinitions", "Unit")?.map(unit).collect::<Result<_>>()?,
+        enumeration_positions: enumerations.iter().enumerate().rev().map(|(k, it)| (it.name.clone(), k)).collect(),
+        enumerations,
+        log_categories: log_categories(&element)?,
+        default_experiment: experiment(&element)?,
+        positions: positions(&variables)?,
+        outputs: outputs(&element, variables.len())?,
+        variables,
+    })
 }
 
 /// The text of a document in UTF-8, or in the ISO-8859-1 that some old exporters write and declare.
@@ -43,75 +81,34 @@ fn decode(document: &[u8]) -> Result<Cow<'_, str>> {
     Err(Error::Encoding { position: error.valid_up_to() })
 }
 
-/// Second pass: from strings to values.
-fn convert(raw: raw::Description) -> Result<ModelDescription> {
-    let root = "fmiModelDescription";
-    let types = raw.type_definitions.unwrap_or_default().types;
-    let enumerations = types.iter().filter_map(enumeration).collect::<Result<Vec<_>>>()?;
-    let variables = raw.model_variables.ok_or_else(|| missing(root, "ModelVariables"))?.variables;
-    let types = types::Types::of(types)?;
-    let variables = variables
-        .into_iter()
-        .enumerate()
-        .map(|(position, raw)| variable::convert(raw, position, &types))
-        .collect::<Result<Vec<_>>>()?;
-    let co_simulation =
-        raw.co_simulation.ok_or_else(|| missing(root, "CoSimulation element, so it cannot co-simulate"))?;
-    Ok(ModelDescription {
-        fmi_version: "2.0".to_owned(),
-        model_name: raw.model_name.ok_or_else(|| missing(root, "modelName"))?,
-        guid: raw.guid.ok_or_else(|| missing(root, "guid"))?,
-        description: raw.description,
-        generation_tool: raw.generation_tool,
-        co_simulation: capabilities(co_simulation)?,
-        units: raw.unit_definitions.unwrap_or_default().units.into_iter().map(unit).collect::<Result<_>>()?,
-        enumeration_positions: enumerations.iter().enumerate().rev().map(|(k, it)| (it.name.clone(), k)).collect(),
-        enumerations,
-        log_categories: raw
-            .log_categories
-            .unwrap_or_default()
-            .categories
-            .into_iter()
-            .filter_map(|it| it.name)
-            .collect(),
-        default_experiment: experiment(raw.default_experiment.unwrap_or_default())?,
-        positions: positions(&variables)?,
-        outputs: outputs(raw.model_structure.unwrap_or_default(), variables.len())?,
-        variables,
-    })
+fn variables(root: &Element<'_>) -> Result<Vec<Variable>> {
+    let types = types::Types::read(root)?;
+    let list = root.child("ModelVariables")?.ok_or_else(|| missing("fmiModelDescription", "ModelVariables"))?;
+    let variables = list.children("ScalarVariable").enumerate();
+    variables.map(|(position, element)| variable::variable(element, position, &types)).collect()
 }
 
-fn capabilities(raw: raw::CoSimulation) -> Result<CoSimulation> {
+fn capabilities(element: &Element<'_>) -> Result<CoSimulation> {
     let place = "CoSimulation";
-    let model_identifier = raw.model_identifier.ok_or_else(|| missing(place, "modelIdentifier"))?;
+    let model_identifier = element.required(place, "modelIdentifier")?;
     if !is_identifier(&model_identifier) {
-        let allowed = "a C identifier ([A-Za-z_][A-Za-z0-9_]*)".to_owned();
-        return Err(attribute(place, "modelIdentifier", &model_identifier, allowed));
+        let allowed = "a C identifier ([A-Za-z_][A-Za-z0-9_]*)";
+        return Err(not_allowed(place, "modelIdentifier", &model_identifier, allowed));
     }
-    let flag = |name, value: Option<String>| value.map_or(Ok(false), |text| boolean(place, name, &text));
-    let order =
-        optional(raw.max_output_derivative_order.as_deref(), |text| integer(place, "maxOutputDerivativeOrder", text))?;
+    let flag = |name| element.boolean(place, name).map(Option::unwrap_or_default);
     Ok(CoSimulation {
         model_identifier,
-        needs_execution_tool: flag("needsExecutionTool", raw.needs_execution_tool)?,
-        can_handle_variable_communication_step_size: flag(
-            "canHandleVariableCommunicationStepSize",
-            raw.can_handle_variable_communication_step_size,
-        )?,
-        can_interpolate_inputs: flag("canInterpolateInputs", raw.can_interpolate_inputs)?,
-        max_output_derivative_order: order.unwrap_or(0),
-        can_run_asynchronously: flag("canRunAsynchronuously", raw.can_run_asynchronously)?,
-        can_be_instantiated_only_once_per_process: flag(
-            "canBeInstantiatedOnlyOncePerProcess",
-            raw.can_be_instantiated_only_once_per_process,
-        )?,
-        can_not_use_memory_management_functions: flag(
-            "canNotUseMemoryManagementFunctions",
-            raw.can_not_use_memory_management_functions,
-        )?,
-        can_get_and_set_fmu_state: flag("canGetAndSetFMUstate", raw.can_get_and_set_fmu_state)?,
-        can_serialize_fmu_state: flag("canSerializeFMUstate", raw.can_serialize_fmu_state)?,
-        provides_directional_derivative: flag("providesDirectionalDerivative", raw.provides_directional_derivative)?,
+        needs_execution_tool: flag("needsExecutionTool")?,
+        can_handle_variable_communication_step_size: flag("canHandleVariableCommunicationStepSize")?,
+        can_interpolate_inputs: flag("canInterpolateInputs")?,
+        max_output_derivative_order: element.integer(place, "maxOutputDerivativeOrder")?.unwrap_or(0),
+        // The standard spells it so.
+        can_run_asynchronously: flag("canRunAsynchronuously")?,
+        can_be_instantiated_only_once_per_process: flag("canBeInstantiatedOnlyOncePerProcess")?,
+        can_not_use_memory_management_functions: flag("canNotUseMemoryManagementFunctions")?,
+        can_get_and_set_fmu_state: flag("canGetAndSetFMUstate")?,
+        can_serialize_fmu_state: flag("canSerializeFMUstate")?,
+        provides_directional_derivative: flag("providesDirectionalDerivative")?,
     })
 }
 
@@ -121,57 +118,31 @@ fn is_identifier(name: &str) -> bool {
         && name.chars().all(|char| char.is_ascii_alphanumeric() || char == '_')
 }
 
-fn unit(raw: raw::Unit) -> Result<Unit> {
-    let name = raw.name.ok_or_else(|| missing("Unit", "name"))?;
-    let Some(base) = raw.base else { return Ok(Unit { name, base: None }) };
+fn unit(element: &Element<'_>) -> Result<Unit> {
+    let name = element.required("Unit", "name")?;
+    let Some(base) = element.child("BaseUnit")? else { return Ok(Unit { name, base: None }) };
     let place = format!("unit \"{name}\"");
     let mut exponents = [0; 8];
-    let fields = [
-        ("kg", base.kg),
-        ("m", base.m),
-        ("s", base.s),
-        ("A", base.a),
-        ("K", base.k),
-        ("mol", base.mol),
-        ("cd", base.cd),
-        ("rad", base.rad),
-    ];
-    for (exponent, (attribute, text)) in exponents.iter_mut().zip(fields) {
-        *exponent = optional(text.as_deref(), |text| integer(&place, attribute, text))?.unwrap_or(0);
+    for (exponent, symbol) in exponents.iter_mut().zip(["kg", "m", "s", "A", "K", "mol", "cd", "rad"]) {
+        *exponent = base.integer(&place, symbol)?.unwrap_or(0);
     }
-    let factor = optional(base.factor.as_deref(), |text| real(&place, "factor", text))?.unwrap_or(1.0);
-    let offset = optional(base.offset.as_deref(), |text| real(&place, "offset", text))?.unwrap_or(0.0);
+    let factor = base.real(&place, "factor")?.unwrap_or(1.0);
+    let offset = base.real(&place, "offset")?.unwrap_or(0.0);
     Ok(Unit { name, base: Some(BaseUnit { exponents, factor, offset }) })
 }
 
-/// The enumeration type behind a type definition, if it is one.
-fn enumeration(raw: &raw::SimpleType) -> Option<Result<EnumerationType>> {
-    let items = &raw.enumeration.as_ref()?.items;
-    let read = || {
-        let name = raw.name.clone().ok_or_else(|| missing("SimpleType", "name"))?;
-        let place = format!("enumeration \"{name}\"");
-        let items = items.iter().map(|item| enumeration_item(item, &place)).collect::<Result<Vec<_>>>()?;
-        Ok(EnumerationType { name, items })
-    };
-    Some(read())
+fn log_categories(root: &Element<'_>) -> Result<Vec<String>> {
+    root.list("LogCategories", "Category")?.filter_map(|category| category.attribute("name").transpose()).collect()
 }
 
-fn enumeration_item(raw: &raw::Item, place: &str) -> Result<EnumerationItem> {
-    let value = raw.value.as_deref().ok_or_else(|| missing(place, "value in an Item"))?;
-    Ok(EnumerationItem {
-        name: types::shared(place, "name", raw.name.clone().ok_or_else(|| missing(place, "name in an Item"))?)?,
-        value: integer(place, "value", value)?,
-        description: raw.description.clone(),
-    })
-}
-
-fn experiment(raw: raw::DefaultExperiment) -> Result<DefaultExperiment> {
-    let read = |name, value: Option<String>| optional(value.as_deref(), |text| real("DefaultExperiment", name, text));
+fn experiment(root: &Element<'_>) -> Result<DefaultExperiment> {
+    let Some(element) = root.child("DefaultExperiment")? else { return Ok(DefaultExperiment::default()) };
+    let read = |name| element.real("DefaultExperiment", name);
     Ok(DefaultExperiment {
-        start_time: read("startTime", raw.start_time)?,
-        stop_time: read("stopTime", raw.stop_time)?,
-        tolerance: read("tolerance", raw.tolerance)?,
-        step_size: read("stepSize", raw.step_size)?,
+        start_time: read("startTime")?,
+        stop_time: read("stopTime")?,
+        tolerance: read("tolerance")?,
+        step_size: read("stepSize")?,
     })
 }
 
@@ -185,42 +156,14 @@ fn positions(variables: &[Variable]) -> Result<HashMap<String, usize>> {
     Ok(positions)
 }
 
-/// `index` counts from 1.
-fn outputs(raw: raw::ModelStructure, count: usize) -> Result<Vec<usize>> {
+/// Positions of the outputs; `index` counts from 1.
+fn outputs(root: &Element<'_>, count: usize) -> Result<Vec<usize>> {
     let place = "ModelStructure/Outputs/Unknown";
-    let position = |unknown: raw::Unknown| {
-        let text = unknown.index.ok_or_else(|| missing(place, "index"))?;
-        let index: usize = integer(place, "index", &text)?;
+    let Some(structure) = root.child("ModelStructure")? else { return Ok(Vec::new()) };
+    let position = |unknown: &Element<'_>| {
+        let index: usize = unknown.integer(place, "index")?.ok_or_else(|| missing(place, "index"))?;
         let position = index.checked_sub(1).filter(|position| *position < count);
-        position.ok_or_else(|| attribute(place, "index", &text, format!("1 .. {count}")))
+        position.ok_or_else(|| not_allowed(place, "index", &index.to_string(), &format!("1 .. {count}")))
     };
-    raw.outputs.unwrap_or_default().unknowns.into_iter().map(position).collect()
-}
-
-fn optional<T>(text: Option<&str>, read: impl FnOnce(&str) -> Result<T>) -> Result<Option<T>> {
-    text.map(read).transpose()
-}
-
-fn missing(place: &str, what: &'static str) -> Error {
-    Error::Missing { place: place.to_owned(), what }
-}
-
-fn attribute(place: &str, attribute: &'static str, found: &str, allowed: String) -> Error {
-    Error::Attribute { place: place.to_owned(), attribute, found: found.to_owned(), allowed }
-}
-
-fn real(place: &str, name: &'static str, text: &str) -> Result<f64> {
-    text.trim().parse().map_err(|_| attribute(place, name, text, "a number".to_owned()))
-}
-
-fn integer<T: FromStr>(place: &str, name: &'static str, text: &str) -> Result<T> {
-    text.trim().parse().map_err(|_| attribute(place, name, text, "an integer of the attribute's range".to_owned()))
-}
-
-fn boolean(place: &str, name: &'static str, text: &str) -> Result<bool> {
-    match text.trim() {
-        "true" | "1" => Ok(true),
-        "false" | "0" => Ok(false),
-        _ => Err(attribute(place, name, text, "true or false".to_owned())),
-    }
+    structure.list("Outputs", "Unknown")?.map(position).collect()
 }

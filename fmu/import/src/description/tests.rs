@@ -1,4 +1,4 @@
-use super::{Causality, DescriptionError, FmiError, Initial, Kind, ModelDescription, Variability};
+use crate::{Causality, DescriptionError, FmiError, Initial, Kind, ModelDescription, Variability};
 
 const GOOD: &str = include_str!("../testdata/good.xml");
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitStatus;
 
-use super::Bounds;
+use super::bounds::Bounds;
 use crate::logging::LogRecord;
 
 /// What happened to a worker.

@@ -1,18 +1,16 @@
 //! The workers of an FMU: one for each instance.
 
-use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fmu_abi::fmi2Component;
-
-use super::Isolation;
+use super::bounds::Isolation;
 use super::ending::{Ending, How};
 use super::process::Process;
-use super::protocol::{Opening, Reply, Request};
+use super::protocol::{Opening, Reply};
 use super::remote::Remote;
 use crate::error::{FmiError, Result};
-use crate::logging::{Environment, LogRecord};
+use crate::logging::Environment;
+use crate::slave::{Arguments, Slave};
 
 /// Starts the workers of an FMU.
 pub(crate) struct Pool {
@@ -23,14 +21,6 @@ pub(crate) struct Pool {
     opening: Opening,
     /// A worker that has loaded the library and has no instance yet.
     spare: Mutex<Option<Process>>,
-}
-
-/// The arguments of `fmi2Instantiate`.
-pub(crate) struct Wanted<'a> {
-    pub name: &'a CStr,
-    pub guid: &'a CStr,
-    pub resources: &'a CStr,
-    pub debug: bool,
 }
 
 impl Pool {
@@ -59,7 +49,9 @@ impl Pool {
         let mut process = Process::start(program, &self.folder)
             .map_err(|cause| FmiError::Worker { program: program.clone(), cause: cause.to_string() })?;
         let ended = |process: &Process, how| {
-            FmiError::Isolated(Box::new(self.ending("loading the library", how, Vec::new(), process.printed())))
+            let (path, call, bounds) = (self.path.clone(), "loading the library".to_owned(), self.isolation.bounds);
+            let (messages, printed) = (Vec::new(), process.printed());
+            FmiError::Isolated(Box::new(Ending { path, call, how, bounds, messages, printed }))
         };
         match process.open(&self.opening, self.isolation.bounds.time) {
             Ok(Reply::Loaded) => Ok(process),
@@ -70,26 +62,18 @@ impl Pool {
         }
     }
 
-    /// Makes an instance in a worker of its own; NULL if the FMU refuses.
+    /// Makes an instance in a worker of its own; none if the FMU refuses.
     ///
     /// # Errors
     /// If the worker cannot be started, or ends.
-    pub fn instantiate(&self, wanted: &Wanted<'_>, environment: &Arc<Environment>) -> Result<fmi2Component> {
+    pub fn instantiate(
+        &self,
+        arguments: &Arguments<'_>,
+        environment: &Arc<Environment>,
+    ) -> Result<Option<Box<dyn Slave>>> {
         let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
         let process = spare.map_or_else(|| self.start(), Ok)?;
-        let name = wanted.name.to_string_lossy().into_owned();
-        let remote = Remote::new(process, &self.path, self.isolation.bounds, name, Arc::clone(environment));
-        let request = Request::Instantiate {
-            name: wanted.name.to_owned(),
-            guid: wanted.guid.to_owned(),
-            resources: wanted.resources.to_owned(),
-            debug: wanted.debug,
-        };
-        remote.instantiate(&request).map_err(FmiError::Isolated)
-    }
-
-    fn ending(&self, call: &str, how: How, messages: Vec<LogRecord>, printed: String) -> Ending {
-        let (path, call, bounds) = (self.path.clone(), call.to_owned(), self.isolation.bounds);
-        Ending { path, call, how, bounds, messages, printed }
+        let remote = Remote::new(process, (&self.path, self.isolation.bounds), arguments, environment);
+        Ok(remote.map_err(FmiError::Isolated)?.map(|remote| Box::new(remote) as Box<dyn Slave>))
     }
 }

@@ -1,4 +1,4 @@
-//! A worker as this process sees it: started, asked, watched and ended.
+//! A worker as the host sees it: started, asked, watched and ended.
 
 use std::collections::VecDeque;
 use std::io::{self, Read};
@@ -7,18 +7,18 @@ use std::process::{ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::WORKER_VERB;
+use super::bounds::WORKER_VERB;
 use super::ending::How;
 use super::pipes::{Heard, Pipes};
 use super::protocol::{Given, Opening, Reply, Request, SPARE, build, frame, unframe};
 use crate::logging::LogRecord;
 use videg_system::processes::ProcessGroup;
 
-/// How often a silent worker is looked at: what it started may hold its pipes open beyond its death.
+/// Polling interval for the end of a silent worker: a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(100);
-/// How long a worker that has closed its pipes may take to end.
+/// Time in which a worker that has closed its pipes must end.
 const FAREWELL: Duration = Duration::from_secs(1);
-/// The end of what a worker prints is kept, bytes.
+/// Bytes kept of the end of what a worker prints.
 const KEPT: usize = 2048;
 
 /// A worker. Dropping it ends it, together with what it started and did not send away.

@@ -1,11 +1,12 @@
 //! What the two processes say to each other: frames of a length and a message, numbers with all their bits.
 
-use std::ffi::{CStr, CString, OsString, c_char};
+use std::ffi::{CStr, CString, OsString};
 use std::io::{self, Read, Write};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::logging::LogRecord;
+use crate::slave::Plain;
 
 /// Largest serialised state that is passed on, bytes.
 pub(crate) const LONGEST_STATE: usize = 256 << 20;
@@ -20,7 +21,8 @@ const HEAD: usize = 4;
 
 /// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
 pub(super) fn build() -> String {
-    let sources = [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs")];
+    let sources =
+        [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs"), include_bytes!("../slave.rs")];
     // FNV-1a
     let hash = sources
         .concat()
@@ -42,112 +44,38 @@ pub(super) struct Opening {
     pub memory: Option<u64>,
 }
 
-/// Functions that take nothing but the instance.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(super) enum Plain {
-    EnterInitializationMode,
-    ExitInitializationMode,
-    Terminate,
-    Reset,
-}
-
 /// Each further message to the worker: a request and the number of the call, from 1 on.
 pub(super) type Call = (u64, Request);
 
 /// What is asked for. States go by numbers from 1 on; 0 is none.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
-    Instantiate {
-        name: CString,
-        guid: CString,
-        resources: CString,
-        debug: bool,
-    },
+    Instantiate { name: CString, guid: CString, resources: CString, debug: bool },
     Free,
-    /// Unloads the library.
-    Unload,
-    SetDebugLogging {
-        on: i32,
-        categories: Vec<CString>,
-    },
-    SetupExperiment {
-        tolerance: Option<f64>,
-        start: f64,
-        stop: Option<f64>,
-    },
+    Unload, // the library
+    SetDebugLogging { on: bool, categories: Vec<CString> },
+    SetupExperiment { tolerance: Option<f64>, start: f64, stop: Option<f64> },
     Plain(Plain),
-    DoStep {
-        time: f64,
-        step: f64,
-        keeps_no_state: i32,
-    },
-    GetReal {
-        references: Vec<u32>,
-    },
-    GetInteger {
-        references: Vec<u32>,
-    },
-    GetBoolean {
-        references: Vec<u32>,
-    },
-    GetString {
-        references: Vec<u32>,
-    },
-    SetReal {
-        references: Vec<u32>,
-        values: Vec<f64>,
-    },
-    SetInteger {
-        references: Vec<u32>,
-        values: Vec<i32>,
-    },
-    SetBoolean {
-        references: Vec<u32>,
-        values: Vec<i32>,
-    },
-    SetString {
-        references: Vec<u32>,
-        values: Vec<CString>,
-    },
-    SetInputDerivatives {
-        references: Vec<u32>,
-        orders: Vec<i32>,
-        values: Vec<f64>,
-    },
-    GetOutputDerivatives {
-        references: Vec<u32>,
-        orders: Vec<i32>,
-    },
-    DirectionalDerivative {
-        unknowns: Vec<u32>,
-        knowns: Vec<u32>,
-        seed: Vec<f64>,
-    },
-    GetState {
-        state: u64,
-    },
-    SetState {
-        state: u64,
-    },
-    FreeState {
-        state: u64,
-    },
-    StateSize {
-        state: u64,
-    },
-    SerializeState {
-        state: u64,
-        size: u64,
-    },
-    DeserializeState {
-        bytes: Vec<u8>,
-    },
-    RealStatus {
-        kind: i32,
-    },
-    BooleanStatus {
-        kind: i32,
-    },
+    DoStep { time: f64, step: f64 },
+    GetReal { references: Vec<u32> },
+    GetInteger { references: Vec<u32> },
+    GetBoolean { references: Vec<u32> },
+    GetString { references: Vec<u32> },
+    SetReal { references: Vec<u32>, values: Vec<f64> },
+    SetInteger { references: Vec<u32>, values: Vec<i32> },
+    SetBoolean { references: Vec<u32>, values: Vec<i32> },
+    SetString { references: Vec<u32>, values: Vec<CString> },
+    SetInputDerivatives { references: Vec<u32>, orders: Vec<i32>, values: Vec<f64> },
+    GetOutputDerivatives { references: Vec<u32>, orders: Vec<i32> },
+    DirectionalDerivative { unknowns: Vec<u32>, knowns: Vec<u32>, seed: Vec<f64> },
+    GetState { state: u64 },
+    SetState { state: u64 },
+    FreeState { state: u64 },
+    StateSize { state: u64 },
+    SerializeState { state: u64, size: u64 },
+    DeserializeState { bytes: Vec<u8> },
+    RealStatus { kind: i32 },
+    BooleanStatus { kind: i32 },
 }
 
 impl Request {
@@ -202,38 +130,40 @@ pub(super) enum Given {
     Reals(Vec<f64>),
     /// Little-endian: as numbers, small ones would travel in one byte each.
     Integers(Vec<[u8; 4]>),
-    Texts(Texts),
+    /// One behind the other, each with a zero at its end: however many, they take as many bytes as they have.
+    Texts(Vec<u8>),
     Bytes(Vec<u8>),
     Number(u64),
 }
 
 impl Given {
-    /// Integers.
     pub fn integers(values: Vec<i32>) -> Self {
         Self::Integers(values.into_iter().map(i32::to_le_bytes).collect())
     }
-}
 
-/// Texts one behind the other, each with a zero at its end: however many, they take as many bytes as they have.
-#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Texts(Vec<u8>);
-
-impl<'a> FromIterator<&'a CStr> for Texts {
-    fn from_iter<I: IntoIterator<Item = &'a CStr>>(texts: I) -> Self {
-        Self(texts.into_iter().flat_map(CStr::to_bytes_with_nul).copied().collect())
-    }
-}
-
-impl Texts {
-    /// Whether they are `count`, and whole.
-    pub fn are(&self, count: usize) -> bool {
-        self.0.last().is_none_or(|&last| last == 0) && self.pointers().count() == count
+    pub fn texts(texts: Vec<CString>) -> Self {
+        Self::Texts(texts.into_iter().flat_map(CString::into_bytes_with_nul).collect())
     }
 
-    /// Pointers to them, as C wants them; to those only that are whole.
-    pub fn pointers(&self) -> impl Iterator<Item = *const c_char> {
-        let texts = self.0.split_inclusive(|&byte| byte == 0);
-        texts.filter_map(|text| CStr::from_bytes_with_nul(text).ok()).map(CStr::as_ptr)
+    pub fn into_reals(self) -> Option<Vec<f64>> {
+        if let Self::Reals(values) = self { Some(values) } else { None }
+    }
+
+    pub fn into_integers(self) -> Option<Vec<i32>> {
+        let Self::Integers(values) = self else { return None };
+        Some(values.into_iter().map(i32::from_le_bytes).collect())
+    }
+
+    pub fn into_bytes(self) -> Option<Vec<u8>> {
+        if let Self::Bytes(bytes) = self { Some(bytes) } else { None }
+    }
+
+    /// The texts, if there are `count` and none is cut: memory is taken for as many as were asked for.
+    pub fn into_texts(self, count: usize) -> Option<Vec<CString>> {
+        let Self::Texts(bytes) = self else { return None };
+        let texts = || bytes.split_inclusive(|&byte| byte == 0).map(|text| CStr::from_bytes_with_nul(text).ok());
+        let is_whole = texts().count() == count && texts().all(|text| text.is_some());
+        is_whole.then(|| texts().flatten().map(CStr::to_owned).collect())
     }
 }
 
@@ -358,18 +288,20 @@ mod tests {
         let message = |given| frame(&Reply::Done { call: 1, status: 0, given }).unwrap().len();
         assert!(message(Given::integers(vec![0; count])) > size_of::<[u8; 4]>() * count);
         assert!(message(Given::Reals(vec![0.0; count])) > size_of::<f64>() * count);
-        let texts: Texts = std::iter::repeat_n(c"", count).collect();
-        assert_eq!(texts.0.len(), count, "nothing but the texts themselves");
-        assert!(texts.are(count) && !texts.are(1));
+        assert_eq!(
+            Given::texts(vec![CString::default(); count]),
+            Given::Texts(vec![0; count]),
+            "only the texts themselves"
+        );
     }
 
     #[test]
-    fn texts_that_are_not_whole_are_none() {
-        let texts: Texts = [c"one", c"", c"three"].into_iter().collect();
-        assert!(texts.are(3) && texts.pointers().count() == 3);
-        assert!(Texts::default().are(0));
-        let cut = Texts(b"one\0tw".to_vec());
-        assert!(!cut.are(1) && !cut.are(2) && cut.pointers().count() == 1);
+    fn texts_that_are_cut_or_of_another_number_are_none() {
+        let texts = vec![c"one".to_owned(), CString::default(), c"three".to_owned()];
+        assert_eq!(Given::texts(texts.clone()).into_texts(3), Some(texts.clone()));
+        assert_eq!(Given::texts(texts).into_texts(2), None);
+        assert_eq!(Given::texts(Vec::new()).into_texts(0), Some(Vec::new()));
+        assert_eq!(Given::Texts(b"one\0tw".to_vec()).into_texts(2), None);
     }
 
     #[cfg(unix)]

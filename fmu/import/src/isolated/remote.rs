@@ -1,21 +1,25 @@
-//! What stands behind the component of an isolated instance: its worker, and what has become of it.
+//! An isolated instance: each function is a message to its worker. What becomes of the worker is an error of the call.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
-use std::ffi::c_char;
+use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
 use std::ptr;
 use std::sync::Arc;
 
-use fmu_abi::{fmi2Component, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
+use fmu_abi::{fmi2Boolean, fmi2FMUstate, fmi2Fatal, fmi2Status, fmi2StatusKind};
 
-use super::Bounds;
+use super::bounds::Bounds;
 use super::ending::{Ending, How};
 use super::process::Process;
-use super::protocol::{Given, Plain, Request, Texts};
+use super::protocol::{Given, Request};
 use crate::logging::{Environment, LogRecord};
+use crate::slave::{Arguments, Loss, Plain, Slave, is_done};
 
 /// An instance in a worker.
-pub(super) struct Remote {
+pub(super) struct Remote(RefCell<State>);
+
+struct State {
     process: Process,
     path: PathBuf,
     bounds: Bounds,
@@ -28,8 +32,6 @@ pub(super) struct Remote {
     fate: Fate,
     /// Whether the last call was not passed on.
     is_refused: bool,
-    /// The Strings that the last call gave.
-    texts: Texts,
 }
 
 /// What has become of an instance.
@@ -40,49 +42,109 @@ enum Fate {
     Ended(Box<Ending>),
 }
 
-/// Why a call came back with `fmi2Fatal` though the FMU did not say so.
-pub(crate) enum Verdict {
-    /// Its worker ended, in this call or an earlier one.
-    Ended(Box<Ending>),
-    /// It was not called: it had reported a fatal error before.
-    Over,
-}
-
-/// The verdict on the last call of an isolated instance, if there is one.
-///
-/// # Safety
-/// `component` is that of a living isolated instance.
-pub(crate) unsafe fn verdict(component: fmi2Component) -> Option<Verdict> {
-    // SAFETY: as the caller promises.
-    let remote = unsafe { of(component) };
-    match &remote.fate {
-        Fate::Ended(ending) => Some(Verdict::Ended(ending.clone())),
-        Fate::Over if remote.is_refused => Some(Verdict::Over),
-        _ => None,
-    }
-}
-
 impl Remote {
-    pub fn new(process: Process, path: &Path, bounds: Bounds, name: String, environment: Arc<Environment>) -> Self {
-        let (path, time, times, texts) = (path.to_owned(), None, HashMap::new(), Texts::default());
-        Self { process, path, bounds, name, environment, time, times, fate: Fate::Alive, is_refused: false, texts }
-    }
-
-    /// The component, or NULL where the FMU refuses.
-    pub fn instantiate(mut self, request: &Request) -> Result<fmi2Component, Box<Ending>> {
-        let (_, given) = self.call("fmi2Instantiate", request);
-        match self.fate {
-            Fate::Ended(ending) => Err(ending),
-            _ if given == Given::Number(1) => Ok(Box::into_raw(Box::new(self)).cast()),
-            _ => Ok(ptr::null_mut()),
+    /// Makes an instance in a worker; none where the FMU refuses.
+    ///
+    /// # Errors
+    /// If the worker ends.
+    pub fn new(
+        process: Process,
+        (path, bounds): (&Path, Bounds),
+        arguments: &Arguments<'_>,
+        environment: &Arc<Environment>,
+    ) -> Result<Option<Self>, Box<Ending>> {
+        let remote = Self(RefCell::new(State {
+            process,
+            path: path.to_owned(),
+            bounds,
+            name: arguments.name.to_string_lossy().into_owned(),
+            environment: Arc::clone(environment),
+            time: None,
+            times: HashMap::new(),
+            fate: Fate::Alive,
+            is_refused: false,
+        }));
+        let request = Request::Instantiate {
+            name: arguments.name.to_owned(),
+            guid: arguments.guid.to_owned(),
+            resources: arguments.resources.to_owned(),
+            debug: arguments.debug,
+        };
+        let (_, given) = remote.call("fmi2Instantiate", &request);
+        match remote.loss() {
+            Some(Loss::Ended(ending)) => Err(ending),
+            _ => Ok((given == Given::Number(1)).then_some(remote)),
         }
     }
 
     /// Passes a call on; the status, and what the function gave.
-    pub fn call(&mut self, function: &str, request: &Request) -> (fmi2Status, Given) {
-        self.is_refused = !matches!(self.fate, Fate::Alive);
+    fn call(&self, function: &str, request: &Request) -> (fmi2Status, Given) {
+        self.0.borrow_mut().call(function, request)
+    }
+
+    /// Passes on a call that gives a status only.
+    fn done(&self, function: &str, request: &Request) -> fmi2Status {
+        self.call(function, request).0
+    }
+
+    /// Passes on a call that gives values: `read` reads them, and they are as many as `into` has.
+    fn fill<T>(
+        &self,
+        function: &str,
+        request: &Request,
+        into: &mut [T],
+        read: impl FnOnce(Given) -> Option<Vec<T>>,
+    ) -> fmi2Status {
+        let (status, given) = self.call(function, request);
+        if !is_done(status) {
+            return status;
+        }
+        match read(given) {
+            Some(values) if values.len() == into.len() => {
+                into.iter_mut().zip(values).for_each(|(place, value)| *place = value);
+                status
+            }
+            _ => {
+                let found = format!("something else than {} values", into.len());
+                self.0.borrow_mut().end(function, How::Garbled(found))
+            }
+        }
+    }
+
+    /// As [`Remote::fill`], for one number that counts or names something.
+    fn number(&self, function: &str, request: &Request, into: &mut u64) -> fmi2Status {
+        let read = |given| if let Given::Number(number) = given { Some(vec![number]) } else { None };
+        self.fill(function, request, std::slice::from_mut(into), read)
+    }
+
+    /// As [`Remote::number`], for the number of a state.
+    fn state(&self, function: &str, request: &Request, state: &mut fmi2FMUstate) -> fmi2Status {
+        let mut number = number_of(*state);
+        let status = self.number(function, request, &mut number);
+        *state = ptr::without_provenance_mut(usize::try_from(number).unwrap_or_default());
+        status
+    }
+}
+
+impl Drop for Remote {
+    fn drop(&mut self) {
+        // Nobody is told how it ends.
+        let _ = self.free();
+    }
+}
+
+impl State {
+    fn is_alive(&self) -> bool {
+        matches!(self.fate, Fate::Alive)
+    }
+
+    fn call(&mut self, function: &str, request: &Request) -> (fmi2Status, Given) {
+        self.is_refused = !self.is_alive();
         if self.is_refused {
             return (fmi2Fatal, Given::Nothing);
+        }
+        if let Request::DoStep { time, .. } = request {
+            self.time = Some(*time);
         }
         let environment = &self.environment;
         let log = |record: LogRecord| environment.take(record.cut());
@@ -103,7 +165,7 @@ impl Remote {
     fn follow(&mut self, request: &Request, given: &Given) {
         match (request, given) {
             (Request::SetupExperiment { start, .. }, _) => self.time = Some(*start),
-            (Request::DoStep { time, step, .. }, _) => self.time = Some(time + step),
+            (Request::DoStep { time, step }, _) => self.time = Some(time + step),
             (Request::Plain(Plain::Reset), _) => self.time = None,
             (Request::GetState { .. }, Given::Number(state)) => drop(self.times.insert(*state, self.time)),
             (Request::DeserializeState { .. }, Given::Number(state)) => drop(self.times.insert(*state, None)),
@@ -111,11 +173,6 @@ impl Remote {
             (Request::FreeState { state }, _) => drop(self.times.remove(state)),
             _ => {}
         }
-    }
-
-    /// As [`Remote::call`] for functions that give a status only.
-    pub fn plain(&mut self, function: &str, request: &Request) -> fmi2Status {
-        self.call(function, request).0
     }
 
     #[cold]
@@ -131,104 +188,148 @@ impl Remote {
         }));
         fmi2Fatal
     }
+}
 
-    /// Puts what a call gave where the caller wants it.
-    pub fn fill<T: Number>(
-        &mut self,
-        function: &str,
-        (status, given): (fmi2Status, Given),
-        into: &mut [T],
-    ) -> fmi2Status {
-        if !is_done(status) {
-            return status;
-        }
-        match T::of(given) {
-            Some(values) if values.len() == into.len() => {
-                into.copy_from_slice(&values);
-                status
-            }
-            _ => self.end(function, How::Garbled(format!("something else than {} values", into.len()))),
+impl Slave for Remote {
+    fn loss(&self) -> Option<Loss> {
+        let state = self.0.borrow();
+        match &state.fate {
+            Fate::Ended(ending) => Some(Loss::Ended(ending.clone())),
+            Fate::Over if state.is_refused => Some(Loss::Over),
+            _ => None,
         }
     }
 
-    /// As [`Remote::fill`] for one number that counts or names something.
-    pub fn number(&mut self, function: &str, (status, given): (fmi2Status, Given)) -> (fmi2Status, u64) {
-        match given {
-            Given::Number(number) => (status, number),
-            _ if !is_done(status) => (status, 0),
-            _ => (self.end(function, How::Garbled("something else than a number".to_owned())), 0),
+    fn free(&self) -> Result<(), Box<Ending>> {
+        if self.0.borrow().is_alive() {
+            self.done("fmi2FreeInstance", &Request::Free);
+            self.done("unloading the library", &Request::Unload);
         }
-    }
-
-    /// Steps from `time` by `step`, s.
-    pub fn step(&mut self, time: f64, step: f64, keeps_no_state: i32) -> fmi2Status {
-        if matches!(self.fate, Fate::Alive) {
-            self.time = Some(time);
+        let mut state = self.0.borrow_mut();
+        if let Fate::Ended(ending) = &state.fate {
+            return Err(ending.clone());
         }
-        self.plain("fmi2DoStep", &Request::DoStep { time, step, keeps_no_state })
+        state.fate = Fate::Over;
+        Ok(())
     }
 
-    /// Keeps texts until the next ones; pointers to them.
-    pub fn keep(&mut self, texts: Texts) -> impl Iterator<Item = *const c_char> {
-        self.texts = texts;
-        self.texts.pointers()
+    fn plain(&self, function: Plain) -> fmi2Status {
+        self.done(function.name(), &Request::Plain(function))
     }
 
-    /// Ends a worker that has sent `what`.
-    pub fn garbled(&mut self, function: &str, what: &str) -> fmi2Status {
-        self.end(function, How::Garbled(what.to_owned()))
+    fn set_debug_logging(&self, on: bool, categories: &[&CStr]) -> fmi2Status {
+        let categories = categories.iter().map(|&name| name.to_owned()).collect();
+        self.done("fmi2SetDebugLogging", &Request::SetDebugLogging { on, categories })
     }
 
-    /// Frees the instance and unloads the library.
-    pub fn free(&mut self) {
-        if !matches!(self.fate, Fate::Alive) {
-            return;
-        }
-        self.plain("fmi2FreeInstance", &Request::Free);
-        self.plain("unloading the library", &Request::Unload);
-        if matches!(self.fate, Fate::Alive) {
-            self.fate = Fate::Over;
-        }
+    fn setup_experiment(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> fmi2Status {
+        self.done("fmi2SetupExperiment", &Request::SetupExperiment { tolerance, start, stop })
+    }
+
+    fn do_step(&self, time: f64, step: f64) -> fmi2Status {
+        self.done("fmi2DoStep", &Request::DoStep { time, step })
+    }
+
+    fn get_real(&self, references: &[u32], values: &mut [f64]) -> fmi2Status {
+        self.fill("fmi2GetReal", &Request::GetReal { references: references.into() }, values, Given::into_reals)
+    }
+
+    fn set_real(&self, references: &[u32], values: &[f64]) -> fmi2Status {
+        self.done("fmi2SetReal", &Request::SetReal { references: references.into(), values: values.into() })
+    }
+
+    fn get_integer(&self, references: &[u32], values: &mut [i32]) -> fmi2Status {
+        self.fill(
+            "fmi2GetInteger",
+            &Request::GetInteger { references: references.into() },
+            values,
+            Given::into_integers,
+        )
+    }
+
+    fn set_integer(&self, references: &[u32], values: &[i32]) -> fmi2Status {
+        self.done("fmi2SetInteger", &Request::SetInteger { references: references.into(), values: values.into() })
+    }
+
+    fn get_boolean(&self, references: &[u32], values: &mut [fmi2Boolean]) -> fmi2Status {
+        self.fill(
+            "fmi2GetBoolean",
+            &Request::GetBoolean { references: references.into() },
+            values,
+            Given::into_integers,
+        )
+    }
+
+    fn set_boolean(&self, references: &[u32], values: &[fmi2Boolean]) -> fmi2Status {
+        self.done("fmi2SetBoolean", &Request::SetBoolean { references: references.into(), values: values.into() })
+    }
+
+    fn get_string(&self, references: &[u32], values: &mut [CString]) -> fmi2Status {
+        let (request, count) = (Request::GetString { references: references.into() }, values.len());
+        self.fill("fmi2GetString", &request, values, |given| given.into_texts(count))
+    }
+
+    fn set_string(&self, references: &[u32], values: &[CString]) -> fmi2Status {
+        self.done("fmi2SetString", &Request::SetString { references: references.into(), values: values.into() })
+    }
+
+    fn set_input_derivatives(&self, references: &[u32], orders: &[i32], values: &[f64]) -> fmi2Status {
+        let (references, orders, values) = (references.into(), orders.into(), values.into());
+        self.done("fmi2SetRealInputDerivatives", &Request::SetInputDerivatives { references, orders, values })
+    }
+
+    fn get_output_derivatives(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> fmi2Status {
+        let request = Request::GetOutputDerivatives { references: references.into(), orders: orders.into() };
+        self.fill("fmi2GetRealOutputDerivatives", &request, values, Given::into_reals)
+    }
+
+    fn directional_derivative(&self, of: &[u32], by: &[u32], seed: &[f64], result: &mut [f64]) -> fmi2Status {
+        let request = Request::DirectionalDerivative { unknowns: of.into(), knowns: by.into(), seed: seed.into() };
+        self.fill("fmi2GetDirectionalDerivative", &request, result, Given::into_reals)
+    }
+
+    fn real_status(&self, kind: fmi2StatusKind, value: &mut f64) -> fmi2Status {
+        let value = std::slice::from_mut(value);
+        self.fill("fmi2GetRealStatus", &Request::RealStatus { kind }, value, Given::into_reals)
+    }
+
+    fn boolean_status(&self, kind: fmi2StatusKind, value: &mut fmi2Boolean) -> fmi2Status {
+        let value = std::slice::from_mut(value);
+        self.fill("fmi2GetBooleanStatus", &Request::BooleanStatus { kind }, value, Given::into_integers)
+    }
+
+    fn get_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
+        self.state("fmi2GetFMUstate", &Request::GetState { state: number_of(*state) }, state)
+    }
+
+    fn set_state(&self, state: fmi2FMUstate) -> fmi2Status {
+        self.done("fmi2SetFMUstate", &Request::SetState { state: number_of(state) })
+    }
+
+    fn free_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
+        let state = std::mem::replace(state, ptr::null_mut());
+        self.done("fmi2FreeFMUstate", &Request::FreeState { state: number_of(state) })
+    }
+
+    fn state_size(&self, state: fmi2FMUstate, size: &mut usize) -> fmi2Status {
+        let mut number = 0;
+        let request = Request::StateSize { state: number_of(state) };
+        let status = self.number("fmi2SerializedFMUstateSize", &request, &mut number);
+        *size = usize::try_from(number).unwrap_or(usize::MAX);
+        status
+    }
+
+    fn serialize_state(&self, state: fmi2FMUstate, bytes: &mut [u8]) -> fmi2Status {
+        let request = Request::SerializeState { state: number_of(state), size: bytes.len() as u64 };
+        self.fill("fmi2SerializeFMUstate", &request, bytes, Given::into_bytes)
+    }
+
+    fn deserialize_state(&self, bytes: &[u8], state: &mut fmi2FMUstate) -> fmi2Status {
+        self.state("fmi2DeSerializeFMUstate", &Request::DeserializeState { bytes: bytes.into() }, state)
     }
 }
 
-fn is_done(status: fmi2Status) -> bool {
-    status == fmi2OK || status == fmi2Warning
-}
-
-/// Numbers that getters give.
-pub(super) trait Number: Copy {
-    fn of(given: Given) -> Option<Vec<Self>>;
-}
-
-impl Number for f64 {
-    fn of(given: Given) -> Option<Vec<Self>> {
-        if let Given::Reals(values) = given { Some(values) } else { None }
-    }
-}
-
-impl Number for i32 {
-    fn of(given: Given) -> Option<Vec<Self>> {
-        let Given::Integers(values) = given else { return None };
-        Some(values.into_iter().map(i32::from_le_bytes).collect())
-    }
-}
-
-/// Frees an instance ahead of its component, so that it can be seen whether that does harm.
-///
-/// # Safety
-/// `component` is that of a living isolated instance.
-pub(crate) unsafe fn free(component: fmi2Component) -> Option<Verdict> {
-    // SAFETY: as the caller promises.
-    let remote = unsafe { of(component) };
-    remote.free();
-    // SAFETY: as above.
-    unsafe { verdict(component) }.filter(|verdict| matches!(verdict, Verdict::Ended(_)))
-}
-
-/// # Safety
-/// `component` is that of a living isolated instance, which no other thread uses.
-pub(super) unsafe fn of<'a>(component: fmi2Component) -> &'a mut Remote {
-    // SAFETY: as the caller promises; `Remote::instantiate` has made it.
-    unsafe { &mut *component.cast::<Remote>() }
+/// The number of a state: here the pointer to it is a number, which nobody follows.
+fn number_of(state: fmi2FMUstate) -> u64 {
+    state.addr() as u64
 }

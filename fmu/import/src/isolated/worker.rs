@@ -1,4 +1,4 @@
-//! The worker: a process that loads the library of an FMU and serves one instance of it.
+//! The worker: a process that loads the library of an FMU and serves one instance.
 
 use std::io::{self, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,7 +31,7 @@ pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> i
     };
     let log = Arc::clone(&replies);
     let environment = Environment::new(Some(Box::new(move |record| {
-        // Nobody is left to be told if this fails.
+        // An error cannot be reported to anybody.
         let _ = send(&mut *log.lock().unwrap_or_else(PoisonError::into_inner), &Reply::Log(record.clone()));
     })));
     let mut session = Session::new(&functions, environment);
@@ -44,13 +44,13 @@ pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> i
         }
         let (status, given) = session.answer(request);
         if std::process::id() != this {
-            // A copy that the FMU has made of this process: it must neither answer nor read what comes next.
+            // The FMU has forked this process: the copy must neither answer nor read requests.
             confine::vanish();
         }
         say(&Reply::Done { call, status, given })?;
     }
-    // The process ends: nothing is to run any more that the FMU may have left to be run.
-    std::mem::forget(library);
+    // The process ends: destructors of the FMU must not run.
+    std::mem::forget((library, session));
     Ok(())
 }
 
@@ -65,7 +65,7 @@ mod confine {
 
     use super::Opening;
 
-    /// How often the worker looks whether there is anybody to work for: the FMU may be in a call without end.
+    /// Polling interval for the end of the host: the FMU may be in a call without end.
     const LOOK: Duration = Duration::from_millis(500);
 
     /// Bounds what this process may take, and ends it when the host is gone.
@@ -94,7 +94,7 @@ mod confine {
         io::Error::other(format!("cannot bound {what}: {}", io::Error::from(cause)))
     }
 
-    /// Ends this process at once: what the FMU has left to be run is the original's.
+    /// Ends this process at once, without destructors: they are the original's.
     pub fn vanish() -> ! {
         let _ = kill_process(getpid(), Signal::KILL);
         std::process::abort()

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::{Result, attribute, integer, optional, raw, real};
+use super::element::{Element, missing, not_allowed};
+use super::{EnumerationItem, EnumerationType, Result};
 
 /// What a variable takes over from its type.
 #[derive(Default)]
@@ -16,39 +17,29 @@ pub(super) struct SimpleType {
     pub is_enumeration: bool,
 }
 
-/// A text of a type, which is shown with each of its variables.
-///
-/// # Errors
-/// If it is too long for that.
-pub(super) fn shared(place: &str, name: &'static str, text: String) -> Result<String> {
-    const LONGEST: usize = 1024;
-    let is_short = text.len() <= LONGEST;
-    if is_short { Ok(text) } else { Err(attribute(place, name, &text, format!("at most {LONGEST} bytes"))) }
-}
-
 /// Type definitions by name; of those that share one, the first.
 pub(super) struct Types(HashMap<String, SimpleType>);
 
 impl Types {
-    pub fn of(types: Vec<raw::SimpleType>) -> Result<Self> {
-        let mut all = HashMap::with_capacity(types.len());
-        for raw in types {
-            let Some(name) = raw.name else { continue };
+    pub fn read(root: &Element<'_>) -> Result<Self> {
+        let mut all = HashMap::new();
+        for element in root.list("TypeDefinitions", "SimpleType")? {
+            let Some(name) = element.attribute("name")? else { continue };
             if all.contains_key(&name) {
                 continue;
             }
             let place = format!("type \"{name}\"");
-            let mut read = SimpleType { is_enumeration: raw.enumeration.is_some(), ..SimpleType::default() };
-            if let Some(it) = raw.real {
-                let number = |name, text: Option<String>| optional(text.as_deref(), |text| real(&place, name, text));
-                read.real = [number("min", it.min)?, number("max", it.max)?];
-                read.unit = it.unit.map(|unit| shared(&place, "unit", unit).map(Arc::from)).transpose()?;
+            let mut simple =
+                SimpleType { is_enumeration: element.child("Enumeration")?.is_some(), ..SimpleType::default() };
+            if let Some(it) = element.child("Real")? {
+                simple.real = [it.real(&place, "min")?, it.real(&place, "max")?];
+                simple.unit =
+                    it.attribute("unit")?.map(|unit| shared(&place, "unit", unit)).transpose()?.map(Arc::from);
             }
-            if let Some(it) = raw.integer {
-                let number = |name, text: Option<String>| optional(text.as_deref(), |text| integer(&place, name, text));
-                read.integer = [number("min", it.min)?, number("max", it.max)?];
+            if let Some(it) = element.child("Integer")? {
+                simple.integer = [it.integer(&place, "min")?, it.integer(&place, "max")?];
             }
-            all.insert(name, read);
+            all.insert(name, simple);
         }
         Ok(Self(all))
     }
@@ -64,4 +55,33 @@ impl Types {
         names.sort_unstable();
         names
     }
+}
+
+/// The enumeration types, in file order.
+pub(super) fn enumerations(root: &Element<'_>) -> Result<Vec<EnumerationType>> {
+    let mut all = Vec::new();
+    for element in root.list("TypeDefinitions", "SimpleType")? {
+        let Some(enumeration) = element.child("Enumeration")? else { continue };
+        let name = element.required("SimpleType", "name")?;
+        let place = format!("enumeration \"{name}\"");
+        let items = enumeration.children("Item").map(|item| enumeration_item(item, &place)).collect::<Result<_>>()?;
+        all.push(EnumerationType { name, items });
+    }
+    Ok(all)
+}
+
+fn enumeration_item(item: &Element<'_>, place: &str) -> Result<EnumerationItem> {
+    let value = item.integer(place, "value")?.ok_or_else(|| missing(place, "value in an Item"))?;
+    let name = item.attribute("name")?.ok_or_else(|| missing(place, "name in an Item"))?;
+    Ok(EnumerationItem { name: shared(place, "name", name)?, value, description: item.attribute("description")? })
+}
+
+/// A text of a type, which is shown with each of its variables.
+///
+/// # Errors
+/// If it is too long for that.
+fn shared(place: &str, name: &'static str, text: String) -> Result<String> {
+    const LONGEST: usize = 1024;
+    let is_short = text.len() <= LONGEST;
+    if is_short { Ok(text) } else { Err(not_allowed(place, name, &text, &format!("at most {LONGEST} bytes"))) }
 }

@@ -1,4 +1,4 @@
-//! Archives that appear whole, several processes at it or not, and leave nothing of those that were killed.
+//! Files that several processes may write at once, atomically; unfinished files of killed processes are removed.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -10,20 +10,19 @@ use tempfile::NamedTempFile;
 use super::error::{PackageError, Result};
 use videg_system::atomic_file::{self, LockError, Part};
 
-/// How an archive that is not complete is called: these, its name, and letters that no other process has.
+/// Name of an unfinished file: these around the name of the file and random letters.
 const PREFIX: &str = ".videg-";
 const SUFFIX: &str = ".part";
-/// How many letters.
+/// Number of the letters.
 const LETTERS: usize = 6;
 
-/// Writes a file beside its place and moves it there, so that nobody ever sees half of it. Several processes may do so at
-/// once: the last one has its way. What others began and were killed at goes.
-pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
+/// Writes a file under another name and renames it. Of several processes that do so at once, the last one wins.
+pub(super) fn write_shared(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
     let prefix = format!("{PREFIX}{}-", path.file_name().unwrap_or_default().to_string_lossy());
-    // Before there is anything new: on a full disk they take the room.
-    remove_rests(folder, &prefix);
+    // First, since a full disk needs their room.
+    remove_abandoned(folder, &prefix);
     let begun = Part::begin(|| {
         new_file(folder, &prefix).map(|file| {
             let name = file.path().to_owned();
@@ -37,17 +36,16 @@ pub(super) fn put(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Removes what processes began under this prefix that are no more: they held a lock on it. What cannot be removed does not
-/// keep anybody from writing anew.
-fn remove_rests(folder: &Path, prefix: &str) {
+/// Removes the unfinished files with this prefix whose processes have ended: they held locks. A file that cannot be removed is left.
+fn remove_abandoned(folder: &Path, prefix: &str) {
     let Ok(entries) = fs::read_dir(folder) else { return };
-    for entry in entries.flatten().filter(|entry| is_rest(&entry.file_name(), prefix)) {
+    for entry in entries.flatten().filter(|entry| is_unfinished(&entry.file_name(), prefix)) {
         let _ = atomic_file::remove_abandoned(&entry.path());
     }
 }
 
-/// Whether a file is called like one that is not complete: another archive may be called like the beginning of this one.
-fn is_rest(name: &OsStr, prefix: &str) -> bool {
+/// Whether this is the name of an unfinished file; that of another archive may begin with the same prefix.
+fn is_unfinished(name: &OsStr, prefix: &str) -> bool {
     let letters = name.to_str().and_then(|name| name.strip_prefix(prefix)?.strip_suffix(SUFFIX));
     letters.is_some_and(|letters| letters.len() == LETTERS && letters.bytes().all(|c| c.is_ascii_alphanumeric()))
 }
@@ -62,7 +60,7 @@ fn new_file(folder: &Path, prefix: &str) -> io::Result<NamedTempFile> {
         let file = builder.tempfile_in(folder)?;
         match atomic_file::own(file.as_file(), file.path()) {
             Ok(true) => return Ok(file),
-            // Before it was locked, another process took it for a rest.
+            // Before it was locked, another process took it for an abandoned one.
             Ok(false) | Err(LockError::Busy) => {}
             Err(error) => return Err(error.into()),
         }
@@ -76,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rests_of_killed_processes_go_and_what_others_write_and_own_stays() {
+    fn unfinished_files_of_killed_processes_are_removed_and_all_others_stay() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("Toy.fmu");
         let file = |name: &str| -> PathBuf {
@@ -84,7 +82,7 @@ mod tests {
             fs::write(&path, "half").unwrap();
             path
         };
-        let rests = [".videg-Toy.fmu-abc123.part", ".videg-Toy.fmu-XYZ789.part"].map(file);
+        let abandoned = [".videg-Toy.fmu-abc123.part", ".videg-Toy.fmu-XYZ789.part"].map(file);
         let at_work = file(".videg-Toy.fmu-def456.part");
         let held = atomic_file::lock(&at_work).unwrap();
         let others = [
@@ -95,22 +93,22 @@ mod tests {
             ".videg-Toy.fmu-abc123",
         ]
         .map(file);
-        put(&path, b"whole").unwrap();
-        assert!(rests.iter().all(|rest| !rest.exists()));
+        write_shared(&path, b"first").unwrap();
+        assert!(abandoned.iter().all(|file| !file.exists()));
         assert!(at_work.exists() && others.iter().all(|other| other.exists()));
-        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(fs::read(&path).unwrap(), b"first");
         drop(held);
-        put(&path, b"again").unwrap();
+        write_shared(&path, b"again").unwrap();
         assert!(!at_work.exists());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1 + others.len());
     }
 
     #[test]
-    fn what_is_being_written_is_named_and_locked_so_that_others_leave_it() {
+    fn an_unfinished_file_is_locked_so_that_others_leave_it() {
         let folder = tempfile::tempdir().unwrap();
         let file = new_file(folder.path(), ".videg-Toy.fmu-").unwrap();
-        assert!(is_rest(file.path().file_name().unwrap(), ".videg-Toy.fmu-"));
-        remove_rests(folder.path(), ".videg-Toy.fmu-");
+        assert!(is_unfinished(file.path().file_name().unwrap(), ".videg-Toy.fmu-"));
+        remove_abandoned(folder.path(), ".videg-Toy.fmu-");
         assert!(file.path().exists());
     }
 }
