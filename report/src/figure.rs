@@ -89,13 +89,7 @@ pub struct Panel<'a> {
 impl<'a> Panel<'a> {
     /// A panel of 130 px with automatic ranges and no series.
     pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
-        Self {
-            title: title.into(),
-            x_label: x_label.into(),
-            y_label: y_label.into(),
-            height: 130.0,
-            ..Self::default()
-        }
+        Self { title: title.into(), x_label: x_label.into(), y_label: y_label.into(), height: 130.0, ..Self::default() }
     }
 
     /// Sets the ends of the x axis.

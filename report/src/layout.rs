@@ -190,19 +190,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn panels_that_share_take_the_union_of_their_ranges() {
-        let (early, late) = ([(0.0, 1.0), (1.0, 2.0)], [(3.0, 1.0), (4.0, 2.0)]);
-        let figure = Figure::new("")
-            .panel(Panel::new("", "", "").series(Series::points("", &early)).share_x_with_next())
-            .panel(Panel::new("", "t", "").series(Series::points("", &late)))
-            .panel(Panel::new("", "t", "").series(Series::points("", &late)));
-        let plan = plan(&figure).unwrap();
-        let ends: Vec<_> = plan.panels.iter().map(|p| (p.x.low, p.x.high)).collect();
-        assert_eq!(ends, [(0.0, 4.0), (0.0, 4.0), (3.0, 4.0)]);
-        assert_eq!(plan.panels[0].bottom, 0.0);
-    }
-
-    #[test]
     fn the_y_range_is_that_of_the_window() {
         let line = [(0.0, 0.0), (1.0, 1.0), (2.0, 50.0)];
         let panel = Panel::new("", "", "").series(Series::points("", &line)).x_range(0.0, 1.0);
@@ -225,21 +212,21 @@ mod tests {
     }
 
     #[test]
-    fn x_axes_are_shared_down_the_columns() {
+    fn panels_that_share_down_a_column_take_the_union_of_their_ranges() {
         let (early, late) = ([(0.0, 1.0), (1.0, 2.0)], [(3.0, 1.0), (4.0, 2.0)]);
         let panel = |points| Panel::new("", "", "").series(Series::points("", points));
-        let figure = Figure::new("")
-            .columns(2)
-            .panel(panel(&early).share_x_with_next())
-            .panel(panel(&early))
-            .panel(panel(&late))
-            .panel(panel(&late));
-        let plan = plan(&figure).unwrap();
-        let ends: Vec<_> = plan.panels.iter().map(|p| (p.x.low, p.x.high)).collect();
-        assert_eq!(ends, [(0.0, 4.0), (0.0, 1.0), (0.0, 4.0), (3.0, 4.0)]);
-        let tops: Vec<f64> = plan.panels.iter().map(|p| p.top).collect();
+        let figure = Figure::new("").panel(panel(&early).share_x_with_next()).panel(panel(&late)).panel(panel(&late));
+        let ends = |plan: &Plan| plan.panels.iter().map(|p| (p.x.low, p.x.high)).collect::<Vec<_>>();
+        let one = plan(&figure).unwrap();
+        assert_eq!(ends(&one), [(0.0, 4.0), (0.0, 4.0), (3.0, 4.0)]);
+        assert_eq!(one.panels[0].bottom, 0.0);
+        let figure = Figure::new("").columns(2).panel(panel(&early).share_x_with_next()).panel(panel(&early));
+        let figure = figure.panel(panel(&late)).panel(panel(&late));
+        let two = plan(&figure).unwrap();
+        assert_eq!(ends(&two), [(0.0, 4.0), (0.0, 1.0), (0.0, 4.0), (3.0, 4.0)]);
+        let tops: Vec<f64> = two.panels.iter().map(|p| p.top).collect();
         assert!(tops[0] == tops[1] && tops[1] < tops[2] && tops[2] == tops[3]);
-        assert!(plan.panels[0].frame.1 < plan.panels[1].frame.0);
+        assert!(two.panels[0].frame.1 < two.panels[1].frame.0);
     }
 
     #[test]

@@ -83,9 +83,6 @@ pub(super) trait Slave {
     }
 
     /// Frees an isolated instance ahead of its states.
-    ///
-    /// # Errors
-    /// If its process ends by that, or has ended before.
     fn free(&self) -> Result<(), Box<Ending>> {
         Ok(())
     }

@@ -4,7 +4,9 @@ use std::io;
 use std::process::{ChildStdin, ChildStdout};
 use std::time::Duration;
 
-/// What came of waiting for bytes.
+pub(super) use ends::Pipes;
+
+/// Result of waiting for bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Heard {
     /// Some have come.
@@ -13,35 +15,6 @@ pub(super) enum Heard {
     Nothing,
     /// The other side has closed.
     End,
-}
-
-/// Both pipes.
-pub(super) struct Pipes(ends::Ends);
-
-impl Pipes {
-    /// Takes over the pipes of a child.
-    ///
-    /// # Errors
-    /// If the system refuses.
-    pub fn new(requests: ChildStdin, replies: ChildStdout) -> io::Result<Self> {
-        ends::Ends::new(requests, replies).map(Self)
-    }
-
-    /// Writes the beginning of `bytes`, waiting at most `wait`; says how many.
-    ///
-    /// # Errors
-    /// If the other side has closed.
-    pub fn write(&mut self, bytes: &[u8], wait: Duration) -> io::Result<usize> {
-        self.0.write(bytes, wait)
-    }
-
-    /// Appends what has come to `bytes`, waiting at most `wait`.
-    ///
-    /// # Errors
-    /// If the pipe cannot be read.
-    pub fn read(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> io::Result<Heard> {
-        self.0.read(bytes, wait)
-    }
 }
 
 /// Bytes that are read at once.
@@ -56,13 +29,15 @@ mod ends {
 
     use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, io};
 
-    pub struct Ends {
+    /// Both pipes.
+    pub struct Pipes {
         requests: ChildStdin,
         replies: ChildStdout,
         chunk: Box<[u8]>,
     }
 
-    impl Ends {
+    impl Pipes {
+        /// Takes over the pipes of a child.
         pub fn new(requests: ChildStdin, replies: ChildStdout) -> io::Result<Self> {
             // These are the ends of this process alone: those of the worker go on to block.
             rustix::io::ioctl_fionbio(&requests, true)?;
@@ -70,6 +45,7 @@ mod ends {
             Ok(Self { requests, replies, chunk: vec![0; CHUNK].into() })
         }
 
+        /// Writes the beginning of `bytes`, waiting at most `wait`; says how many.
         pub fn write(&mut self, bytes: &[u8], wait: Duration) -> io::Result<usize> {
             match self.requests.write(bytes) {
                 Err(cause) if cause.kind() == ErrorKind::WouldBlock => {
@@ -81,6 +57,7 @@ mod ends {
             }
         }
 
+        /// Appends what has come to `bytes`, waiting at most `wait`.
         pub fn read(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> io::Result<Heard> {
             if !is_ready(&self.replies, PollFlags::IN, wait)? {
                 return Ok(Heard::Nothing);
@@ -118,12 +95,13 @@ mod ends {
 
     use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, io};
 
-    pub struct Ends {
+    /// Both pipes.
+    pub struct Pipes {
         requests: ChildStdin,
         replies: Receiver<Vec<u8>>,
     }
 
-    impl Ends {
+    impl Pipes {
         pub fn new(requests: ChildStdin, mut replies: ChildStdout) -> io::Result<Self> {
             let (sender, receiver) = sync_channel(1);
             std::thread::Builder::new().spawn(move || {

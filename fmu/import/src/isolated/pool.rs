@@ -25,9 +25,6 @@ pub(crate) struct Pool {
 
 impl Pool {
     /// For the FMU at `path`, unpacked into `folder` with its library at `entry`; starts the first worker.
-    ///
-    /// # Errors
-    /// If the worker cannot be started or the library not be loaded.
     pub fn new(mut isolation: Isolation, path: &Path, folder: &Path, entry: &str) -> Result<Self> {
         isolation.bounds = isolation.bounds.in_force();
         let opening = Opening {
@@ -63,9 +60,6 @@ impl Pool {
     }
 
     /// Makes an instance in a worker of its own; none if the FMU refuses.
-    ///
-    /// # Errors
-    /// If the worker cannot be started, or ends.
     pub fn instantiate(
         &self,
         arguments: &Arguments<'_>,

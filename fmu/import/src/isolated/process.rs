@@ -40,9 +40,6 @@ struct Printed {
 
 impl Process {
     /// Starts a worker in `folder`.
-    ///
-    /// # Errors
-    /// If the system refuses.
     pub fn start(program: &Path, folder: &Path) -> io::Result<Self> {
         let mut command = Command::new(program);
         command.arg(WORKER_VERB).current_dir(folder);
@@ -57,9 +54,6 @@ impl Process {
     }
 
     /// Tells the worker what it is for and returns what it says to that. After an error the worker is gone.
-    ///
-    /// # Errors
-    /// What happened to it.
     pub fn open(&mut self, opening: &Opening, limit: Option<Duration>) -> Result<Reply, How> {
         let framed = frame(&build()).and_then(|first| Ok([first, frame(opening)?].concat()));
         self.ask(framed, SPARE, &mut Deadline::after(limit), |_| ())
@@ -67,9 +61,6 @@ impl Process {
 
     /// Has a call carried out, which must be done within `limit`; its status, and what else it gave. `log` gets the
     /// records on the way. After an error the worker is gone.
-    ///
-    /// # Errors
-    /// What happened to it.
     pub fn call(
         &mut self,
         request: &Request,

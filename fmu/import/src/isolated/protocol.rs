@@ -168,9 +168,6 @@ impl Given {
 }
 
 /// A message as it travels.
-///
-/// # Errors
-/// If it is longer than any may be.
 pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut frame = postcard::to_extend(message, vec![0; HEAD]).map_err(io::Error::other)?;
     let length = frame.len() - HEAD;
@@ -183,9 +180,6 @@ pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
 }
 
 /// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is there as a whole.
-///
-/// # Errors
-/// A length that no message has; a message that is none.
 pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) -> io::Result<Option<T>> {
     let Some(&head) = bytes.first_chunk::<HEAD>() else { return Ok(None) };
     let end = HEAD + length(head, longest)?;
@@ -196,18 +190,12 @@ pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) 
 }
 
 /// Writes a message.
-///
-/// # Errors
-/// If it is too long or cannot be written.
 pub(super) fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
     writer.write_all(&frame(message)?)?;
     writer.flush()
 }
 
 /// Reads a message; none if the other side has closed.
-///
-/// # Errors
-/// If it cannot be read, or is none.
 pub(super) fn receive<T: DeserializeOwned>(reader: &mut impl Read) -> io::Result<Option<T>> {
     let mut head = Vec::with_capacity(HEAD);
     reader.by_ref().take(HEAD as u64).read_to_end(&mut head)?;

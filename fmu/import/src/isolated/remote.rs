@@ -44,9 +44,6 @@ enum Fate {
 
 impl Remote {
     /// Makes an instance in a worker; none where the FMU refuses.
-    ///
-    /// # Errors
-    /// If the worker ends.
     pub fn new(
         process: Process,
         (path, bounds): (&Path, Bounds),
