@@ -162,7 +162,7 @@ mod tests {
     fn each_page_has_its_text_loads_nothing_and_has_a_row_for_every_variable() {
         for fmu in FMUS {
             let (description, page, _) = described(fmu.identifier);
-            for heading in ["What it is", "Equations", "How it is solved", "Assumptions and limits", "Parameters"] {
+            for heading in ["Purpose", "Equations", "How it is solved", "Assumptions and limits", "Parameters"] {
                 assert!(page.contains(&format!(">{heading}</h")), "{}: {heading}", fmu.identifier);
             }
             for variable in &description.variables {
