@@ -75,7 +75,7 @@ fn check(name: &'static str, result: Result<String, String>) -> CheckResult {
     CheckResult { name, passed, detail: result.unwrap_or_else(|reason| reason) }
 }
 
-/// CheckList in their order, up to the first that fails.
+/// Results of the checks in their order, up to the first that fails.
 #[derive(Default)]
 struct CheckList {
     done: Vec<CheckResult>,
