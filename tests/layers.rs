@@ -70,11 +70,6 @@ const TO_MEND: &[&str] = &[
     "model/src/harvester/events.rs",
     "model/src/harvester/phase.rs",
     "model/src/harvester/tangent.rs",
-    "src/cli/crosscheck.rs",
-    "src/cli/crosscheck_files.rs",
-    "src/cli/crosscheck_picture.rs",
-    "src/cli/crosscheck_report.rs",
-    "src/cli/crosscheck_solve.rs",
 ];
 
 fn repository() -> &'static Path {

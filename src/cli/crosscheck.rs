@@ -2,17 +2,21 @@
 
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use videg_circuit::{Settings, names};
+use videg_circuit::names;
 
 use super::options::RunOptions;
-use super::run_output::{RunOutput, file_list, heading};
-use super::{Exit, crosscheck_files as files, crosscheck_report as page, crosscheck_solve as solve, output, packaging};
-use crate::cosim::{Charges, CircuitSummary, Energies};
-use crate::crosscheck::{Case, Check, Compared, Pulses, Repeat, Solver, Stop, Sweep};
+use super::progress::TaskBar;
+use super::run_output::{self, RunOutput, file_list, heading};
+use super::{Exit, crosscheck_report as page, output, packaging};
+use crate::cosim::{Charges, CircuitSample, CircuitSummary, Energies};
+use crate::crosscheck::{
+    self, ComparedCircuit, Crosscheck, Options, QuantityCheck, ReleaseSweep, Repeat, Solver, Stop, export, files,
+};
 use crate::ngspice::{Ngspice, Waveforms};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::Setting;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -62,45 +66,6 @@ impl Arguments {
     }
 }
 
-/// A finished crosscheck.
-pub struct Finished {
-    /// What was run.
-    pub scenario: Scenario,
-    /// The mechanics.
-    pub case: Case,
-    /// What the circuit asked for is called.
-    pub label: String,
-    /// The circuit asked for.
-    pub settings: Settings,
-    /// It by every solver.
-    pub runs: Vec<(Solver, Waveforms)>,
-    /// The single pulses, in order of their height.
-    pub pulses: Option<Pulses>,
-    /// Their peaks on an open circuit, by solver.
-    pub open: Vec<(Solver, Vec<f64>)>,
-    /// The circuit asked for and others.
-    pub compared: Vec<Compared>,
-    /// Everything checked.
-    pub checks: Vec<Check>,
-    /// The sweep, if asked for.
-    pub sweep: Option<Sweep>,
-    /// Runs of ngspice that ended too early.
-    pub stops: Vec<Stop>,
-    /// Runs of ngspice that took changes to get to their end.
-    pub repeats: Vec<Repeat>,
-    /// What it comes to.
-    pub conclusion: Vec<String>,
-    /// What the user should know before believing the numbers.
-    pub warnings: Vec<String>,
-}
-
-impl Finished {
-    /// Whether ngspice got to the end everywhere, and all solvers agree.
-    pub fn passed(&self) -> bool {
-        self.stops.is_empty() && !self.checks.iter().any(Check::failed)
-    }
-}
-
 /// A solver in `--json`.
 #[derive(Serialize)]
 struct SolverOutput {
@@ -122,15 +87,15 @@ struct Output<'a> {
     summary: CircuitSummary,
     solvers: Vec<SolverOutput>,
     passed: bool,
-    checks: &'a [Check],
-    comparison: &'a [Compared],
-    sweep: &'a Option<Sweep>,
+    checks: &'a [QuantityCheck],
+    comparison: &'a [ComparedCircuit],
+    sweep: &'a Option<ReleaseSweep>,
     stopped: &'a [Stop],
     repeated: &'a [Repeat],
     conclusion: &'a [String],
 }
 
-/// The solver whose books stand at the top level: its energy balance closes to 1e-9.
+/// The solver of the energies at the top level: its energy balance closes to 1e-9.
 const TOP_LEVEL: Solver = Solver::Exponential;
 
 /// Runs the verb.
@@ -138,71 +103,62 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = options.scenario_with(arguments.settings())?;
     if let Some(folder) = &arguments.export {
-        files::check_export(folder)?;
+        export::check(folder)?;
     }
     let ngspice = Ngspice::find(None)?;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
-    let finished = solve::follow(&fmu, scenario, &ngspice, arguments.sweep)?;
-    let mut written = files::write(&folder, &finished)?;
+    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    let bar = TaskBar::new(scenario.name.clone());
+    let (harvester, ngspice, sweep) = (&fmu, &ngspice, arguments.sweep);
+    let options_of_run = Options { harvester, scenario: &scenario, ngspice, program: &program, sweep };
+    let found = crosscheck::run(&options_of_run, &bar)?;
+    bar.finish();
+    let (mut written, figures) = files::write(&folder, &found)?;
+    let html = folder.join("report.html");
+    output::write(&html, page::html(&found, figures)?)?;
+    written.extend([html, folder.join("result.json")]);
     if let Some(folder) = &arguments.export {
-        written.extend(files::export(folder, &finished)?);
+        written.extend(export::write(folder, &found)?);
     }
-    let json = serde_json::to_string_pretty(&json(&finished, &written))?;
-    output::write(&folder.join("result.json"), &json)?;
-    if options.json {
-        output::print_json(&json)?;
-    } else {
-        output::print(&text(&finished, &written))?;
-    }
-    output::warn(&finished.warnings);
-    Ok(if finished.passed() { Exit::Passed } else { Exit::Failed })
+    run_output::conclude(&folder, options.json, &json(&found, &written), &text(&found, &written), &found.warnings)?;
+    Ok(if found.passed() { Exit::Passed } else { Exit::Failed })
 }
 
-/// `C_2` of the left membrane and the `C_3` of the largest impact, F; a pulse by a half where there is none.
-pub fn capacitances(case: &Case) -> [f64; 2] {
-    let ratio = case.impacts.iter().map(|impact| impact.ratio).fold(1.0, f64::max);
-    let c2 = case.rest[0];
-    [c2, c2 * if ratio > 1.0 { ratio } else { 1.5 }]
-}
-
-fn json<'a>(finished: &'a Finished, files: &'a [PathBuf]) -> Output<'a> {
-    let eq13 = finished.case.mechanics.energy_eq13;
-    let top = finished.runs.iter().find(|(solver, _)| *solver == TOP_LEVEL).map(|(_, run)| run.summary(eq13));
+fn json<'a>(found: &'a Crosscheck, files: &'a [PathBuf]) -> Output<'a> {
+    let eq13 = found.mechanics.summary.energy_eq13;
+    let solver = |(solver, run): &(Solver, Waveforms)| {
+        let CircuitSummary { energy, charge } = run.summary(eq13);
+        let reached = run.time.last().copied().unwrap_or_default();
+        SolverOutput { name: solver.key(), energy, charge, time_points: run.points, reached }
+    };
+    let top_level = found.run(TOP_LEVEL).map_or_else(CircuitSample::default, Waveforms::last);
     Output {
-        run: RunOutput::new(&finished.scenario, finished.case.mechanics, &finished.warnings, files),
-        circuit: &finished.label,
+        run: RunOutput::new(&found.scenario, found.mechanics.summary, &found.warnings, files),
+        circuit: &found.label,
         energy_by: TOP_LEVEL.key(),
-        summary: top.unwrap_or_else(|| CircuitSummary::new(&crate::cosim::CircuitSample::default(), eq13)),
-        solvers: finished
-            .runs
-            .iter()
-            .map(|(solver, run)| {
-                let CircuitSummary { energy, charge } = run.summary(eq13);
-                let reached = run.time.last().copied().unwrap_or_default();
-                SolverOutput { name: solver.key(), energy, charge, time_points: run.points, reached }
-            })
-            .collect(),
-        passed: finished.passed(),
-        checks: &finished.checks,
-        comparison: &finished.compared,
-        sweep: &finished.sweep,
-        stopped: &finished.stops,
-        repeated: &finished.repeats,
-        conclusion: &finished.conclusion,
+        summary: CircuitSummary::new(&top_level, eq13),
+        solvers: found.runs.iter().map(solver).collect(),
+        passed: found.passed(),
+        checks: &found.checks,
+        comparison: &found.compared,
+        sweep: &found.sweep,
+        stopped: &found.stops,
+        repeated: &found.repeats,
+        conclusion: &found.conclusion,
     }
 }
 
-fn text(finished: &Finished, files: &[PathBuf]) -> String {
+fn text(found: &Crosscheck, files: &[PathBuf]) -> Vec<String> {
     let mut parts = vec![
-        format!("{}\ncircuit: {}", heading("crosscheck", &finished.scenario), finished.label),
-        page::check_table(finished),
-        page::pair_table(finished),
-        page::claim_table(finished),
-        page::comparison_table(finished),
+        format!("{}\ncircuit: {}", heading("crosscheck", &found.scenario), found.label),
+        page::check_table(found),
+        page::pair_table(found),
+        page::claim_table(found),
+        page::comparison(found).text(),
     ];
-    parts.extend(page::sweep_table(finished));
-    parts.push(finished.conclusion.join("\n\n"));
+    parts.extend(page::sweep(found).map(|sheet| sheet.text()));
+    parts.push(found.conclusion.join("\n\n"));
     parts.push(file_list(files));
-    parts.join("\n\n")
+    parts
 }

@@ -1,14 +1,11 @@
 //! The tables of a crosscheck, as text and in the HTML report.
 
-use super::crosscheck::Finished;
-use super::crosscheck_picture::{OVERLAY_CAPTION, SWEEP_CAPTION};
-use super::{format, output, run_output};
+use super::format::{Sheet, significant};
+use super::{output, run_output};
 use crate::cosim::Energies;
-use crate::crosscheck::{Agreement, Check, Claim, Compared, Solver};
-use videg_report::{self, Column, Report, ReportError, Section, Table};
-
-/// Significant digits of values.
-const DIGITS: usize = 5;
+use crate::crosscheck::figures::{OVERLAY_CAPTION, SWEEP_CAPTION};
+use crate::crosscheck::{Agreement, ComparedCircuit, Crosscheck, QuantityCheck, Solver, SweepCurve};
+use videg_report::{self, ReportError, Section};
 
 const HEADINGS: [&str; 9] = [
     "quantity",
@@ -22,6 +19,16 @@ const HEADINGS: [&str; 9] = [
     "claim",
 ];
 
+/// A value of a check in the unit of its table.
+fn value(check: &QuantityCheck, value: Option<f64>) -> String {
+    let (_, factor) = scaled(check.unit);
+    value.map_or_else(String::new, |value| number(factor * value))
+}
+
+fn number(value: f64) -> String {
+    significant(value, 5)
+}
+
 /// Unit that people read, and the factor to it.
 fn scaled(unit: &'static str) -> (&'static str, f64) {
     match unit {
@@ -31,198 +38,147 @@ fn scaled(unit: &'static str) -> (&'static str, f64) {
     }
 }
 
-fn solvers(agreement: &Agreement) -> String {
-    let verdict = if agreement.agree { "agree" } else { "FAILED" };
-    format!("{verdict}: {:.1e} of {:.0e}", agreement.deviation, agreement.tolerance)
+fn unit(check: &QuantityCheck) -> String {
+    scaled(check.unit).0.to_owned()
 }
 
-fn claim(claim: &Claim) -> String {
-    let verdict = if claim.holds { "holds" } else { "does not hold" };
-    format!("{verdict}: {} ({:+.2} %)", claim.says, 100.0 * claim.deviation)
+fn solvers(check: &QuantityCheck) -> String {
+    let text = |agreement: &Agreement| {
+        let verdict = if agreement.agree { "agree" } else { "FAILED" };
+        format!("{verdict}: {:.1e} of {:.0e}", agreement.deviation, agreement.tolerance)
+    };
+    check.agreement.as_ref().map(text).unwrap_or_default()
 }
 
-fn cells(check: &Check) -> Vec<String> {
-    let (unit, factor) = scaled(check.unit);
-    let value =
-        |value: Option<f64>| value.map_or_else(String::new, |value| format::significant(factor * value, DIGITS));
-    let mut row = vec![check.name.clone(), unit.to_owned(), value(check.analytic)];
-    row.extend(Solver::ALL.map(|solver| value(check.values.get(solver))));
-    row.push(check.agreement.as_ref().map(solvers).unwrap_or_default());
-    row.push(check.claim.as_ref().map(claim).unwrap_or_default());
+fn verdict(holds: bool) -> &'static str {
+    if holds { "holds" } else { "does not hold" }
+}
+
+/// Quantity, unit, values and agreement of a check.
+fn cells(check: &QuantityCheck) -> Vec<String> {
+    let mut row = vec![check.name.clone(), unit(check), value(check, check.analytic)];
+    row.extend(Solver::ALL.map(|solver| value(check, check.values.get(solver))));
+    row.push(solvers(check));
     row
 }
 
-/// The quantities that every solver was asked for, as text. Claims have a table of their own: a terminal is not wide
-/// enough for both.
-pub fn check_table(finished: &Finished) -> String {
-    let headings: Vec<_> = HEADINGS.iter().map(|heading| heading.replace(' ', "\n")).collect();
-    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    let mut table = format::table(&headings[..headings.len() - 1]);
-    for check in finished.checks.iter().filter(|check| check.agreement.is_some() && by_all(check)) {
-        let row = cells(check);
-        table.add_row(format::row(&row[..row.len() - 1]));
-    }
-    table.to_string()
+/// Whether every solver was asked, not ngspice and one other alone.
+fn is_by_all(check: &QuantityCheck) -> bool {
+    check.values.get(Solver::Ideal).is_some()
 }
 
-/// Whether more was asked than ngspice and one other.
-fn by_all(check: &Check) -> bool {
-    check.values.embedded_ideal.is_some()
+/// The quantities by every solver, as text. Claims have a table of their own: a terminal is not wide enough for both.
+pub fn check_table(found: &Crosscheck) -> String {
+    let checks = found.checks.iter().filter(|check| check.agreement.is_some() && is_by_all(check));
+    Sheet::new(HEADINGS.into_iter().take(8), &[], checks.map(cells).collect()).narrow(" ")
 }
 
 /// The quantities by ngspice and one other, closed form or embedded solver, as text.
-pub fn pair_table(finished: &Finished) -> String {
-    let mut table =
-        format::table(&["ngspice against closed form or embedded solver", "unit", "other", "ngspice", "solvers"]);
-    for check in finished.checks.iter().filter(|check| !by_all(check)) {
-        let (unit, factor) = scaled(check.unit);
-        let value = |value: Option<f64>| value.map(|v| format::significant(factor * v, DIGITS)).unwrap_or_default();
-        let other = value(check.values.embedded_exponential.or(check.analytic));
-        let verdict = check.agreement.as_ref().map(solvers).unwrap_or_default();
-        let row = [check.name.clone(), unit.to_owned(), other, value(check.values.ngspice_batch), verdict];
-        table.add_row(format::row(&row));
-    }
-    table.to_string()
+pub fn pair_table(found: &Crosscheck) -> String {
+    let rows = found.checks.iter().filter(|check| !is_by_all(check)).map(|check| {
+        let other = value(check, check.values.get(Solver::Exponential).or(check.analytic));
+        vec![check.name.clone(), unit(check), other, value(check, check.values.get(Solver::Batch)), solvers(check)]
+    });
+    let headings = ["ngspice against closed form or embedded solver", "unit", "other", "ngspice", "solvers"];
+    Sheet::new(headings, &[], rows.collect()).text()
 }
 
-/// What the paper and the closed forms say, and whether it holds, as text.
-pub fn claim_table(finished: &Finished) -> String {
-    let mut table = format::table(&["claim", "unit", "closed form", "ngspice", "deviation", "verdict"]);
-    for check in &finished.checks {
-        let Some(claim) = &check.claim else { continue };
-        let (unit, factor) = scaled(check.unit);
-        let value = |value: Option<f64>| value.map(|v| format::significant(factor * v, DIGITS)).unwrap_or_default();
-        let verdict = if claim.holds { "holds" } else { "does not hold" };
-        let row = [
+/// The claims of the paper and of the closed forms, and whether they hold, as text.
+pub fn claim_table(found: &Crosscheck) -> String {
+    let rows = found.checks.iter().filter_map(|check| {
+        let claim = check.claim.as_ref()?;
+        Some(vec![
             claim.says.clone(),
-            unit.to_owned(),
-            value(check.analytic),
-            value(check.values.ngspice_batch),
+            unit(check),
+            value(check, check.analytic),
+            value(check, check.values.get(Solver::Batch)),
             format!("{:+.2} %", 100.0 * claim.deviation),
-            verdict.to_owned(),
-        ];
-        table.add_row(format::row(&row));
-    }
-    table.to_string()
+            verdict(claim.holds).to_owned(),
+        ])
+    });
+    Sheet::new(["claim", "unit", "closed form", "ngspice", "deviation", "verdict"], &[], rows.collect()).text()
 }
 
-/// An energy that is compared: its name, and how to read it.
+/// An energy that is compared: heading and value.
 type Energy = (&'static str, fn(&Energies) -> f64);
 
 const ENERGIES: [Energy; 6] = [
-    ("supply", |energy| energy.supply),
-    ("Zener", |energy| energy.zener),
-    ("diode", |energy| energy.diode),
-    ("load", |energy| energy.load),
-    ("converted", |energy| energy.converted),
-    ("surplus", |energy| energy.surplus),
+    ("supply, mJ", |energy| energy.supply),
+    ("Zener, mJ", |energy| energy.zener),
+    ("diode, mJ", |energy| energy.diode),
+    ("load, mJ", |energy| energy.load),
+    ("converted, mJ", |energy| energy.converted),
+    ("surplus, mJ", |energy| energy.surplus),
 ];
 
-fn comparison_headings() -> Vec<String> {
-    let energies = ENERGIES.iter().map(|(name, _)| format!("{name}, mJ"));
-    ["circuit", "solver"]
-        .map(str::to_owned)
-        .into_iter()
-        .chain(energies)
-        .chain(["quick release, mJ".to_owned()])
-        .collect()
-}
-
-fn comparison_rows(compared: &[Compared]) -> Vec<Vec<String>> {
-    let row = |circuit: &Compared, solver: &str, energy: &Energies| {
-        let values = ENERGIES.iter().map(|(_, value)| format::significant(1e3 * value(energy), DIGITS));
-        let closed = format::significant(1e3 * circuit.closed_form, DIGITS);
-        [circuit.label.clone(), solver.to_owned()].into_iter().chain(values).chain([closed]).collect()
+/// The paper's circuit, the switch and the storage.
+pub fn comparison(found: &Crosscheck) -> Sheet {
+    let row = |circuit: &ComparedCircuit, solver: &str, energy: &Energies| {
+        let values = ENERGIES.iter().map(|(_, value)| value(energy)).chain([circuit.closed_form]);
+        let values = values.map(|value| number(1e3 * value));
+        [circuit.label.clone(), solver.to_owned()].into_iter().chain(values).collect()
     };
-    compared
-        .iter()
-        .flat_map(|circuit| {
-            [row(circuit, "embedded", &circuit.embedded.energy), row(circuit, "ngspice", &circuit.ngspice.energy)]
-        })
-        .collect()
+    let rows = found.compared.iter().flat_map(|circuit| {
+        [row(circuit, "embedded", &circuit.embedded.energy), row(circuit, "ngspice", &circuit.ngspice.energy)]
+    });
+    let energies = ENERGIES.iter().map(|(name, _)| *name);
+    let headings = ["circuit", "solver"].into_iter().chain(energies).chain(["quick release, mJ"]);
+    Sheet::new(headings, &[0, 1], rows.collect())
 }
 
-/// The paper's circuit, the switch and the storage, as text.
-pub fn comparison_table(finished: &Finished) -> String {
-    let headings = comparison_headings();
-    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    let mut table = format::table(&headings);
-    for row in comparison_rows(&finished.compared) {
-        table.add_row(format::row(&row));
-    }
-    table.to_string()
-}
-
-const SWEEP: [&str; 6] = [
-    "circuit",
-    "most converted at, V",
-    "predicted, V",
-    "converted there, mJ",
-    "surplus there, mJ",
-    "ngspice at the predicted, mJ",
-];
-
-fn sweep_rows(finished: &Finished) -> Option<Vec<Vec<String>>> {
-    let sweep = finished.sweep.as_ref()?;
-    let row = |curve: &crate::crosscheck::Curve| {
+/// The best voltages of release.
+pub fn sweep(found: &Crosscheck) -> Option<Sheet> {
+    let sweep = found.sweep.as_ref()?;
+    let row = |curve: &SweepCurve| {
         let (best, top) = curve.best()?;
         let predicted = sweep.predicted[usize::from(curve.circuit.starts_with("isolated"))];
         let witness = curve.witnesses.first().map_or(f64::NAN, |point| point.converted);
         let numbers = [top, predicted, 1e3 * best.converted, 1e3 * best.surplus, 1e3 * witness];
-        let numbers = numbers.map(|value| format::significant(value, 5));
-        Some(std::iter::once(curve.circuit.clone()).chain(numbers).collect())
+        Some(std::iter::once(curve.circuit.clone()).chain(numbers.map(number)).collect())
     };
-    Some(sweep.voltage.iter().filter_map(row).collect())
-}
-
-/// The best voltages of release, as text.
-pub fn sweep_table(finished: &Finished) -> Option<String> {
-    let mut table = format::table(&SWEEP);
-    for row in sweep_rows(finished)? {
-        table.add_row(format::row(&row));
-    }
-    Some(table.to_string())
-}
-
-fn html_table(headings: &[impl AsRef<str>], words: &[usize], rows: Vec<Vec<String>>) -> Table {
-    let columns = headings.iter().enumerate().map(|(k, heading)| {
-        let heading = heading.as_ref();
-        if words.contains(&k) { Column::words(heading) } else { Column::numbers(heading) }
-    });
-    rows.into_iter().fold(Table::new(columns), Table::row)
+    let headings = [
+        "circuit",
+        "most converted at, V",
+        "predicted, V",
+        "converted there, mJ",
+        "surplus there, mJ",
+        "ngspice at the predicted, mJ",
+    ];
+    Some(Sheet::new(headings, &[0], sweep.voltage.iter().filter_map(row).collect()))
 }
 
 /// The HTML report; `figures` are the overlay and, if there is a sweep, that of the sweep.
-pub fn html(finished: &Finished, figures: Vec<String>) -> Result<String, ReportError> {
-    let scenario = &finished.scenario;
-    let report = Report::new(
-        format!("Crosscheck of {}", scenario.name),
-        format!("{}; 0 to {} s; circuit: {}.", scenario.description, scenario.until, finished.label),
-    )
-    .command(output::command_line())
-    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")));
-    videg_report::render_html(&sections(finished, figures).into_iter().fold(report, Report::section))
+pub fn html(found: &Crosscheck, figures: Vec<String>) -> Result<String, ReportError> {
+    let scenario = &found.scenario;
+    let title = format!("Crosscheck of {}", scenario.name);
+    let subtitle = format!("{}; 0 to {} s; circuit: {}.", scenario.description, scenario.until, found.label);
+    let report = output::report(title, subtitle);
+    videg_report::render_html(&sections(found, figures).into_iter().fold(report, videg_report::Report::section))
 }
 
 /// The sections of the report.
-pub fn sections(finished: &Finished, figures: Vec<String>) -> Vec<Section> {
-    let mut result = Section::new("Conclusion");
-    for warning in &finished.warnings {
-        result = result.warning(warning.clone());
-    }
-    let result = finished.conclusion.iter().fold(result, |section, paragraph| section.text(paragraph.clone()));
-    let checks = html_table(&HEADINGS, &[0, 1, 7, 8], finished.checks.iter().map(cells).collect());
-    let compared = html_table(&comparison_headings(), &[0, 1], comparison_rows(&finished.compared));
+pub fn sections(found: &Crosscheck, figures: Vec<String>) -> Vec<Section> {
+    let conclusion = found.warnings.iter().cloned().fold(Section::new("Conclusion"), Section::warning);
+    let conclusion = found.conclusion.iter().cloned().fold(conclusion, Section::text);
+    let checks = found.checks.iter().map(|check| {
+        let claim = check
+            .claim
+            .as_ref()
+            .map(|claim| format!("{}: {} ({:+.2} %)", verdict(claim.holds), claim.says, 100.0 * claim.deviation));
+        cells(check).into_iter().chain([claim.unwrap_or_default()]).collect()
+    });
+    let checks = Sheet::new(HEADINGS, &[0, 1, 7, 8], checks.collect());
+    let mechanics = run_output::mechanics(&found.scenario, &found.mechanics.summary);
     let mut figures = figures.into_iter();
     let mut sections = vec![
-        result,
-        Section::new("Claim by claim").text(LEGEND).table(checks),
-        Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(compared),
+        conclusion,
+        Section::new("Claim by claim").text(LEGEND).table(checks.html()),
+        Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(comparison(found).html()),
         Section::new("Embedded solver and ngspice").figure(figures.next().unwrap_or_default(), OVERLAY_CAPTION),
-        Section::new("Mechanics").table(run_output::mechanics(&finished.scenario, &finished.case.mechanics).html()),
+        Section::new("Mechanics").table(mechanics.html()),
     ];
-    if let Some((rows, figure)) = sweep_rows(finished).zip(figures.next()) {
-        let section = Section::new("Net gain over voltage of release and load").table(html_table(&SWEEP, &[0], rows));
+    if let Some((sheet, figure)) = sweep(found).zip(figures.next()) {
+        let section = Section::new("Net gain over voltage of release and load").table(sheet.html());
         sections.push(section.figure(figure, SWEEP_CAPTION));
     }
     sections

@@ -10,8 +10,9 @@ use serde::Serialize;
 use super::interruption::Interruption;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
-use super::{Exit, crosscheck_files, crosscheck_solve, format, output, packaging, picture, reproduce_files as files};
+use super::{Exit, format, output, packaging, picture, reproduce_files as files};
 use crate::cosim::{Cosimulation, CsvRecorder, Options};
+use crate::crosscheck;
 use crate::ngspice::Ngspice;
 use crate::paper::{self, Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
 use crate::progress::Progress;
@@ -103,7 +104,7 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
         during(&bar, AUDIT, "where the energy goes", || book.audit(&fmu))?;
     }
     if wanted.has(CROSSCHECK) {
-        during(&bar, CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK)))?;
+        during(&bar, CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK), &bar))?;
     }
     bar.finish();
     let passed = !book.solvers_disagree && !book.findings().any(|finding| finding.verdict == Verdict::Differs);
@@ -195,7 +196,7 @@ impl Book<'_> {
     }
 
     /// All claims in ngspice, if it is there. Where it was asked for by name, it must be there.
-    fn crosscheck(&mut self, fmu: &Fmu, must: bool) -> anyhow::Result<()> {
+    fn crosscheck(&mut self, fmu: &Fmu, must: bool, progress: &dyn Progress) -> anyhow::Result<()> {
         let ngspice = match Ngspice::find(None) {
             Ok(ngspice) => ngspice,
             Err(error) if must => return Err(error.into()),
@@ -207,11 +208,19 @@ impl Book<'_> {
         let folder = self.folder.join(CROSSCHECK);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
-        let finished = crosscheck_solve::follow(fmu, scenario, &ngspice, false)?;
-        self.solvers_disagree = !finished.passed();
-        let (files, figures) = crosscheck_files::write_data(&folder, &finished)?;
-        self.warnings.extend(finished.warnings.iter().cloned());
-        self.chapters.push(Chapter::crosscheck(CROSSCHECK, &finished, figures, files));
+        let program = std::env::current_exe().context("cannot find this program's own file")?;
+        let options = crosscheck::Options {
+            harvester: fmu,
+            scenario: &scenario,
+            ngspice: &ngspice,
+            program: &program,
+            sweep: false,
+        };
+        let found = crosscheck::run(&options, progress)?;
+        self.solvers_disagree = !found.passed();
+        let (files, figures) = crosscheck::files::write(&folder, &found)?;
+        self.warnings.extend(found.warnings.iter().cloned());
+        self.chapters.push(Chapter::crosscheck(CROSSCHECK, &found, figures, files));
         Ok(())
     }
 

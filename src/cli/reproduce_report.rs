@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{cosim_report, crosscheck, crosscheck_report, format, output};
+use super::{cosim_report, crosscheck_report, format, output};
 use crate::cosim::Results;
+use crate::crosscheck::Crosscheck;
 use crate::paper::{Artefact, Finding, Verdict};
 use fmu_import::Fmu;
 use videg_report::{self, Cell, Column, Drawing, Report, Section, Table, Tone};
@@ -47,16 +48,11 @@ impl Chapter {
     }
 
     /// What ngspice says.
-    pub fn crosscheck(
-        name: &'static str,
-        finished: &crosscheck::Finished,
-        figures: Vec<String>,
-        files: Vec<PathBuf>,
-    ) -> Self {
+    pub fn crosscheck(name: &'static str, found: &Crosscheck, figures: Vec<String>, files: Vec<PathBuf>) -> Self {
         let title = "Crosscheck with ngspice";
-        let lead = format!("{}; circuit: {}.", finished.scenario.description, finished.label);
+        let lead = format!("{}; circuit: {}.", found.scenario.description, found.label);
         let mut sections = vec![Section::new(title).id(name).text(lead)];
-        sections.extend(crosscheck_report::sections(finished, figures));
+        sections.extend(crosscheck_report::sections(found, figures));
         Self { name, title, findings: Vec::new(), files, sections }
     }
 }

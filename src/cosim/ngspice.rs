@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::ngspice::live::{Job, Ramp, Worker};
-use crate::ngspice::{Books, CapacitanceSource, Elements, PICO, Run};
+use crate::ngspice::{CapacitanceSource, Elements, PICO, Run, TrapezoidalLedger};
 
 /// Real time that ngspice may take from one communication point to the next. It takes some 10 us for a time step of its
 /// own; a step of this length hangs.
@@ -15,8 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub struct NgspiceCircuit {
     label: String,
     worker: Worker,
-    elements: Elements,
-    books: Books,
+    ledger: TrapezoidalLedger,
 }
 
 impl NgspiceCircuit {
@@ -45,8 +44,7 @@ impl NgspiceCircuit {
         };
         let worker = Worker::start(program, &job, PATIENCE)
             .map_err(|cause| CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause.into()) })?;
-        let books = Books::new(elements, capacitance);
-        Ok(Self { label: label.to_owned(), worker, elements: *elements, books })
+        Ok(Self { label: label.to_owned(), worker, ledger: TrapezoidalLedger::new(elements, capacitance) })
     }
 }
 
@@ -58,17 +56,13 @@ impl CircuitSlave for NgspiceCircuit {
     fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
         let pico = |capacitance: [f64; 2]| capacitance.map(|c| c / PICO).to_vec();
         let ramp = Ramp { from: time, to: time + step, start: pico(start), end: pico(end) };
-        let (elements, books) = (&self.elements, &mut self.books);
+        let ledger = &mut self.ledger;
         self.worker
-            .step(&ramp, |time, values| {
-                if let Some(instant) = Books::instant(elements, time, values) {
-                    books.take(&instant);
-                }
-            })
+            .step(&ramp, |time, values| ledger.add(time, values))
             .map_err(|cause| CosimError::Ngspice { label: self.label.clone(), cause: Box::new(cause.into()) })
     }
 
     fn sample(&self) -> Result<CircuitSample, CosimError> {
-        Ok(self.books.sample())
+        Ok(self.ledger.sample())
     }
 }

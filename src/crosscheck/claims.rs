@@ -2,53 +2,38 @@
 
 use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
-use super::peaks::{Pulses, charges, largest_deviation, node_capacitances};
-use super::{Agreement, Case, Check, Claim, Impact, Solver, Values};
+use super::check::{Agreement, Claim, IDEAL_DIODES, QuantityCheck, SAME_DIODES, Values};
+use super::mechanics::MechanicalRun;
+use super::pulses::{Pulses, charges, largest_deviation};
+use super::solver::Solver;
 use crate::ngspice::Waveforms;
 
-/// A claim holds up to this, relative: the paper gives its powers in two or three digits.
-const CLAIM: f64 = 0.02;
-/// What of the energy moved the two ways of booking may disagree on.
-const BOOKS: f64 = 1e-4;
-
-/// What was found out about the circuit asked for.
+/// Results of the circuit asked for.
 pub struct Findings<'a> {
     /// The mechanics.
-    pub case: &'a Case,
+    pub mechanics: &'a MechanicalRun,
     /// The circuit.
     pub settings: &'a Settings,
     /// The circuit by solver.
     pub runs: &'a [(Solver, Waveforms)],
     /// The single pulses, if there are any.
     pub pulses: Option<&'a Pulses>,
-    /// By solver, the peak voltage after each of them when nothing lets the charge out, V.
+    /// By solver, the peak voltage after each of them on an open circuit, V.
     pub open: &'a [(Solver, Vec<f64>)],
 }
 
-/// What is checked of the single pulses on an open circuit.
-pub fn pulse_checks(findings: &Findings<'_>) -> Vec<Check> {
-    findings.voltages()
-}
+/// The scales of deviations: for solvers, and for claims whose closed form is 0.
+type Scales = [f64; 2];
 
-/// Everything that is checked of the circuit asked for.
-pub fn checks(findings: &Findings<'_>) -> Vec<Check> {
-    let mut checks = findings.charges();
-    checks.extend(findings.energies());
-    checks.extend(findings.conversion());
-    checks.push(findings.waveforms());
-    checks.push(findings.books());
-    checks
-}
-
-/// A claim about a value of ngspice, relative to the claim or, where that is nothing, to `scale`.
-fn hold(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim> {
-    let found = values.ngspice_batch?;
+/// A claim about a value of ngspice, relative to the closed form or, where that is nothing, to `scale`.
+fn claim(says: &str, analytic: f64, values: &Values, scale: f64) -> Option<Claim> {
+    let found = values.get(Solver::Batch)?;
     let (says, scale) = if analytic.abs() > 1e-3 * scale {
         (says.to_owned(), analytic.abs())
     } else {
         (format!("{says}, relative to the supply"), scale)
     };
-    Some(Claim::new(says, (found - analytic) / scale, CLAIM))
+    Some(Claim::new(says, (found - analytic) / scale, Claim::TOLERANCE))
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -56,8 +41,16 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 impl Findings<'_> {
-    /// The waveforms by a solver.
-    pub fn run(&self, solver: Solver) -> Option<&Waveforms> {
+    /// All checks but those of the single pulses.
+    pub fn checks(&self) -> Vec<QuantityCheck> {
+        let mut checks = self.charges();
+        checks.extend(self.energies());
+        checks.extend(self.conversion());
+        checks.extend([self.waveforms(), self.work()]);
+        checks
+    }
+
+    fn run(&self, solver: Solver) -> Option<&Waveforms> {
         self.runs.iter().find(|(other, _)| *other == solver).map(|(_, waveforms)| waveforms)
     }
 
@@ -73,23 +66,25 @@ impl Findings<'_> {
         self.settings.circuit.topology
     }
 
-    /// A check of solvers relative to `moved`, and of a claim that comes to nothing relative to `supplied`.
+    /// Sum over the impacts of a closed form of the node's `C_2` and `C_3`.
+    fn sum(&self, closed_form: impl Fn(f64, f64) -> f64) -> f64 {
+        self.mechanics.sum(self.topology(), closed_form)
+    }
+
     fn scaled(
         &self,
         name: &str,
         unit: &'static str,
         values: Values,
-        [moved, supplied]: [f64; 2],
-        claim: Option<(&str, f64)>,
-    ) -> Check {
-        let leaked = self.in_unit(self.case.leaked_charge(self.settings), unit);
-        Check {
-            name: name.to_owned(),
-            unit,
-            analytic: claim.map(|(_, analytic)| analytic),
-            values,
+        [moved, supplied]: Scales,
+        closed_form: Option<(&str, f64)>,
+    ) -> QuantityCheck {
+        let leaked = self.in_unit(self.mechanics.leaked_charge(self.settings), unit);
+        QuantityCheck {
+            analytic: closed_form.map(|(_, analytic)| analytic),
             agreement: Agreement::of(&values, Some(moved), leaked),
-            claim: claim.and_then(|(says, analytic)| hold(says, analytic, &values, supplied)),
+            claim: closed_form.and_then(|(says, analytic)| claim(says, analytic, &values, supplied)),
+            ..QuantityCheck::new(name, unit, values)
         }
     }
 
@@ -98,196 +93,160 @@ impl Findings<'_> {
         if unit == "C" { charge } else { charge * self.supply_voltage() }
     }
 
-    /// Smallest scale of deviations of an energy, J, or a charge, C.
-    fn least(&self, unit: &str) -> f64 {
-        self.in_unit(self.case.least_charge(self.settings), unit)
+    /// Scales of differences of energies, J, by ngspice: the larger of the energies from the supply and to the load, and the
+    /// energy from the supply.
+    fn scales(&self) -> Scales {
+        let ledger = self.run(Solver::Batch).map_or_else(Ledger::default, Waveforms::ledger);
+        [ledger.load, 0.0].map(|load| self.mechanics.energy_scale(self.settings, ledger.supply, load))
     }
 
-    /// What differences of energies are relative to, J, by ngspice: the larger of what the supply gives and the load gets,
-    /// for solvers; what the supply gives, for claims.
-    fn scales(&self) -> [f64; 2] {
-        let [supply, load] = self.run(Solver::Batch).map_or([0.0; 2], |waveforms| {
-            let ledger = waveforms.ledger();
-            [ledger.supply, ledger.load]
-        });
-        [load, 0.0].map(|load| self.case.energy_scale(self.settings, supply, load))
-    }
-
-    /// Sum over the impacts of a closed form of the node's `C_2` and `C_3`.
-    fn sum(&self, value: impl Fn(f64, f64) -> f64) -> f64 {
-        let form = |impact: &Impact| {
-            let [c2, c3] = node_capacitances(self.case, self.topology(), impact);
-            value(c2, c3)
-        };
-        self.case.impacts.iter().map(form).sum()
-    }
-
-    /// `U_DE4` of each single pulse.
-    fn voltages(&self) -> Vec<Check> {
+    /// `U_DE4` of each single pulse on an open circuit.
+    pub fn pulse_checks(&self) -> Vec<QuantityCheck> {
         let Some(pulses) = self.pulses else { return Vec::new() };
         let open = |solver| self.open.iter().find(|(other, _)| *other == solver).map(|(_, found)| found.as_slice());
         let values = Values::of(|solver| open(solver).map(mean));
-        let row = |name: &str, says: &str, topology, agreement| {
-            let analytic = pulses.expected(self.case, topology, self.supply_voltage());
+        let check = |name: &str, says: &str, topology, agreement| {
+            let analytic = pulses.expected(self.mechanics, topology, self.supply_voltage());
             let deviation = open(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(found, &analytic));
             let claim = Some(Claim::new(says, deviation, self.open_circuit_tolerance(pulses)));
-            Check { name: name.to_owned(), unit: "V", analytic: Some(mean(&analytic)), values, agreement, claim }
+            QuantityCheck { analytic: Some(mean(&analytic)), agreement, claim, ..QuantityCheck::new(name, "V", values) }
         };
-        let pair = |solver: Solver, tolerance| {
+        let pair = |(solver, tolerance)| {
             let deviation = largest_deviation(open(solver)?, open(Solver::Batch)?).abs();
-            Some(Agreement::new(format!("{} and {}", solver.name(), Solver::Batch.name()), deviation, tolerance))
+            Some(Agreement::between(solver, Solver::Batch, deviation, tolerance))
         };
-        let pairs = [pair(Solver::Exponential, 3e-4), pair(Solver::Ideal, 1e-3)];
-        let agreement = Agreement::worst(pairs.into_iter().flatten());
-        let own = format!("U_DE4, mean of {} pulses", pulses.order.len());
+        let pairs = [(Solver::Exponential, SAME_DIODES), (Solver::Ideal, IDEAL_DIODES)];
+        let agreement = Agreement::worst(pairs.into_iter().filter_map(pair));
+        let name = format!("U_DE4, mean of {} pulses", pulses.order.len());
         if self.topology() == Topology::Isolated {
-            return vec![row(&own, "U_DE4 by Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
+            return vec![check(&name, "U_DE4 by Eq. (12), isolated: U_in C3/C2", Topology::Isolated, agreement)];
         }
+        let printed = "U_DE4 by Eq. (12) on the shared node: U_in C3/C2";
         vec![
-            row(&own, "U_DE4 on the shared node: U_in (C3+C2)/(2 C2)", Topology::SharedNode, agreement),
-            row(
-                "the same by Eq. (12) as printed",
-                "U_DE4 by Eq. (12) on the shared node: U_in C3/C2",
-                Topology::Isolated,
-                None,
-            ),
+            check(&name, "U_DE4 on the shared node: U_in (C3+C2)/(2 C2)", Topology::SharedNode, agreement),
+            check("the same by Eq. (12) as printed", printed, Topology::Isolated, None),
         ]
     }
 
     /// The error of the table, and what the reverse currents of charging and release diode take from the voltage by the
     /// end of the run, relative.
     fn open_circuit_tolerance(&self, pulses: &Pulses) -> f64 {
-        let [left, right] = self.case.rest;
+        let [left, right] = self.mechanics.rest;
         let capacitance = if self.topology() == Topology::Isolated { left.min(right) } else { left + right };
         let leaked = 2.0 * self.settings.diode.saturation_current * pulses.table.until();
-        Case::TABLE_ERROR + leaked / (capacitance * self.supply_voltage())
+        MechanicalRun::TABLE_ERROR + leaked / (capacitance * self.supply_voltage())
     }
 
-    fn charges(&self) -> Vec<Check> {
+    fn charges(&self) -> Vec<QuantityCheck> {
+        let (impacts, topology) = (&self.mechanics.impacts, self.topology());
         let formula = |c2, c3| formulas::cycle_charge(self.supply_voltage(), c2, c3);
-        let each: Vec<f64> = (self.case.impacts.iter())
-            .map(|impact| node_capacitances(self.case, self.topology(), impact))
-            .map(|[c2, c3]| formula(c2, c3))
-            .collect();
-        let found = |solver| self.run(solver).map(|waveforms| charges(waveforms, &self.case.impacts));
-        let mut rows = Vec::new();
-        if each.len() > 1 {
-            let expected = &each[..each.len() - 1];
+        let mut checks = Vec::new();
+        // Not of the last impact, whose charge the run may not hold.
+        if let Some((_, complete @ [_, ..])) = impacts.split_last() {
+            let capacitances = complete.iter().map(|impact| self.mechanics.node_capacitances(topology, impact));
+            let expected: Vec<_> = capacitances.map(|[c2, c3]| formula(c2, c3)).collect();
+            let found = |solver| self.run(solver).map(|waveforms| charges(waveforms, impacts));
             let values = Values::of(|solver| found(solver).as_deref().map(mean));
-            let deviation = found(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(&found, expected));
-            rows.push(Check {
-                name: "dQ, mean of the impacts".to_owned(),
-                unit: "C",
-                analytic: Some(mean(expected)),
-                values,
+            let deviation = found(Solver::Batch).map_or(f64::NAN, |found| largest_deviation(&found, &expected));
+            let says = "every single impact moves dQ = U_in dC";
+            checks.push(QuantityCheck {
+                analytic: Some(mean(&expected)),
                 agreement: Agreement::of(&values, None, 0.0),
-                claim: Some(Claim::new("every single impact moves dQ = U_in dC", deviation, CLAIM)),
+                claim: Some(Claim::new(says, deviation, Claim::TOLERANCE)),
+                ..QuantityCheck::new("dQ, mean of the impacts", "C", values)
             });
         }
-        rows.push(self.row(
-            "supply charge",
-            "C",
-            |ledger| ledger.supply_charge,
-            Some(("all impacts together move U_in dC", self.sum(formula))),
-        ));
-        rows.push(self.row("load charge", "C", |ledger| ledger.load_charge, None));
-        rows
+        let all = ("all impacts together move U_in dC", self.sum(formula));
+        checks.push(self.total("supply charge", "C", |ledger| ledger.supply_charge, Some(all)));
+        checks.push(self.total("load charge", "C", |ledger| ledger.load_charge, None));
+        checks
     }
 
-    /// A quantity of the books, relative to itself.
-    fn row(&self, name: &str, unit: &'static str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
+    /// A total of the run, relative to itself.
+    fn total(
+        &self,
+        name: &str,
+        unit: &'static str,
+        value: fn(&Ledger) -> f64,
+        closed_form: Option<(&str, f64)>,
+    ) -> QuantityCheck {
         let values = self.ledgers(value);
-        let own = values.ngspice_batch.map_or(0.0, f64::abs).max(self.least(unit));
-        self.scaled(name, unit, values, [own; 2], claim)
+        let least = self.in_unit(self.mechanics.least_charge(self.settings), unit);
+        let scale = values.get(Solver::Batch).map_or(0.0, f64::abs).max(least);
+        self.scaled(name, unit, values, [scale; 2], closed_form)
     }
 
     /// A difference of energies, relative to the energy moved.
-    fn difference(&self, name: &str, value: fn(&Ledger) -> f64, claim: Option<(&str, f64)>) -> Check {
-        self.scaled(name, "J", self.ledgers(value), self.scales(), claim)
+    fn difference(&self, name: &str, value: fn(&Ledger) -> f64, closed_form: Option<(&str, f64)>) -> QuantityCheck {
+        self.scaled(name, "J", self.ledgers(value), self.scales(), closed_form)
     }
 
-    fn energies(&self) -> Vec<Check> {
+    fn energies(&self) -> Vec<QuantityCheck> {
         let supply = self.supply_voltage();
         let eq13 = self.sum(|c2, c3| formulas::eq13_energy(supply, c2, c3));
         let zener = self.settings.circuit.zener_voltage * self.sum(|c2, c3| formulas::cycle_charge(supply, c2, c3));
         let zener = (self.settings.circuit.release == Release::Zener).then_some(("the Zener burns U_z U_in dC", zener));
+        let supplied = ("the supply gives U_in^2 dC = 2 W", 2.0 * eq13);
+        let gain = ("W of Eq. (13) is what a user gains", eq13);
         vec![
-            self.row(
-                "supply energy",
-                "J",
-                |ledger| ledger.supply,
-                Some(("the supply gives U_in^2 dC = 2 W", 2.0 * eq13)),
-            ),
-            self.row("load energy", "J", |ledger| ledger.load, Some(("the load gets W of Eq. (13)", eq13))),
-            self.row("Zener energy", "J", |ledger| ledger.zener, zener),
+            self.total("supply energy", "J", |ledger| ledger.supply, Some(supplied)),
+            self.total("load energy", "J", |ledger| ledger.load, Some(("the load gets W of Eq. (13)", eq13))),
+            self.total("Zener energy", "J", |ledger| ledger.zener, zener),
             self.difference("diode energy", |ledger| ledger.diode, None),
             self.difference("change of the stored energy", |ledger| ledger.stored, None),
-            self.difference(
-                "surplus = load - supply",
-                Ledger::surplus,
-                Some(("W of Eq. (13) is what a user gains", eq13)),
-            ),
+            self.difference("surplus = load - supply", Ledger::surplus, Some(gain)),
         ]
     }
 
-    /// What the mechanics gave, against the closed forms.
-    fn conversion(&self) -> Vec<Check> {
-        let supply = self.supply_voltage();
-        let release = self.settings.circuit.release_voltage();
+    /// The energy from the mechanics, against the closed forms.
+    fn conversion(&self) -> [QuantityCheck; 3] {
+        let (supply, release) = (self.supply_voltage(), self.settings.circuit.release_voltage());
+        let converted =
+            |name: &str, says: &str, analytic| self.difference(name, Ledger::converted, Some((says, analytic)));
         let eq13 = self.sum(|c2, c3| formulas::eq13_energy(supply, c2, c3));
         let quick = self.sum(|c2, c3| formulas::release_net_gain(supply, release, c2, c3));
         let slow = self.sum(|c2, c3| formulas::largest_net_gain(supply, c2, c3));
-        let converted =
-            self.difference("converted", Ledger::converted, Some(("W of Eq. (13) is what the mechanics give", eq13)));
-        let mut quickly = self.difference(
-            "converted, quick release",
-            Ledger::converted,
-            Some(("quick release: (C3 U_in - C2 U_r)(U_r - U_in)", quick)),
-        );
-        let mut slowly =
-            self.difference("converted, largest", Ledger::converted, Some(("at most U_in^2 dC^2 / (2 C2)", slow)));
-        if let Some(claim) = &mut slowly.claim {
+        let mut checks = [
+            converted("converted", "W of Eq. (13) is what the mechanics give", eq13),
+            converted("converted, quick release", "quick release: (C3 U_in - C2 U_r)(U_r - U_in)", quick),
+            converted("converted, largest", "at most U_in^2 dC^2 / (2 C2)", slow),
+        ];
+        if let Some(claim) = &mut checks[2].claim {
             claim.holds = claim.deviation <= claim.tolerance;
         }
-        // The same quantity three times: the solvers need to agree on it but once.
-        quickly.agreement = None;
-        slowly.agreement = None;
-        vec![converted, quickly, slowly]
+        // The same quantity three times: one comparison of the solvers is enough.
+        checks[1].agreement = None;
+        checks[2].agreement = None;
+        checks
     }
 
     /// Voltages of the membranes over the whole run.
-    fn waveforms(&self) -> Check {
+    fn waveforms(&self) -> QuantityCheck {
         let batch = self.run(Solver::Batch);
         let difference = |solver| {
             let [left, right] = self.run(solver)?.voltage_difference(batch?)?;
             Some(if left.is_nan() { left } else { left.max(right) })
         };
         let values = Values::of(|solver| if solver == Solver::Batch { None } else { difference(solver) });
-        Check {
-            name: "V(de), RMS from ngspice batch".to_owned(),
-            unit: "V",
-            analytic: None,
-            values,
-            agreement: Agreement::of_voltages(&values, batch.map_or(0.0, Waveforms::highest_voltage)),
-            claim: None,
-        }
+        let highest = batch.map_or(0.0, Waveforms::highest_voltage);
+        let agreement = Agreement::of_voltages(&values, highest);
+        QuantityCheck { agreement, ..QuantityCheck::new("V(de), RMS from ngspice batch", "V", values) }
     }
 
-    /// Each solver's own books: the work on the membranes, summed on a path of its own, is what was converted.
-    fn books(&self) -> Check {
+    /// The energy balance of each solver: the work on the membranes, summed independently, equals the converted energy.
+    fn work(&self) -> QuantityCheck {
+        /// Relative to the energy moved.
+        const TOLERANCE: f64 = 1e-4;
         let values = self.ledgers(Ledger::residual);
         let [scale, _] = self.scales();
-        let own = |solver: Solver| {
+        let balance = |solver: Solver| {
             let residual = values.get(solver)?.abs();
-            Some(Agreement::new(format!("two ways to book in {}", solver.name()), residual / scale, BOOKS))
+            Some(Agreement::new(format!("two ways to book in {}", solver.name()), residual / scale, TOLERANCE))
         };
-        Check {
-            name: "converted - work, two books".to_owned(),
-            unit: "J",
+        QuantityCheck {
             analytic: Some(0.0),
-            values,
-            agreement: Agreement::worst(Solver::ALL.into_iter().filter_map(own)),
-            claim: None,
+            agreement: Agreement::worst(Solver::ALL.into_iter().filter_map(balance)),
+            ..QuantityCheck::new("converted - work, two books", "J", values)
         }
     }
 }
@@ -296,17 +255,18 @@ impl Findings<'_> {
 mod tests {
     use super::*;
     use crate::cosim::MechanicsSummary;
+    use crate::crosscheck::MembraneImpact;
     use crate::ngspice::CapacitanceTable;
     use videg_circuit::Circuit;
 
     /// One pulse of the left membrane by 40 %, and the beginning of another.
-    fn case() -> Case {
+    fn mechanics() -> MechanicalRun {
         let time: Vec<f64> = (0..=450).map(|k| f64::from(k) * 1e-3).collect();
         let bump = |t: f64| 1.0 + 0.4 * (std::f64::consts::PI * (t / 0.06).clamp(0.0, 1.0)).sin();
         let left: Vec<f64> = time.iter().map(|&t| 15e-12 * bump(t).max(bump(t - 0.4))).collect();
         let right = vec![15e-12; time.len()];
-        let impact = |time| Impact { time, side: 0, ratio: 1.4 };
-        let mechanics = MechanicsSummary {
+        let impact = |time| MembraneImpact { time, side: 0, ratio: 1.4 };
+        let summary = MechanicsSummary {
             impacts: 2,
             events: 2,
             average_voltage_gain: 0.0,
@@ -314,9 +274,9 @@ mod tests {
             voltage_gain: 0.0,
             energy_eq13: 0.0,
         };
-        Case {
+        MechanicalRun {
             table: CapacitanceTable::new(&time, &left, &right).unwrap(),
-            mechanics,
+            summary,
             impacts: vec![impact(0.0), impact(0.4)],
             rest: [15e-12; 2],
             bias_voltage: 2000.0,
@@ -324,7 +284,7 @@ mod tests {
         }
     }
 
-    /// What comes of a capacitor with I = C dV/dt: it keeps its voltage when C changes, as if each change were a start.
+    /// A capacitor with I = C dV/dt: it keeps its voltage when C changes, as if each change were a start.
     fn without_v_dc_dt(settings: &Settings, table: &CapacitanceTable) -> Waveforms {
         let mut found = Waveforms::embedded(&settings.parameters(), table).unwrap();
         let idle = Circuit::new(settings.parameters(), table.initial()).unwrap();
@@ -336,13 +296,13 @@ mod tests {
     }
 
     fn failures(wrong: Option<Solver>) -> Vec<String> {
-        let (case, settings) = (case(), Settings::default());
+        let (mechanics, settings) = (mechanics(), Settings::default());
         let runs = Solver::ALL.map(|solver| {
-            let right = Waveforms::embedded(&settings.parameters(), &case.table).unwrap();
-            (solver, if wrong == Some(solver) { without_v_dc_dt(&settings, &case.table) } else { right })
+            let right = Waveforms::embedded(&settings.parameters(), &mechanics.table).unwrap();
+            (solver, if wrong == Some(solver) { without_v_dc_dt(&settings, &mechanics.table) } else { right })
         });
-        let findings = Findings { case: &case, settings: &settings, runs: &runs, pulses: None, open: &[] };
-        checks(&findings).into_iter().filter(Check::failed).map(|check| check.name).collect()
+        let findings = Findings { mechanics: &mechanics, settings: &settings, runs: &runs, pulses: None, open: &[] };
+        findings.checks().into_iter().filter(QuantityCheck::failed).map(|check| check.name).collect()
     }
 
     #[test]
@@ -358,9 +318,9 @@ mod tests {
 
     #[test]
     fn a_pulse_on_an_open_circuit_reaches_its_own_peak_voltage() {
-        let case = case();
+        let mechanics = mechanics();
         for (topology, expected) in [(Topology::Isolated, 2800.0), (Topology::SharedNode, 2400.0)] {
-            let pulses = Pulses::new(&case, topology).unwrap().unwrap();
+            let pulses = Pulses::new(&mechanics, topology).unwrap().unwrap();
             assert_eq!(pulses.order, [0]);
             let mut open = Settings::default();
             open.circuit.topology = topology;
@@ -368,7 +328,7 @@ mod tests {
             let found = Waveforms::embedded(&open.parameters(), &pulses.table).unwrap();
             let [peak] = pulses.peaks(&found)[..] else { panic!("one pulse has one peak") };
             assert!((peak - expected).abs() < 1e-6 * expected, "{topology:?}: {peak}");
-            assert!((pulses.expected(&case, topology, 2000.0)[0] - expected).abs() < 1e-9, "{topology:?}");
+            assert!((pulses.expected(&mechanics, topology, 2000.0)[0] - expected).abs() < 1e-9, "{topology:?}");
         }
     }
 }

@@ -1,12 +1,20 @@
-//! What a crosscheck comes to, in words, with the numbers of the run.
+//! The conclusion of a crosscheck in words, with the numbers of the run.
 
-use super::{Check, Compared, Repeat, Stop};
+use super::check::QuantityCheck;
+use super::compare::ComparedCircuit;
+use super::solver::Solver;
+use super::stop::{Repeat, Stop};
 
-/// The conclusion, a paragraph a line: whether the solvers agree, what holds, what does not and why, what gains.
-pub fn conclusion(checks: &[Check], compared: &[Compared], stops: &[Stop], repeats: &[Repeat]) -> Vec<String> {
+/// The conclusion, a paragraph a line: agreement of the solvers, claims that hold and that do not, the best circuit.
+pub fn conclusion(
+    checks: &[QuantityCheck],
+    compared: &[ComparedCircuit],
+    stops: &[Stop],
+    repeats: &[Repeat],
+) -> Vec<String> {
     let mut lines = vec![agreement(checks)];
     lines.extend(stops.iter().map(|stop| stop.sentence() + "."));
-    // Where that did not help, the sentence before says so.
+    // A repeat that did not help is in the sentence of the stop.
     let helped = repeats.iter().filter(|repeat| stops.iter().all(|stop| stop.task != repeat.task));
     lines.extend(helped.map(|repeat| repeat.sentence() + "."));
     lines.extend(claims(checks, true));
@@ -16,7 +24,7 @@ pub fn conclusion(checks: &[Check], compared: &[Compared], stops: &[Stop], repea
     lines
 }
 
-fn agreement(checks: &[Check]) -> String {
+fn agreement(checks: &[QuantityCheck]) -> String {
     let failed: Vec<_> = checks.iter().filter(|check| check.failed()).collect();
     let compared = checks.iter().filter(|check| check.agreement.is_some()).count();
     if failed.is_empty() {
@@ -31,7 +39,7 @@ fn agreement(checks: &[Check]) -> String {
 }
 
 /// The claims that hold, or those that do not.
-fn claims(checks: &[Check], hold: bool) -> Option<String> {
+fn claims(checks: &[QuantityCheck], hold: bool) -> Option<String> {
     let list: Vec<_> = checks
         .iter()
         .filter_map(|check| check.claim.as_ref())
@@ -43,12 +51,12 @@ fn claims(checks: &[Check], hold: bool) -> Option<String> {
 }
 
 /// Value of ngspice of the quantity whose name begins so, in mJ.
-fn millijoules(checks: &[Check], name: &str) -> Option<f64> {
-    Some(1e3 * checks.iter().find(|check| check.name.starts_with(name))?.values.ngspice_batch?)
+fn millijoules(checks: &[QuantityCheck], name: &str) -> Option<f64> {
+    Some(1e3 * checks.iter().find(|check| check.name.starts_with(name))?.values.get(Solver::Batch)?)
 }
 
 /// Why W is not what is gained.
-fn why(checks: &[Check]) -> Option<String> {
+fn why(checks: &[QuantityCheck]) -> Option<String> {
     let value = |name| millijoules(checks, name);
     let (supply, zener, load) = (value("supply energy")?, value("Zener energy")?, value("load energy")?);
     let (surplus, converted) = (value("surplus")?, value("converted")?);
@@ -62,8 +70,8 @@ fn why(checks: &[Check]) -> Option<String> {
 }
 
 /// The circuit that gains most, next to the paper's.
-fn better(compared: &[Compared]) -> Option<String> {
-    let surplus = |circuit: &Compared| 1e3 * circuit.ngspice.energy.surplus;
+fn better(compared: &[ComparedCircuit]) -> Option<String> {
+    let surplus = |circuit: &ComparedCircuit| 1e3 * circuit.ngspice.energy.surplus;
     let best = compared.iter().max_by(|a, b| surplus(a).total_cmp(&surplus(b)))?;
     let others: Vec<_> = compared
         .iter()

@@ -3,167 +3,108 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
 use videg_circuit::{Release, Settings, Topology};
 
-use crate::ngspice::{
-    CapacitanceSource, CapacitanceTable, Check, Elements, FileName, Netlist, Ngspice, NgspiceError, Run,
-};
+use super::capacitor::{CLOSED_FORMS, ClosedForm, GrowingCapacitor};
+use super::compare::ComparedCircuit;
+use super::error::FileError;
+use super::run::Crosscheck;
+use super::solver::Solver;
+use crate::ngspice::{CapacitanceSource, CapacitanceTable, Elements, FileName, Netlist, Ngspice, NgspiceError, Run};
 use videg_system::atomic_file;
 
-/// First line of the page that tells a folder made here from any other.
+/// First line of the page, which tells a folder made here from any other.
 const MARK: &str = "Made by: videg crosscheck --export";
 /// The page.
 const PAGE: &str = "README.txt";
 /// The script that sums up a result.
 const EVALUATION: &str = "evaluate.cir";
 
-/// Why the folder cannot be written.
-#[derive(Debug, Error)]
-pub enum ExportError {
-    /// Something of that name is there.
-    #[error("--export: {} is there already and is not of an earlier export; name another folder", .0.display())]
-    Foreign(PathBuf),
-    /// It cannot be written.
-    #[error("cannot write {}: {cause}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
-    /// A netlist cannot be made.
-    #[error(transparent)]
-    Ngspice(#[from] NgspiceError),
-}
-
-/// A value to expect, and where it comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
+/// An expected value.
+struct Expected {
     /// Name, as the script prints it.
-    pub name: &'static str,
-    /// The value.
-    pub value: f64,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Where it comes from.
-    pub source: String,
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    source: String,
 }
 
 /// One netlist with all that belongs to it, in a folder of its own.
-#[derive(Debug, Clone)]
-pub struct Item {
+struct Item<'a> {
     folder: String,
     about: String,
     netlist: Netlist,
-    table: CapacitanceTable,
+    table: &'a CapacitanceTable,
     script: String,
     expected: Vec<Expected>,
 }
 
-impl Item {
-    /// A circuit over `table`. `folder` is one of the names that the harness gives.
-    ///
-    /// # Errors
-    /// A circuit that ngspice cannot have.
-    pub fn circuit(
-        folder: String,
-        about: String,
-        settings: &Settings,
-        table: &CapacitanceTable,
-        expected: Vec<Expected>,
-    ) -> Result<Self, NgspiceError> {
-        let elements = Elements::new(&Settings { exponential: true, ..*settings }.parameters(), table.growth())?;
+impl<'a> Item<'a> {
+    fn circuit(folder: String, compared: &ComparedCircuit, table: &'a CapacitanceTable) -> Result<Self, NgspiceError> {
+        let settings = Settings { exponential: true, ..compared.settings };
+        let elements = Elements::new(&settings.parameters(), table.growth())?;
         let run = Run::new(table.until(), table.growth());
         let netlist = elements.netlist(CapacitanceSource::Table, table.initial(), &run)?;
-        Ok(Self { folder, about, netlist, table: table.clone(), script: circuit_script(settings), expected })
+        let about = format!("{}, load {:e} ohm", compared.label, settings.circuit.load_resistance);
+        let (ngspice, embedded) = (&compared.ngspice, &compared.embedded);
+        let expected = [
+            ("supply_charge", ngspice.charge.supply, embedded.charge.supply, "C"),
+            ("supply_energy", ngspice.energy.supply, embedded.energy.supply, "J"),
+            ("load_charge", ngspice.charge.load, embedded.charge.load, "C"),
+            ("load_energy", ngspice.energy.load, embedded.energy.load, "J"),
+        ];
+        let expected = expected.map(|(name, value, embedded, unit)| {
+            let source = format!("this ngspice in batch; {} {embedded:.9e}", Solver::Exponential.name());
+            Expected { name, value, unit, source }
+        });
+        Ok(Self { folder, about, netlist, table, script: circuit_script(&settings), expected: expected.into() })
     }
 
-    /// The three checks of a capacitor that grows from `c2` to `c3`, F, in 0.1 s, with `voltage`, V, at the start.
-    ///
-    /// # Errors
-    /// Numbers that make no table or netlist.
-    pub fn capacitors(voltage: f64, c2: f64, c3: f64) -> Result<Vec<Self>, NgspiceError> {
-        let table = growing_capacitor(c2, c3)?;
-        let run = capacitor_run(&table);
-        let forms = closed_forms(voltage, c2, c3).into_iter();
-        forms
-            .map(|form| {
-                Ok(Self {
-                    folder: form.folder.to_owned(),
-                    about: form.about.to_owned(),
-                    netlist: form.check.netlist(voltage, table.initial(), &run)?,
-                    table: table.clone(),
-                    script: script(form.sums, form.expected.name),
-                    expected: vec![form.expected],
-                })
-            })
-            .collect()
+    fn capacitor(capacitor: &'a GrowingCapacitor, form: &ClosedForm) -> Result<Self, NgspiceError> {
+        let [name, unit] = form.quantity;
+        let source = format!("closed form {}", form.formula);
+        Ok(Self {
+            folder: form.folder.to_owned(),
+            about: form.about.to_owned(),
+            netlist: form.test.netlist(capacitor.voltage(), capacitor.table.initial(), &capacitor.run)?,
+            table: &capacitor.table,
+            script: script(form.sums, name),
+            expected: vec![Expected { name, value: capacitor.expected(form), unit, source }],
+        })
     }
 }
 
-/// Time in which the capacitor of the checks grows, s, and the resistor of one of them, ohm: R C is some three times that.
-const GROWTH: f64 = 0.1;
-const RESISTANCE: f64 = 2e10;
-
-/// C(t) of the checks: linear from `c2` to `c3`, F.
+/// Writes the circuits of `found` and the tests of the capacitor into `folder`, each into a folder of its own, and a page that
+/// describes them. Nothing that is not of an earlier export is overwritten, and no link is followed.
 ///
 /// # Errors
-/// Capacitances that make no table.
-pub fn growing_capacitor(c2: f64, c3: f64) -> Result<CapacitanceTable, NgspiceError> {
-    CapacitanceTable::new(&[0.0, GROWTH], &[c2, c3], &[c2, c2])
-}
-
-/// A run of the checks over `table`: the integration is good to 1e-7 there, as what is tried is the capacitor.
-pub fn capacitor_run(table: &CapacitanceTable) -> Run {
-    Run { max_step: 2e-5, ..Run::new(table.until(), table.growth()) }
-}
-
-/// A check with what it comes to.
-pub struct ClosedForm {
-    /// The check.
-    pub check: Check,
-    folder: &'static str,
-    /// What it is.
-    pub about: &'static str,
-    sums: &'static str,
-    /// Value at the end.
-    pub expected: Expected,
-}
-
-/// The checks of a capacitor that grows from `c2` to `c3`, F, with `voltage`, V, at the start.
-pub fn closed_forms(voltage: f64, c2: f64, c3: f64) -> [ClosedForm; 3] {
-    let expected =
-        |name, value, unit, source: &str| Expected { name, value, unit, source: format!("closed form {source}") };
-    let exponent = -GROWTH / (RESISTANCE * (c3 - c2));
-    [
-        ClosedForm {
-            check: Check::ChargedCapacitor,
-            folder: "check_charged_capacitor",
-            about: "a charged capacitor that grows",
-            sums: "let final_voltage = v(de)[last]",
-            expected: expected("final_voltage", voltage * c2 / c3, "V", "V = V(0) C(0) / C(t)"),
-        },
-        ClosedForm {
-            check: Check::ConstantVoltage,
-            folder: "check_constant_voltage",
-            about: "a capacitor that grows at constant voltage",
-            sums: "let current = -i(vin)\nlet sum = integ(current)\n* ngspice does not tell its point at 0 s.\nlet final_charge = sum[last] + current[0] * time[0]",
-            expected: expected("final_charge", voltage * (c3 - c2), "C", "U (C(t) - C(0))"),
-        },
-        ClosedForm {
-            check: Check::RcDischarge { resistance: RESISTANCE },
-            folder: "check_rc_discharge",
-            about: "a capacitor that grows while a resistor discharges it",
-            sums: "let final_voltage = v(de)[last]",
-            expected: expected(
-                "final_voltage",
-                voltage * c2 / c3 * (c3 / c2).powf(exponent),
-                "V",
-                "V = V(0) (C(t) / C(0))^(-1 - 1 / (R dC/dt))",
-            ),
-        },
-    ]
+/// Another file of these names; a file that cannot be written.
+pub fn write(folder: &Path, found: &Crosscheck) -> Result<Vec<PathBuf>, FileError> {
+    let mut items = Vec::new();
+    for (index, compared) in found.compared.iter().enumerate() {
+        let name = if index == 0 { "circuit".to_owned() } else { format!("comparison_{index}") };
+        items.push(Item::circuit(name, compared, &found.mechanics.table)?);
+    }
+    let capacitor = GrowingCapacitor::new(found.settings.circuit.supply_voltage, &found.mechanics)?;
+    for form in &CLOSED_FORMS {
+        items.push(Item::capacitor(&capacitor, form)?);
+    }
+    let page = folder.join(PAGE);
+    let names = [FileName::Netlist.name(), FileName::Table.name(), EVALUATION];
+    let paths = items.iter().flat_map(|item| names.map(|name| folder.join(&item.folder).join(name)));
+    let files: Vec<_> = std::iter::once(page.clone()).chain(paths).collect();
+    refuse_foreign(&page, &files)?;
+    for item in &items {
+        let folder = folder.join(&item.folder);
+        std::fs::create_dir_all(&folder).map_err(FileError::write(&folder))?;
+        Ngspice::export(&folder, &item.netlist, item.table)?;
+        let path = folder.join(EVALUATION);
+        atomic_file::write(&path, &item.script).map_err(FileError::write(&path))?;
+    }
+    let scenario = &found.scenario;
+    let title = format!("{}: {}, 0 to {} s", scenario.name, scenario.description, scenario.until);
+    atomic_file::write(&page, page_text(&title, &items)).map_err(FileError::write(&page))?;
+    Ok(files)
 }
 
 /// The script that sums up a circuit's result by the trapezoidal rule, as ngspice integrates charges.
@@ -194,66 +135,36 @@ fn script(sums: &str, printed: &str) -> String {
     )
 }
 
-/// Writes the items into `folder`, each into a folder of its own, and a page that says what they are; `title` is what
-/// was run. Nothing that is not of an earlier export is overwritten, and no link is followed.
+/// Checks that the folder does not exist, or that its page, if there is one, is of an earlier export.
 ///
 /// # Errors
-/// Something that is in the way; a file that cannot be written.
-pub fn write(folder: &Path, title: &str, items: &[Item]) -> Result<Vec<PathBuf>, ExportError> {
-    let page = folder.join(PAGE);
-    let mut files = vec![page.clone()];
-    for item in items {
-        let names = [FileName::Netlist.name(), FileName::Table.name(), EVALUATION];
-        files.extend(names.map(|name| folder.join(&item.folder).join(name)));
-    }
-    refuse_foreign(&page, &files)?;
-    let fail = |path: &Path| {
-        let path = path.to_owned();
-        move |cause| ExportError::Write { path, cause }
-    };
-    for item in items {
-        let own = folder.join(&item.folder);
-        std::fs::create_dir_all(&own).map_err(fail(&own))?;
-        Ngspice::export(&own, &item.netlist, &item.table)?;
-        let path = own.join(EVALUATION);
-        atomic_file::write(&path, &item.script).map_err(fail(&path))?;
-    }
-    atomic_file::write(&page, page_text(title, items)).map_err(fail(&page))?;
-    Ok(files)
-}
-
-/// That the folder is none yet, or one whose page, if it has one, is of an earlier export.
-///
-/// # Errors
-/// Something else that is there.
-pub fn check(folder: &Path) -> Result<(), ExportError> {
+/// Another file of these names.
+pub fn check(folder: &Path) -> Result<(), FileError> {
     if folder.exists() && !folder.is_dir() {
-        return Err(ExportError::Foreign(folder.to_owned()));
+        return Err(FileError::Foreign(folder.to_owned()));
     }
     refuse_foreign(&folder.join(PAGE), &[folder.join(PAGE)])
 }
 
-fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), ExportError> {
+fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), FileError> {
     let kind = |path: &Path| std::fs::symlink_metadata(path).map(|metadata| metadata.file_type());
     let regular = |path: &Path| kind(path).is_ok_and(|kind| kind.is_file());
     let ours = regular(page) && std::fs::read_to_string(page).is_ok_and(|text| text.starts_with(MARK));
-    let parents =
-        files.iter().filter_map(|file| file.parent()).filter(|parent| *parent != page.parent().unwrap_or(parent));
-    for parent in parents {
+    for parent in files.iter().filter_map(|file| file.parent()).filter(|parent| Some(*parent) != page.parent()) {
         if kind(parent).is_ok_and(|kind| !kind.is_dir()) {
-            return Err(ExportError::Foreign(parent.to_owned()));
+            return Err(FileError::Foreign(parent.to_owned()));
         }
     }
     for file in files.iter().flat_map(|file| [file.clone(), atomic_file::partial(file)]) {
         let free = kind(&file).is_err();
         if !(free || ours && regular(&file)) {
-            return Err(ExportError::Foreign(file));
+            return Err(FileError::Foreign(file));
         }
     }
     Ok(())
 }
 
-fn page_text(title: &str, items: &[Item]) -> String {
+fn page_text(title: &str, items: &[Item<'_>]) -> String {
     // A name may hold anything; it stays on its line.
     let title: String = title.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let [netlist, raw] = [FileName::Netlist.name(), FileName::Raw.name()];

@@ -1,34 +1,39 @@
-//! Crosscheck: what the paper and its closed forms say, the embedded solver and ngspice, on one C(t).
+//! Crosscheck: the closed forms of the paper, the embedded solver and ngspice, on one C(t).
 //!
-//! - [`Case`] is a run of the mechanics: one [`CapacitanceTable`](crate::ngspice::CapacitanceTable) that every solver
-//!   gets, and the impacts;
-//! - [`Bench`] runs a circuit in one [`Solver`];
-//! - [`checks`] holds the solvers against each other and against the closed forms: a [`Check`] says separately whether
-//!   the solvers [agree](Agreement) and whether a [claim](Claim) holds. A refuted claim is a finding, no failure;
-//! - [`Stop`] is a run of ngspice that ended too early: what was found until then stands, and [`common`] and [`limited`] say how
-//!   far that is;
-//! - [`conclusion`] says it in words;
-//! - [`Sweep`] follows the net gain over load and voltage of release;
-//! - [`export`] writes it all for somebody who has ngspice and nothing else.
+//! [`run`] gives a [`Crosscheck`]:
+//! - [`MechanicalRun`] is a run of the mechanics: one [`CapacitanceTable`](crate::ngspice::CapacitanceTable) for every
+//!   solver, and the impacts;
+//! - the circuit runs in each [`Solver`];
+//! - a [`QuantityCheck`] says separately whether the solvers [agree](Agreement) and whether a [claim](Claim) holds. A
+//!   refuted claim is a finding, no failure;
+//! - a [`Stop`] is a run of ngspice that ended too early: its results until then are valid;
+//! - [`ReleaseSweep`] follows the net gain over load and voltage of release.
+//!
+//! [`files`] writes data and figures, [`export`] a folder for somebody who has ngspice and nothing else.
 
-mod bench;
-mod case;
+mod capacitor;
 mod check;
 mod claims;
 mod compare;
 mod conclude;
+mod error;
 pub mod export;
-mod peaks;
+pub(crate) mod figures;
+pub mod files;
+mod mechanics;
+mod pulses;
+mod run;
+mod solver;
+mod solvers;
 mod stop;
 mod sweep;
 
-pub(crate) use bench::Task;
-pub use bench::{Bench, Progress, Solver};
-pub use case::{Case, Impact};
-pub use check::{Agreement, Check, Claim, Values};
-pub use claims::{Findings, checks, pulse_checks};
-pub use compare::{Compared, comparison_checks};
-pub use conclude::conclusion;
-pub use peaks::Pulses;
-pub use stop::{Repeat, Stop, common, limited};
-pub use sweep::{Curve, Point, Sweep};
+pub use check::{Agreement, Claim, QuantityCheck, Values};
+pub use compare::ComparedCircuit;
+pub use error::FileError;
+pub use mechanics::{MechanicalRun, MembraneImpact};
+pub use pulses::Pulses;
+pub use run::{Crosscheck, Options, run};
+pub use solver::Solver;
+pub use stop::{Repeat, Stop};
+pub use sweep::{ReleaseSweep, SweepCurve, SweepPoint};

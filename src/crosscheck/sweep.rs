@@ -1,41 +1,45 @@
-//! Net gain over load and voltage of release, by the embedded solver, with ngspice as a witness at a few points.
+//! Net gain over load and voltage of release, by the embedded solver, and by ngspice at a few points.
 
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology, formulas};
 
-use super::{Agreement, Bench, Case, Check, Repeat, Solver, Stop, Task, Values};
+use super::check::{Agreement, IDEAL_DIODES, QuantityCheck, Values};
+use super::mechanics::MechanicalRun;
+use super::solver::Solver;
+use super::solvers::{Job, JobResult, Solvers};
+use super::stop::{Repeat, Stop};
 use crate::ngspice::NgspiceError;
-use crate::{progress, threads};
+use crate::progress::Progress;
 
-/// What a circuit comes to at one point.
+/// Energies of a circuit at one point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Point {
+pub struct SweepPoint {
     /// Load resistance, ohm, or voltage of release, V.
     pub x: f64,
-    /// What the mechanics gave, J.
+    /// Energy from the mechanics, J.
     pub converted: f64,
     /// What a user gains, J.
     pub surplus: f64,
-    /// What the supply gave, J.
+    /// Energy from the supply, J.
     pub supply: f64,
 }
 
 /// A circuit over one of its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Curve {
-    /// What the circuit is, e.g. `isolated, storage`.
+pub struct SweepCurve {
+    /// Name of the circuit, e.g. `isolated, storage`.
     pub circuit: String,
     /// Name of the parameter.
     pub parameter: &'static str,
     /// By the embedded solver with ideal diodes.
-    pub points: Vec<Point>,
+    pub points: Vec<SweepPoint>,
     /// By ngspice.
-    pub witnesses: Vec<Point>,
+    pub witnesses: Vec<SweepPoint>,
 }
 
-impl Curve {
-    /// The point where the mechanics give most, and where a parabola through it and its neighbours has its top.
-    pub fn best(&self) -> Option<(&Point, f64)> {
+impl SweepCurve {
+    /// The point of the largest converted energy, and the top of the parabola through it and its neighbours.
+    pub fn best(&self) -> Option<(&SweepPoint, f64)> {
         let (index, best) =
             self.points.iter().enumerate().max_by(|(_, a), (_, b)| a.converted.total_cmp(&b.converted))?;
         let neighbours =
@@ -49,24 +53,16 @@ impl Curve {
         Some((best, top))
     }
 
-    /// ngspice against the embedded solver at the points that both have. Its diodes drop some mV where ideal ones do not.
-    fn checks(&self) -> impl Iterator<Item = Check> + '_ {
-        const TOLERANCE: f64 = 1e-3;
+    /// ngspice against the embedded solver at the points that both have.
+    fn checks(&self) -> impl Iterator<Item = QuantityCheck> + '_ {
         let pairs = self.witnesses.iter().filter_map(|b| Some((self.points.iter().find(|a| a.x == b.x)?, b)));
         pairs.map(|(a, b)| {
-            let between = format!("{} and {}", Solver::Ideal.name(), Solver::Batch.name());
             let deviation = (a.converted - b.converted).abs() / b.supply.abs().max(a.supply.abs());
-            Check {
-                name: format!("{}, {} = {:.6}: converted", self.circuit, self.parameter, b.x),
-                unit: "J",
-                analytic: None,
-                values: Values {
-                    embedded_ideal: Some(a.converted),
-                    ngspice_batch: Some(b.converted),
-                    ..Values::default()
-                },
-                agreement: Some(Agreement::new(between, deviation, TOLERANCE)),
-                claim: None,
+            let name = format!("{}, {} = {:.6}: converted", self.circuit, self.parameter, b.x);
+            let values = Values::by([(Solver::Ideal, a.converted), (Solver::Batch, b.converted)]);
+            QuantityCheck {
+                agreement: Some(Agreement::between(Solver::Ideal, Solver::Batch, deviation, IDEAL_DIODES)),
+                ..QuantityCheck::new(name, "J", values)
             }
         })
     }
@@ -74,27 +70,20 @@ impl Curve {
 
 /// The sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Sweep {
+pub struct ReleaseSweep {
     /// Over the voltage of release, of six circuits: shared node and isolated, Zener, switch and storage.
-    pub voltage: Vec<Curve>,
+    pub voltage: Vec<SweepCurve>,
     /// Over the load resistance, of the four that have one.
-    pub load: Vec<Curve>,
+    pub load: Vec<SweepCurve>,
     /// `(U_in / 2) (C_3 / C_2 + 1)` on the shared node and with isolated membranes, V, for the `C_3` / `C_2` that
     /// [`formulas::best_release_ratio`] takes from the impacts.
     pub predicted: [f64; 2],
-    /// Points at which ngspice stopped: they have no witness.
+    /// Points at which ngspice stopped, which are left out.
     #[serde(skip)]
     pub stops: Vec<Stop>,
-    /// Points that it got to with changes.
+    /// Points at which ngspice was repeated with changes.
     #[serde(skip)]
     pub repeats: Vec<Repeat>,
-}
-
-/// What a run at a point comes to.
-struct Visit {
-    point: Point,
-    stop: Option<Stop>,
-    repeats: Vec<Repeat>,
 }
 
 const TOPOLOGIES: [(Topology, &str); 2] = [(Topology::SharedNode, "shared node"), (Topology::Isolated, "isolated")];
@@ -107,126 +96,112 @@ const LOADS: u32 = 21;
 /// Load resistances, powers of ten of an ohm.
 const LOAD_DECADES: [f64; 2] = [7.0, 12.0];
 
-/// A curve to come: the circuit, its parameter, how to set that, and where.
+/// A curve to be computed: the circuit, its parameter, and the values of that, one of them by ngspice, too.
 struct Plan {
     circuit: String,
     parameter: &'static str,
     settings: Settings,
     set: fn(&mut Settings, f64),
     xs: Vec<f64>,
-    witnesses: Vec<f64>,
+    witness: f64,
 }
 
-impl Sweep {
-    /// Sweeps around `settings` on the C(t) of `case`.
-    ///
-    /// # Errors
-    /// What a solver says.
-    pub fn new(
-        bench: &Bench<'_>,
-        case: &Case,
+impl ReleaseSweep {
+    /// Sweeps around `settings` on the C(t) of `mechanics`.
+    pub(super) fn new(
+        solvers: &Solvers<'_>,
+        mechanics: &MechanicalRun,
         settings: &Settings,
-        observer: &dyn progress::Progress,
+        progress: &dyn Progress,
     ) -> Result<Self, NgspiceError> {
-        let supply = settings.circuit.supply_voltage;
-        let predicted =
-            [1.0, 0.0].map(|idle| formulas::best_release_voltage(supply, 1.0 + idle, case.best_ratio() + idle));
-        let plans: Vec<Plan> = over_voltage(case, settings, predicted).chain(over_load(settings)).collect();
-        let tasks: Vec<_> = plans.iter().flat_map(|plan| plan.tasks(bench)).collect();
-        let results = threads::run(&tasks, observer)?;
-        drop(tasks);
-        let mut results = results.into_iter();
+        let (supply, ratio) = (settings.circuit.supply_voltage, mechanics.best_ratio());
+        let predicted = [1.0, 0.0].map(|idle| formulas::best_release_voltage(supply, 1.0 + idle, ratio + idle));
+        let plans: Vec<Plan> = over_voltage(mechanics, settings, predicted).chain(over_load(settings)).collect();
+        let jobs = plans.iter().flat_map(|plan| plan.jobs(mechanics)).collect();
+        let mut results = solvers.run_all(jobs, progress)?.into_iter();
         let (mut stops, mut repeats) = (Vec::new(), Vec::new());
-        let mut whole = |visit: Visit| {
-            repeats.extend(visit.repeats);
-            let is_whole = visit.stop.is_none();
-            stops.extend(visit.stop);
-            is_whole.then_some(visit.point)
+        let mut points = |xs: &[f64]| {
+            let point = |(&x, result): (&f64, JobResult)| {
+                repeats.extend(result.repeats);
+                let ledger = result.waveforms.ledger();
+                let (converted, surplus) = (ledger.converted(), ledger.surplus());
+                let is_complete = result.stop.is_none();
+                stops.extend(result.stop);
+                is_complete.then_some(SweepPoint { x, converted, surplus, supply: ledger.supply })
+            };
+            xs.iter().zip(results.by_ref()).filter_map(point).collect()
         };
-        let mut curves = plans.into_iter().map(|plan| {
-            let points = results.by_ref().take(plan.xs.len()).filter_map(&mut whole).collect();
-            let witnesses = results.by_ref().take(plan.witnesses.len()).filter_map(&mut whole).collect();
-            Curve { circuit: plan.circuit, parameter: plan.parameter, points, witnesses }
-        });
-        let voltage = curves.by_ref().take(TOPOLOGIES.len() * RELEASES.len()).collect();
-        let load = curves.collect();
+        let curve = |plan: Plan| {
+            let (points, witnesses) = (points(&plan.xs), points(&[plan.witness]));
+            SweepCurve { circuit: plan.circuit, parameter: plan.parameter, points, witnesses }
+        };
+        let mut voltage: Vec<_> = plans.into_iter().map(curve).collect();
+        let load = voltage.split_off(TOPOLOGIES.len() * RELEASES.len());
         Ok(Self { voltage, load, predicted, stops, repeats })
     }
-}
 
-impl Sweep {
     /// ngspice against the embedded solver, point by point.
-    pub fn checks(&self) -> Vec<Check> {
-        self.voltage.iter().chain(&self.load).flat_map(Curve::checks).collect()
+    pub fn checks(&self) -> Vec<QuantityCheck> {
+        self.voltage.iter().chain(&self.load).flat_map(SweepCurve::checks).collect()
     }
 }
 
-/// `xs` and those that ngspice is asked for, in order.
-fn with_witnesses(xs: impl Iterator<Item = f64>, witnesses: &[f64]) -> Vec<f64> {
-    let mut all: Vec<f64> = xs.chain(witnesses.iter().copied()).collect();
+impl Plan {
+    fn jobs<'a>(&self, mechanics: &'a MechanicalRun) -> impl Iterator<Item = Job<'a>> {
+        let embedded = self.xs.iter().map(|&x| (x, Solver::Ideal));
+        embedded.chain([(self.witness, Solver::Batch)]).map(|(x, solver)| {
+            let mut settings = self.settings;
+            (self.set)(&mut settings, x);
+            let name = format!("{} in {}", self.circuit, solver.name());
+            let open = vec![format!("the point {} = {x:.6} of the sweep", self.parameter)];
+            Job { name, solver, settings, table: &mechanics.table, open, last_row: true }
+        })
+    }
+}
+
+/// `xs` and `witness`, in order.
+fn with(xs: impl Iterator<Item = f64>, witness: f64) -> Vec<f64> {
+    let mut all: Vec<f64> = xs.chain([witness]).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
     all
 }
 
-impl Plan {
-    fn tasks<'a>(&'a self, bench: &'a Bench<'a>) -> impl Iterator<Item = Task<'a, Visit>> {
-        let embedded = self.xs.iter().map(|&x| (x, Solver::Ideal));
-        let witnesses = self.witnesses.iter().map(|&x| (x, Solver::Batch));
-        embedded.chain(witnesses).map(move |(x, solver)| {
-            let mut settings = self.settings;
-            (self.set)(&mut settings, x);
-            let name = format!("{} in {}", self.circuit, solver.name());
-            Task::new(name.clone(), move |progress| {
-                let outcome = bench.run(solver, &settings, progress)?;
-                let ledger = outcome.waveforms.ledger();
-                let (converted, surplus) = (ledger.converted(), ledger.surplus());
-                let open = vec![format!("the point {} = {x:.6} of the sweep", self.parameter)];
-                Ok(Visit {
-                    point: Point { x, converted, surplus, supply: ledger.supply },
-                    stop: Stop::of(&name, &outcome, bench.table.until(), open),
-                    repeats: Repeat::of(&name, &outcome).collect(),
-                })
-            })
-        })
-    }
-}
-
-/// From `U_in` to beyond the largest `U_DE4`; ngspice where the most is predicted.
-fn over_voltage<'a>(case: &'a Case, settings: &'a Settings, predicted: [f64; 2]) -> impl Iterator<Item = Plan> + 'a {
-    let supply = settings.circuit.supply_voltage;
-    let largest = case.impacts.iter().map(|impact| impact.ratio).fold(1.0, f64::max);
+/// From `U_in` to beyond the largest `U_DE4`; ngspice at the predicted optimum.
+fn over_voltage(
+    mechanics: &MechanicalRun,
+    settings: &Settings,
+    [shared, isolated]: [f64; 2],
+) -> impl Iterator<Item = Plan> {
+    let (supply, largest) = (settings.circuit.supply_voltage, mechanics.largest_ratio());
     circuits(settings).map(move |(circuit, settings)| {
-        let shared = settings.circuit.topology == Topology::SharedNode;
-        let idle = if shared { 1.0 } else { 0.0 };
+        let (idle, witness) =
+            if settings.circuit.topology == Topology::SharedNode { (1.0, shared) } else { (0.0, isolated) };
         let span = formulas::peak_voltage(supply, 1.0 + idle, largest + idle) - supply;
         let part = |k: u32| f64::from(k) / f64::from(VOLTAGES - 1);
-        let witnesses = vec![predicted[usize::from(!shared)]];
-        let xs = with_witnesses((0..VOLTAGES).map(|k| supply + 1.05 * span * part(k)), &witnesses);
+        let xs = with((0..VOLTAGES).map(|k| supply + 1.05 * span * part(k)), witness);
         let set = |settings: &mut Settings, voltage| {
             settings.circuit.zener_voltage = voltage;
             settings.circuit.storage_voltage = voltage;
         };
-        Plan { circuit, parameter: "release voltage", settings, set, xs, witnesses }
+        Plan { circuit, parameter: "release voltage", settings, set, xs, witness }
     })
 }
 
 /// From a quick to a slow release; ngspice at the load asked for.
 fn over_load(settings: &Settings) -> impl Iterator<Item = Plan> {
-    let asked = settings.circuit.load_resistance;
-    circuits(settings).filter(|(_, settings)| settings.circuit.release != Release::Storage).map(
-        move |(circuit, settings)| {
-            let [from, to] = LOAD_DECADES;
-            let exponent = |k: u32| from + (to - from) * f64::from(k) / f64::from(LOADS - 1);
-            let witnesses = vec![asked];
-            let xs = with_witnesses((0..LOADS).map(|k| 10.0_f64.powf(exponent(k))), &witnesses);
-            let set = |settings: &mut Settings, resistance| settings.circuit.load_resistance = resistance;
-            Plan { circuit, parameter: "load resistance", settings, set, xs, witnesses }
-        },
-    )
+    let [from, to] = LOAD_DECADES;
+    let exponent = move |k: u32| from + (to - from) * f64::from(k) / f64::from(LOADS - 1);
+    let witness = settings.circuit.load_resistance;
+    let loaded = circuits(settings).filter(|(_, settings)| settings.circuit.release != Release::Storage);
+    loaded.map(move |(circuit, settings)| {
+        let xs = with((0..LOADS).map(|k| 10.0_f64.powf(exponent(k))), witness);
+        let set = |settings: &mut Settings, resistance| settings.circuit.load_resistance = resistance;
+        Plan { circuit, parameter: "load resistance", settings, set, xs, witness }
+    })
 }
 
-fn circuits(settings: &Settings) -> impl Iterator<Item = (String, Settings)> {
+fn circuits(settings: &Settings) -> impl Iterator<Item = (String, Settings)> + use<> {
     let base = *settings;
     TOPOLOGIES.into_iter().flat_map(move |(topology, node)| {
         RELEASES.into_iter().map(move |(release, element)| {
@@ -244,8 +219,8 @@ mod tests {
 
     #[test]
     fn the_top_of_a_parabola_is_found_between_uneven_points() {
-        let at = |x: f64| Point { x, converted: 5.0 - (x - 2.3) * (x - 2.3), surplus: 0.0, supply: 1.0 };
-        let curve = Curve {
+        let at = |x: f64| SweepPoint { x, converted: 5.0 - (x - 2.3) * (x - 2.3), surplus: 0.0, supply: 1.0 };
+        let curve = SweepCurve {
             circuit: String::new(),
             parameter: "x",
             points: [0.0, 1.0, 2.0, 3.5, 4.0].map(at).to_vec(),

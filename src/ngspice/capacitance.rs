@@ -38,7 +38,7 @@ impl CapacitanceTable {
         if table.len() < 2 { fail(table.len(), "there must be two rows at least".to_owned()) } else { Ok(table) }
     }
 
-    /// Appends a row, checked.
+    /// Appends a row.
     pub(crate) fn push(&mut self, time: f64, [left, right]: [f64; 2]) -> Result<(), NgspiceError> {
         let row = self.len();
         let fail = |reason| Err(NgspiceError::Table { row, reason });
@@ -101,6 +101,14 @@ impl CapacitanceTable {
         self.rows().map(|(_, c)| (c[0] / left).max(c[1] / right)).fold(1.0, f64::max)
     }
 
+    /// Capacitance of the left membrane at `time`, s, as ngspice reads it: in pF; F.
+    pub fn left_at(&self, time: f64) -> f64 {
+        let end = self.time.partition_point(|&row| row < time).clamp(1, self.len() - 1);
+        let [a, b] = [end - 1, end];
+        let part = ((time - self.time[a]) / (self.time[b] - self.time[a])).clamp(0.0, 1.0);
+        (self.left[a] / PICO + part * (self.left[b] - self.left[a]) / PICO) * PICO
+    }
+
     /// Last time, s.
     pub fn until(&self) -> f64 {
         self.time.last().copied().unwrap_or_default()
@@ -128,10 +136,7 @@ impl CapacitanceTable {
 
     /// Writes the table as ngspice's `filesource` reads it: time in s, left and right in pF. A last row beyond the end
     /// keeps the capacitances where the last step of ngspice may overshoot.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn write(&self, mut out: impl Write) -> std::io::Result<()> {
+    pub(super) fn write(&self, mut out: impl Write) -> std::io::Result<()> {
         let beyond = self.rows().last().map(|(time, capacitance)| (time + 1.0, capacitance));
         for (time, [left, right]) in self.rows().chain(beyond) {
             writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO)?;

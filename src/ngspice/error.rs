@@ -1,4 +1,4 @@
-//! What can go wrong between a circuit and the numbers that ngspice gives for it.
+//! Errors of the ngspice backend.
 
 use std::path::PathBuf;
 use std::process::ExitStatus;
@@ -33,7 +33,7 @@ pub enum NgspiceError {
         /// The limit, s.
         limit: f64,
         /// What ngspice said.
-        said: Said,
+        said: Complaints,
     },
     /// It failed and admits it.
     #[error("ngspice failed ({status}){said}")]
@@ -41,7 +41,7 @@ pub enum NgspiceError {
         /// Exit status.
         status: ExitStatus,
         /// What ngspice said.
-        said: Said,
+        said: Complaints,
     },
     /// It claims success and has no, or half a, result.
     #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{said}")]
@@ -51,7 +51,7 @@ pub enum NgspiceError {
         /// End of the run, s.
         until: f64,
         /// What ngspice said.
-        said: Said,
+        said: Complaints,
     },
     /// Its result cannot be read.
     #[error("result of ngspice: {0}")]
@@ -65,14 +65,6 @@ pub enum NgspiceError {
         value: String,
         /// What is allowed.
         bound: &'static str,
-    },
-    /// A netlist template and the values for it do not fit together.
-    #[error("netlist template {template}: {reason}")]
-    Template {
-        /// File name of the template.
-        template: &'static str,
-        /// What does not fit.
-        reason: String,
     },
     /// A table of capacitances makes no sense.
     #[error("table of capacitances, row {row}: {reason}")]
@@ -96,22 +88,22 @@ pub enum NgspiceError {
     /// The embedded circuit refused something.
     #[error("embedded circuit: {0}")]
     Circuit(#[from] videg_circuit::Error),
-    /// What gives C(t) refused something.
+    /// The source of C(t) refused something.
     #[error(transparent)]
     Harvester(Box<dyn std::error::Error + Send + Sync>),
 }
 
 impl NgspiceError {
-    /// Whether ngspice has ended too early: what it has found until then stands.
+    /// Whether ngspice has ended too early: its results until then are valid.
     pub fn is_stop(&self) -> bool {
         matches!(self, Self::Stopped { .. } | Self::TimeLimit { .. } | Self::Failed { .. } | Self::Live(_))
     }
 
-    /// Whether it found no way on from a point of time; from others it may.
-    pub fn is_lost(&self) -> bool {
+    /// Whether its time step became too small at a point of time; with other time points it may get beyond.
+    pub fn is_step_too_small(&self) -> bool {
         match self {
-            Self::Stopped { said, .. } => said.gave_up(),
-            Self::Live(live) => Said::in_output(&live.to_string()).gave_up(),
+            Self::Stopped { said, .. } => said.give_up(),
+            Self::Live(live) => Complaints::in_output(&live.to_string()).give_up(),
             _ => false,
         }
     }
@@ -119,9 +111,9 @@ impl NgspiceError {
 
 /// Lines of ngspice that tell why it stopped; empty if it said nothing of the kind.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Said(Vec<String>);
+pub struct Complaints(Vec<String>);
 
-impl Said {
+impl Complaints {
     /// Words by which ngspice's complaints are known.
     const SIGNS: [&'static str; 7] = ["error", "abort", "too small", "singular", "fatal", "cannot", "no such"];
     /// Lines kept: the first complaint is the cause, the rest its echo.
@@ -139,19 +131,14 @@ impl Said {
         Self(output.lines().filter(complaint).take(Self::LINES).map(shown).collect())
     }
 
-    /// The lines.
-    pub fn lines(&self) -> &[String] {
-        &self.0
-    }
-
-    /// Whether ngspice says that it gave up.
-    pub(super) fn gave_up(&self) -> bool {
+    /// Whether ngspice says that it gives up.
+    pub(super) fn give_up(&self) -> bool {
         const FATAL: [&str; 3] = ["abort", "too small", "singular matrix"];
         self.0.iter().any(|line| FATAL.iter().any(|sign| line.to_lowercase().contains(sign)))
     }
 }
 
-impl std::fmt::Display for Said {
+impl std::fmt::Display for Complaints {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.iter().try_for_each(|line| write!(f, "\n  ngspice: {line}"))
     }

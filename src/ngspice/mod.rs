@@ -15,38 +15,38 @@
 //! # }
 //! ```
 //!
-//! - [`CapacitanceTable`] is what both solvers get;
-//! - [`Elements`] is the circuit; [`Elements::netlist`] renders it from the templates in `ngspice_netlists`, with C(t)
-//!   from a table or from a program that has loaded ngspice ([`CapacitanceSource`]). Numbers are the only thing that
-//!   can be put into a template, so that no text of a user ever gets into a netlist;
-//! - [`Ngspice`] finds the program and runs a [`Netlist`];
-//! - [`RawReader`] reads the result, [`Books`] sums up energies and charges point by point, also those of a program that
-//!   gets the points from the library;
+//! - [`CapacitanceTable`] is C(t), the same for both solvers;
+//! - [`Elements`] is the circuit, rendered from the templates in `ngspice_netlists`, with C(t) from a table or from a
+//!   program that has loaded ngspice. Only numbers can be put into a template, so that no text of a user ever gets into a
+//!   netlist;
+//! - [`Ngspice`] finds the program and runs it; [`RawReader`] reads the result, which is summed up point by point;
 //! - [`live`] runs ngspice's shared library step by step, as the partner of a co-simulation;
-//! - [`Check`] holds ngspice's own capacitor against closed forms;
-//! - [`Waveforms`] is what comes out, of either solver.
+//! - [`CapacitorTest`] compares ngspice's own capacitor with closed forms;
+//! - [`Waveforms`] is the result of either solver.
 
-mod analytic;
-mod books;
 mod capacitance;
-mod circuit;
-mod drain;
+mod capacitor;
+mod elements;
 mod error;
+mod kept_output;
+mod ledger;
 pub mod live;
 mod raw;
-mod reading;
+mod result;
 mod run;
 mod runner;
 mod template;
 mod waveforms;
 
-pub use analytic::{Check, Deviation};
-pub use books::{Books, Instant};
-pub use capacitance::{CapacitanceTable, PICO};
-pub use circuit::{Branch, Elements, Start};
-pub use error::{NgspiceError, Said};
+pub use capacitance::CapacitanceTable;
+pub(crate) use capacitance::PICO;
+pub use capacitor::{CapacitorTest, Deviation};
+pub use elements::Elements;
+pub use error::{Complaints, NgspiceError};
+pub(crate) use ledger::TrapezoidalLedger;
 pub use raw::{RawError, RawReader};
-pub use run::{CapacitanceSource, Run};
-pub use runner::{Finished, Ngspice, Outcome};
-pub use template::{FileName, Netlist};
+pub(crate) use run::CapacitanceSource;
+pub use run::Run;
+pub use runner::{Ngspice, SolverRun};
+pub(crate) use template::{FileName, Netlist};
 pub use waveforms::Waveforms;

@@ -1,10 +1,10 @@
-//! Length, accuracy and options of a run of ngspice, and where it has C(t) from.
+//! Length, accuracy and options of a run of ngspice, and the source of C(t).
 
 use super::NgspiceError;
 use super::capacitance::PICO;
-use super::template::{FileName, Value, Values, template};
+use super::template::{FileName, Values, template};
 
-/// Where C(t) comes from.
+/// Source of C(t).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CapacitanceSource {
     /// The table file beside the netlist, for a batch run.
@@ -20,7 +20,7 @@ pub struct Run {
     /// End of the run, s.
     pub until: f64,
     /// Longest piece that ngspice runs in one go, s: it keeps all its time points in memory, some 6 MB for each second. The
-    /// next piece begins with the voltages in which the last one ended.
+    /// next piece begins with the voltages at the end of the last one.
     pub piece: f64,
     /// Longest internal step, s. The table sets no breakpoints, so this must stay well below the length of a pulse.
     pub max_step: f64,
@@ -52,8 +52,8 @@ impl Run {
         }
     }
 
-    /// The same run with time points elsewhere, for when ngspice has stopped, and what is changed: more than the numbers of
-    /// the run nothing depends on, and shorter steps cost no accuracy.
+    /// The same run with other time points, for when ngspice has stopped, and the change in words. Shorter steps cost no
+    /// accuracy.
     pub fn changed(&self) -> [(String, Self); 2] {
         [0.5, 0.2].map(|part| {
             let max_step = part * self.max_step;
@@ -87,21 +87,20 @@ impl Run {
             .number("initial_left_pf", left / PICO)
             .number("initial_right_pf", right / PICO)
             .number("initial_total_pf", (left + right) / PICO)
-            .with("saved", Value::Vectors(saved))
-            .with("table_file", Value::File(FileName::Table))
-            .with("raw_file", Value::File(FileName::Raw));
+            .vectors("saved", saved)
+            .file("table_file", FileName::Table)
+            .file("raw_file", FileName::Raw);
         let (capacitance, run) = match source {
             CapacitanceSource::Table => (template!("capacitance_table.cir"), template!("run_batch.cir")),
             CapacitanceSource::External => (template!("capacitance_external.cir"), template!("run_live.cir")),
         };
-        let capacitance = capacitance.render(&values)?;
-        let run = run.render(&values)?;
-        Ok(values.with("capacitance", Value::Fragment(capacitance)).with("run", Value::Fragment(run)))
+        let (capacitance, run) = (values.render(capacitance)?, values.render(run)?);
+        Ok(values.part("capacitance", &capacitance).part("run", &run))
     }
 }
 
-/// By how much diodes and tolerances have to be coarser than for the pulses of the paper's Fig. 9 to 15, which raise the
-/// voltage by less than a factor of 5: doubles resolve a voltage of 300 kV to 60 pV only.
+/// Factor by which diodes and tolerances have to be coarser than for the pulses of the paper's Fig. 9 to 15, which raise
+/// the voltage by less than a factor of 5: doubles resolve a voltage of 300 kV to 60 pV only.
 pub(super) fn coarseness(growth: f64) -> f64 {
     (growth / 5.0).max(1.0)
 }

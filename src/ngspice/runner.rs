@@ -1,4 +1,4 @@
-//! ngspice as a program of its own: no shell, nothing to read from, a fresh folder, a time limit.
+//! ngspice as a program: started without a shell or an input, in a fresh folder, with a time limit.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use super::capacitance::CapacitanceTable;
-use super::drain::Drain;
-use super::reading::Reading;
+use super::kept_output::KeptOutput;
+use super::result::ResultReader;
 use super::template::{FileName, Netlist};
-use super::{CapacitanceSource, Elements, NgspiceError, Run, Said, Waveforms};
+use super::{CapacitanceSource, Complaints, Elements, NgspiceError, Run, Waveforms};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
 use videg_system::{atomic_file, input};
@@ -24,36 +24,28 @@ pub struct Ngspice {
     pub time_limit: Duration,
 }
 
-/// A finished run of ngspice, in a folder that is removed with it.
+/// Result and messages of ngspice, in a folder that is removed with it.
 #[derive(Debug)]
-pub struct Finished {
+pub(super) struct BatchOutput {
     folder: TemporaryFolder,
-    said: Said,
+    complaints: Complaints,
 }
 
 /// A run in one of the solvers, as far as it got.
-#[derive(Debug)]
-pub struct Outcome {
+#[derive(Debug, Default)]
+pub struct SolverRun {
     /// The circuit up to there.
     pub waveforms: Waveforms,
-    /// What was changed where ngspice found no way on, and from when to when, in words.
+    /// Changes with which a part was repeated after ngspice had stopped, in words with times.
     pub repeated: Vec<String>,
     /// Why it ends before the table does.
     pub stop: Option<NgspiceError>,
 }
 
-impl From<Waveforms> for Outcome {
+impl From<Waveforms> for SolverRun {
     fn from(waveforms: Waveforms) -> Self {
-        Self { waveforms, repeated: Vec::new(), stop: None }
+        Self { waveforms, ..Self::default() }
     }
-}
-
-/// What ngspice runs in one go: the rows `from` to `to` of a table.
-struct Piece<'a> {
-    elements: &'a Elements,
-    table: &'a CapacitanceTable,
-    from: usize,
-    to: usize,
 }
 
 impl Ngspice {
@@ -115,11 +107,12 @@ impl Ngspice {
         table: &CapacitanceTable,
         run: &Run,
     ) -> Result<Waveforms, NgspiceError> {
-        let outcome = self.follow(elements, table, run, &|_| ())?;
-        outcome.stop.map_or(Ok(outcome.waveforms), Err)
+        let found = self.follow(elements, table, run, &|_| ())?;
+        found.stop.map_or(Ok(found.waveforms), Err)
     }
 
-    /// Runs `elements` over `table`, in pieces, as far as ngspice gets; `progress` hears which part is done.
+    /// Runs `elements` over `table`, in pieces, as far as ngspice gets; a piece in which it stops is repeated with changes.
+    /// `progress` gets the part that is done.
     ///
     /// # Errors
     /// Anything but that ngspice stops.
@@ -129,67 +122,58 @@ impl Ngspice {
         table: &CapacitanceTable,
         run: &Run,
         progress: &dyn Fn(f64),
-    ) -> Result<Outcome, NgspiceError> {
-        let mut reading = Reading::new(elements, table);
+    ) -> Result<SolverRun, NgspiceError> {
+        let mut reader = ResultReader::new(elements, table);
         let (mut from, mut repeated, mut stop) = (0, Vec::new(), None);
         for to in table.pieces(run.piece) {
-            let piece = Piece { elements, table, from, to };
-            match self.piece(&piece, &mut reading, run, &mut repeated) {
-                Ok(()) => progress(table.times()[to] / table.until()),
-                Err(error) if error.is_stop() => {
-                    stop = Some(error);
+            let start = reader.position();
+            stop = self.piece(elements, table, [from, to], &mut reader, run)?;
+            for (change, changed) in run.changed() {
+                if !stop.as_ref().is_some_and(NgspiceError::is_step_too_small) {
                     break;
                 }
-                Err(error) => return Err(error),
+                let [start_time, end_time] = [from, to].map(|row| table.times()[row]);
+                repeated.push(format!("{change} from {start_time} s to {end_time} s"));
+                reader.return_to(&start);
+                stop = self.piece(elements, table, [from, to], &mut reader, &changed)?;
             }
-            from = to;
-        }
-        Ok(Outcome { waveforms: reading.finish(), repeated, stop })
-    }
-
-    /// Runs a piece, again with changes where ngspice finds no way on.
-    fn piece(
-        &self,
-        piece: &Piece<'_>,
-        reading: &mut Reading<'_>,
-        run: &Run,
-        repeated: &mut Vec<String>,
-    ) -> Result<(), NgspiceError> {
-        let mark = reading.mark();
-        let mut result = self.attempt(piece, reading, run);
-        for (change, changed) in run.changed() {
-            if !result.as_ref().is_err_and(NgspiceError::is_lost) {
+            if stop.is_some() {
                 break;
             }
-            let [from, to] = [piece.from, piece.to].map(|row| piece.table.times()[row]);
-            repeated.push(format!("{change} from {from} s to {to} s"));
-            reading.return_to(&mark);
-            result = self.attempt(piece, reading, &changed);
+            progress(table.times()[to] / table.until());
+            from = to;
         }
-        result
+        Ok(SolverRun { waveforms: reader.finish(), repeated, stop })
     }
 
-    fn attempt(&self, piece: &Piece<'_>, reading: &mut Reading<'_>, run: &Run) -> Result<(), NgspiceError> {
-        let part = piece.table.part(piece.from, piece.to);
+    /// Runs the rows `from` to `to` of a table in one go; returns why ngspice stops before their end, if it does.
+    fn piece(
+        &self,
+        elements: &Elements,
+        table: &CapacitanceTable,
+        [from, to]: [usize; 2],
+        reader: &mut ResultReader<'_>,
+        run: &Run,
+    ) -> Result<Option<NgspiceError>, NgspiceError> {
+        let part = table.part(from, to);
         let (source, until) = (CapacitanceSource::Table, part.until());
-        let (_, start) = reading.end();
-        let netlist = piece.elements.netlist_from(&start, source, part.initial(), &Run { until, ..*run })?;
-        let finished = self.run(&netlist, &part)?;
-        if let Some(raw) = finished.raw()? {
-            reading.take(raw, piece.from)?;
+        let (_, start) = reader.end();
+        let netlist = elements.netlist_from(&start, source, part.initial(), &Run { until, ..*run })?;
+        let output = match self.run(&netlist, &part) {
+            Err(error) if error.is_stop() => return Ok(Some(error)),
+            other => other?,
+        };
+        if let Some(raw) = output.raw()? {
+            reader.read(raw, from)?;
         }
-        if reading.has(piece.to) && !finished.said.gave_up() {
-            return Ok(());
-        }
-        let (reached, _) = reading.end();
-        Err(NgspiceError::Stopped { reached, until: piece.table.until(), said: finished.said })
+        let (reached, _) = reader.end();
+        let is_complete = reader.has(to) && !output.complaints.give_up();
+        let said = output.complaints;
+        Ok((!is_complete).then_some(NgspiceError::Stopped { reached, until: table.until(), said }))
     }
 
     /// Writes netlist and table into `folder`, where `ngspice -b harvesting.cir` runs them by hand.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
+    pub(crate) fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
         let path = folder.join(FileName::Netlist.name());
         atomic_file::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
         let path = folder.join(FileName::Table.name());
@@ -198,30 +182,27 @@ impl Ngspice {
     }
 
     /// Runs `netlist` with `table` beside it.
-    ///
-    /// # Errors
-    /// A program that cannot be started, takes too long, or fails.
-    pub fn run(&self, netlist: &Netlist, table: &CapacitanceTable) -> Result<Finished, NgspiceError> {
+    pub(super) fn run(&self, netlist: &Netlist, table: &CapacitanceTable) -> Result<BatchOutput, NgspiceError> {
         let file = |cause| NgspiceError::File { path: std::env::temp_dir(), cause };
         let folder = TemporaryFolder::new("videg-ngspice-").map_err(file)?;
         Self::export(folder.path(), netlist, table)?;
         let failed = |cause| NgspiceError::Start { program: self.program.clone(), cause };
         let mut group = ProcessGroup::start(&mut self.command(folder.path())).map_err(failed)?;
         let (stdout, stderr) = (group.child.stdout.take(), group.child.stderr.take());
-        let stdout = stdout.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
-        let stderr = stderr.map(|stream| Drain::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
+        let stdout = stdout.map(|stream| KeptOutput::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
+        let stderr = stderr.map(|stream| KeptOutput::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
         let has_ended = group.wait(Some(self.time_limit)).map_err(failed)?;
         // With what it has started.
         let status = group.end().map_err(failed)?;
-        let text = [stdout, stderr].map(|drain| drain.map(|drain| drain.text()).unwrap_or_default());
-        let said = Said::in_output(&text.concat());
+        let text = [stdout, stderr].map(|kept| kept.map(|kept| kept.text()).unwrap_or_default());
+        let said = Complaints::in_output(&text.concat());
         if !has_ended {
             return Err(NgspiceError::TimeLimit { limit: self.time_limit.as_secs_f64(), said });
         }
         if !status.success() {
             return Err(NgspiceError::Failed { status, said });
         }
-        Ok(Finished { folder, said })
+        Ok(BatchOutput { folder, complaints: said })
     }
 
     fn command(&self, folder: &Path) -> Command {
@@ -234,11 +215,8 @@ impl Ngspice {
     }
 }
 
-impl Finished {
+impl BatchOutput {
     /// The result, if there is one.
-    ///
-    /// # Errors
-    /// If it cannot be opened, or is no regular file.
     pub fn raw(&self) -> Result<Option<BufReader<File>>, NgspiceError> {
         let path = self.folder.path().join(FileName::Raw.name());
         match input::open_regular(&path) {
@@ -249,8 +227,8 @@ impl Finished {
     }
 
     /// Complaints of ngspice.
-    pub fn said(&self) -> &Said {
-        &self.said
+    pub fn complaints(&self) -> &Complaints {
+        &self.complaints
     }
 }
 

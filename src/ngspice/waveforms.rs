@@ -43,9 +43,16 @@ impl Waveforms {
         Self { time: Vec::with_capacity(rows), samples: Vec::with_capacity(rows), points: None }
     }
 
-    pub(super) fn push(&mut self, time: f64, sample: CircuitSample) {
+    pub(crate) fn push(&mut self, time: f64, sample: CircuitSample) {
         self.time.push(time);
         self.samples.push(sample);
+    }
+
+    /// Drops all rows but the last.
+    pub(crate) fn keep_last(&mut self) {
+        // In place of a drain, which would keep the memory.
+        self.time = self.time.split_off(self.time.len().saturating_sub(1));
+        self.samples = self.samples.split_off(self.samples.len().saturating_sub(1));
     }
 
     /// The first `rows` rows.
@@ -59,7 +66,7 @@ impl Waveforms {
         self.samples.last().copied().unwrap_or_default()
     }
 
-    /// The books at the end.
+    /// The ledger at the end.
     pub fn ledger(&self) -> Ledger {
         self.last().ledger
     }

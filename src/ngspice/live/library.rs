@@ -117,9 +117,6 @@ pub struct Ngspice {
 
 impl Ngspice {
     /// Loads the library: the one that [`LIBRARY_VARIABLE`] names, else the system's.
-    ///
-    /// # Errors
-    /// If there is none, or it is another library.
     pub fn load() -> Result<Self, LibraryError> {
         let named = std::env::var_os(LIBRARY_VARIABLE).map(PathBuf::from);
         let candidates = named.map_or_else(|| NAMES.iter().map(PathBuf::from).collect(), |path| vec![path]);
@@ -168,9 +165,6 @@ impl Ngspice {
     }
 
     /// Reads a circuit. ngspice reports success even for a bad one; the analysis then does not run.
-    ///
-    /// # Errors
-    /// A zero byte in a line.
     pub fn circuit(&self, lines: &[String]) -> Result<(), LibraryError> {
         let lines = lines.iter().map(|line| text(line)).collect::<Result<Vec<_>, _>>()?;
         let mut pointers: Vec<*mut c_char> = lines.iter().map(|line| line.as_ptr().cast_mut()).collect();
@@ -181,9 +175,6 @@ impl Ngspice {
     }
 
     /// Executes a command; returns when it is done. A transient analysis calls back meanwhile.
-    ///
-    /// # Errors
-    /// A zero byte in the command.
     pub fn command(&self, command: &str) -> Result<(), LibraryError> {
         let command = text(command)?;
         // SAFETY: ngspice copies the command.

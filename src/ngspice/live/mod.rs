@@ -1,4 +1,4 @@
-//! ngspice as a live partner of a co-simulation: its shared library in a worker process, coupled step by step.
+//! ngspice as a partner of a co-simulation: its shared library in a worker process, coupled step by step.
 
 mod client;
 mod library;
@@ -8,4 +8,4 @@ mod worker;
 pub use client::{LiveError, WORKER_VERB, Worker};
 pub use library::LIBRARY_VARIABLE;
 pub use protocol::{Job, Ramp};
-pub use worker::serve;
+pub(crate) use worker::serve;

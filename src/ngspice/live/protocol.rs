@@ -57,9 +57,6 @@ pub enum Reply {
 }
 
 /// Writes a message.
-///
-/// # Errors
-/// If it cannot be written.
 pub fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
     let mut line = serde_json::to_vec(message)?;
     line.push(b'\n');
@@ -68,9 +65,6 @@ pub fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()>
 }
 
 /// Reads a message; none if the other side has closed.
-///
-/// # Errors
-/// If it cannot be read, or is not what is expected.
 pub fn receive<T: DeserializeOwned>(reader: &mut impl BufRead) -> io::Result<Option<T>> {
     let mut line = Vec::new();
     reader.take(LONGEST_LINE).read_until(b'\n', &mut line)?;
@@ -93,19 +87,14 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_the_stream_is_no_message_and_garbage_an_error() {
+    fn the_end_of_the_stream_is_no_message_and_garbage_or_an_endless_line_an_error() {
         assert_eq!(receive::<Reply>(&mut &b""[..]).unwrap(), None);
-        for garbage in [&b"\n"[..], b"{}\n", b"{\"points\":[null]}\n", b"{\"points\":[1"] {
-            assert!(receive::<Reply>(&mut &garbage[..]).is_err());
-        }
-    }
-
-    #[test]
-    fn a_line_without_end_is_not_read_for_ever() {
         let endless = vec![b'['; 3 << 20];
-        let mut reader = endless.as_slice();
-        assert!(receive::<Reply>(&mut reader).is_err());
-        assert!(reader.len() >= 2 << 20);
+        for garbage in [&b"\n"[..], b"{}\n", b"{\"points\":[null]}\n", b"{\"points\":[1", &endless] {
+            let mut reader = garbage;
+            assert!(receive::<Reply>(&mut reader).is_err());
+            assert!(garbage.len() < 100 || reader.len() >= 2 << 20, "it was read to its end");
+        }
     }
 
     #[test]

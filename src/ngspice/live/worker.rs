@@ -40,9 +40,6 @@ struct Session<W> {
 
 /// Serves one job: reads it and the ramps from stdin, answers on `replies`, and returns when stdin ends or the job has
 /// failed.
-///
-/// # Errors
-/// If the other side cannot be read or written.
 pub fn serve<W: Write>(mut replies: W) -> io::Result<()> {
     let mut requests = BufReader::new(io::stdin());
     let Some(job) = receive::<Job>(&mut requests)? else { return Ok(()) };

@@ -1,8 +1,9 @@
 //! The figures of a crosscheck.
 
-use super::crosscheck::Finished;
+use super::run::Crosscheck;
+use super::solver::Solver;
+use super::sweep::{ReleaseSweep, SweepCurve, SweepPoint};
 use crate::cosim::CircuitSample;
-use crate::crosscheck::{Curve, Point, Solver, Sweep};
 use crate::ngspice::Waveforms;
 use videg_report::{Figure, Panel, ReportError, Series, Style, render_svg};
 
@@ -37,19 +38,18 @@ fn thinned(points: &[(f64, f64)]) -> Points {
 }
 
 /// Voltages of embedded solver and ngspice in the last seconds, their difference, and the energies of the whole run.
-pub fn overlay(finished: &Finished) -> Result<String, ReportError> {
-    let run = |solver| finished.runs.iter().find(|(other, _)| *other == solver).map(|(_, run)| run);
+pub fn overlay(found: &Crosscheck) -> Result<String, ReportError> {
     let empty = Waveforms::default();
-    let embedded = run(Solver::Exponential).unwrap_or(&empty);
-    let ngspice = run(Solver::Batch).unwrap_or(&empty);
-    let until = finished.scenario.until;
+    let run = |solver| found.run(solver).unwrap_or(&empty);
+    let (embedded, ngspice) = (run(Solver::Exponential), run(Solver::Batch));
+    let until = found.scenario.until;
     let from = (until - DETAIL).max(0.0);
     let voltage = |run: &Waveforms, side: usize| points(run, from, move |at| 1e-3 * at.voltage[side]);
     let sides = [0, 1].map(|side| (voltage(embedded, side), thinned(&voltage(ngspice, side))));
     let differences = [Solver::Exponential, Solver::Ideal, Solver::Live].map(|solver| {
-        let Some(other) = run(solver) else { return Points::new() };
-        let pairs = points(other, from, |at| at.voltage[0]).into_iter().zip(points(ngspice, from, |at| at.voltage[0]));
-        pairs.map(|((time, a), (_, b))| (time, 1e3 * (a - b))).collect()
+        let pairs =
+            points(run(solver), from, |at| at.voltage[0]).into_iter().zip(points(ngspice, from, |at| at.voltage[0]));
+        pairs.map(|((time, a), (_, b))| (time, 1e3 * (a - b))).collect::<Points>()
     });
     let energies: [Energy; 4] = [
         ("supply", |at| 1e3 * at.ledger.supply),
@@ -71,32 +71,33 @@ pub fn overlay(finished: &Finished) -> Result<String, ReportError> {
     for (name, line) in ["exponential diodes", "ideal diodes", "ngspice live"].iter().zip(&differences) {
         below = below.series(Series::points(*name, line));
     }
-    let mut books = Panel::new("(c)", "time (s)", "energy (mJ)").height(150.0);
+    let mut ledger = Panel::new("(c)", "time (s)", "energy (mJ)").height(150.0);
     for (k, (name, line, markers)) in energies.iter().enumerate() {
-        books = books.series(Series::points(*name, line).color(k));
-        books = books.series(Series::points("", markers).style(Style::Markers).color(k));
+        ledger = ledger.series(Series::points(*name, line).color(k));
+        ledger = ledger.series(Series::points("", markers).style(Style::Markers).color(k));
     }
-    let title = format!("{}: {}", finished.scenario.name, finished.label);
-    let figure = Figure::new(title).panel(voltages).panel(below).panel(books).caption(OVERLAY_CAPTION);
+    let title = format!("{}: {}", found.scenario.name, found.label);
+    let figure = Figure::new(title).panel(voltages).panel(below).panel(ledger).caption(OVERLAY_CAPTION);
     render_svg(&figure)
 }
 
-/// What stands below the figure.
+/// Caption of the overlay.
 pub const OVERLAY_CAPTION: &str = "(a) Voltages of the membranes by the embedded solver with exponential diodes (lines) and by ngspice \
     in batch (dots) in the last seconds of the run; (b) what the left membrane's voltage differs by from that of ngspice in batch; (c) \
     energies since the start, embedded solver (lines) and ngspice (dots).";
 
-/// What stands below the figure of the sweep.
+/// Caption of the figure of the sweep.
 pub const SWEEP_CAPTION: &str = "Energies of the whole run, embedded solver with ideal diodes (lines) and ngspice (dots): (a) what the \
     mechanics give, converted, and (b) what a user gains, the surplus, over the voltage of release; (c) and (d) the same over the load resistance.";
 
 /// Net gain over voltage of release and load.
-pub fn sweep(sweep: &Sweep) -> Result<String, ReportError> {
-    let values: [fn(&Point) -> f64; 2] = [|point| 1e3 * point.converted, |point| 1e3 * point.surplus];
-    let lines = |curves: &[Curve], x: fn(f64) -> f64, value: fn(&Point) -> f64| -> Vec<(String, Points, Points)> {
-        let of = |points: &[Point]| points.iter().map(|point| (x(point.x), value(point))).collect();
-        curves.iter().map(|curve| (curve.circuit.clone(), of(&curve.points), of(&curve.witnesses))).collect()
-    };
+pub fn sweep(sweep: &ReleaseSweep) -> Result<String, ReportError> {
+    let values: [fn(&SweepPoint) -> f64; 2] = [|point| 1e3 * point.converted, |point| 1e3 * point.surplus];
+    let lines =
+        |curves: &[SweepCurve], x: fn(f64) -> f64, value: fn(&SweepPoint) -> f64| -> Vec<(String, Points, Points)> {
+            let of = |points: &[SweepPoint]| points.iter().map(|point| (x(point.x), value(point))).collect();
+            curves.iter().map(|curve| (curve.circuit.clone(), of(&curve.points), of(&curve.witnesses))).collect()
+        };
     let voltage = values.map(|value| lines(&sweep.voltage, |x| 1e-3 * x, value));
     let load = values.map(|value| lines(&sweep.load, |x| x, value));
     let names = ["converted energy (mJ)", "surplus (mJ)"];

@@ -1,25 +1,22 @@
-//! What a child says on a stream: read to the end, so that the child never waits for a reader; the beginning is kept.
+//! The output of a child on a stream: read to the end, so that the child never waits for a reader; the beginning is kept.
 
 use std::io::{self, Read};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How long the rest is waited for when the child has ended: what it started and sent away may hold the stream open.
+/// Longest wait for the rest when the child has ended: a process that it started and detached may hold the stream open.
 const FAREWELL: Duration = Duration::from_secs(1);
 
 /// A stream that is being read.
-pub(super) struct Drain {
+pub(super) struct KeptOutput {
     kept: Arc<Mutex<Vec<u8>>>,
     /// Closed at the end of the stream.
     end: Receiver<()>,
 }
 
-impl Drain {
+impl KeptOutput {
     /// Reads `stream` in a thread and keeps its first `most` bytes.
-    ///
-    /// # Errors
-    /// If the system gives no thread.
     pub fn new(mut stream: impl Read + Send + 'static, most: usize) -> io::Result<Self> {
         let (kept, (sender, end)) = (Arc::new(Mutex::new(Vec::new())), channel());
         let shared = Arc::clone(&kept);
