@@ -82,7 +82,7 @@ fn coupled(fmu: &Fmu, scenario: &Scenario, model: &Harvester) {
     let harvester = HarvesterFmu::new(fmu, scenario, &scenario.settings).unwrap();
     let capacitance = harvester.sample().unwrap().capacitance();
     let circuit = EmbeddedCircuit::new("circuit", &Settings::default(), capacitance).unwrap();
-    let (mut memory, mut trace) = (MemoryAt::of(scenario.until), Trace::new(scenario.until, 2.0));
+    let (mut memory, mut trace) = (MemoryAt::of(scenario.until), Trace::of(scenario));
     let master = Master::new(harvester, vec![Box::new(circuit)], scenario, Coupling::default()).unwrap();
     let outcome = master.run(&mut [&mut memory, &mut trace]).unwrap();
     let ledger = outcome.circuits[0].ledger;

@@ -8,7 +8,7 @@ use videg_report::{Report, Section};
 use super::format::{Sheet, deviation, significant};
 use super::output;
 use crate::cosim::MechanicsSummary;
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::{PaperValues, Scenario, Setting};
 
 /// The keys of `--json` for every run: scenario and mechanics.
 #[derive(Serialize)]
@@ -20,19 +20,10 @@ pub struct RunOutput<'a> {
     window: [f64; 2],
     #[serde(flatten)]
     mechanics: MechanicsSummary,
-    paper: Paper,
+    paper: PaperValues,
     settings: &'a [Setting],
     warnings: &'a [String],
     files: &'a [PathBuf],
-}
-
-/// Values that the paper prints; null where it prints none.
-#[derive(Serialize)]
-struct Paper {
-    /// `<U>`, V/s.
-    average_voltage_gain: Option<f64>,
-    /// P, W.
-    average_power: Option<f64>,
 }
 
 impl<'a> RunOutput<'a> {
@@ -44,8 +35,7 @@ impl<'a> RunOutput<'a> {
         files: &'a [PathBuf],
     ) -> Self {
         let Scenario { name, description, settings, until, step, window, paper, .. } = scenario;
-        let (until, step, window) = (*until, *step, *window);
-        let paper = Paper { average_voltage_gain: paper.voltage_gain, average_power: paper.power };
+        let (until, step, window, paper) = (*until, *step, *window, *paper);
         Self { case: name, description, until, step, window, mechanics, paper, settings, warnings, files }
     }
 }

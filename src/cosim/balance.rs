@@ -3,40 +3,17 @@
 use serde::Serialize;
 use videg_circuit::Ledger;
 
-/// Energies of the harvester, J, from its outputs `energy.*`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct MechanicalEnergies {
-    /// Kinetic energy of the ball.
-    pub kinetic: f64,
-    /// Kinetic energy of the cylinder.
-    pub cylinder_kinetic: f64,
-    /// Elastic energy of the membranes.
-    pub elastic: f64,
-    /// Lost in the membranes so far.
-    pub impact_loss: f64,
-    /// Work of excitation and external force on the cylinder so far.
-    pub excitation: f64,
-    /// Work of the walls on the ball so far.
-    pub wall: f64,
-}
-
-impl MechanicalEnergies {
-    /// Names of the variables, in the order of the fields.
-    pub const NAMES: [&'static str; 6] = [
-        "energy.kinetic",
-        "energy.cylinderKinetic",
-        "energy.elastic",
-        "energy.impactLoss",
-        "energy.excitation",
-        "energy.wall",
-    ];
-
-    /// From the values of the variables.
-    pub(super) fn new(values: [f64; Self::NAMES.len()]) -> Self {
-        let [kinetic, cylinder_kinetic, elastic, impact_loss, excitation, wall] = values;
-        Self { kinetic, cylinder_kinetic, elastic, impact_loss, excitation, wall }
-    }
-}
+/// Variables with the energies of the harvester, J: kinetic energies of ball and cylinder, elastic energy of the membranes,
+/// energy lost in them so far, work of excitation and external force on the cylinder so far, work of the walls on the ball
+/// so far.
+pub(super) const ENERGIES: [&str; 6] = [
+    "energy.kinetic",
+    "energy.cylinderKinetic",
+    "energy.elastic",
+    "energy.impactLoss",
+    "energy.excitation",
+    "energy.wall",
+];
 
 /// The energy balance of the system over the run, J. Field names are the keys of `--json`.
 ///
@@ -66,15 +43,11 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// The balance between `start` and `end` with the `ledger` of a circuit.
-    pub(super) fn new(start: &MechanicalEnergies, end: &MechanicalEnergies, ledger: &Ledger) -> Self {
-        let change = |energy: fn(&MechanicalEnergies) -> f64| energy(end) - energy(start);
-        let excitation = change(|e| e.excitation);
-        let wall = change(|e| e.wall);
-        let kinetic = change(|e| e.kinetic);
-        let cylinder_kinetic = change(|e| e.cylinder_kinetic);
-        let elastic = change(|e| e.elastic);
-        let impact_loss = change(|e| e.impact_loss);
+    /// The balance between `start` and `end`, values of [`ENERGIES`], with the `ledger` of a circuit.
+    pub(super) fn new(start: [f64; ENERGIES.len()], end: [f64; ENERGIES.len()], ledger: &Ledger) -> Self {
+        let mut change = end;
+        change.iter_mut().zip(start).for_each(|(energy, start)| *energy -= start);
+        let [kinetic, cylinder_kinetic, elastic, impact_loss, excitation, wall] = change;
         let converted = ledger.converted();
         let residual = wall - (kinetic + elastic + impact_loss + converted);
         let through = impact_loss.abs() + ledger.supply.abs();

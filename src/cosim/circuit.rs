@@ -19,12 +19,7 @@ pub trait CircuitSlave {
     /// What the circuit says.
     fn sample(&self) -> Result<CircuitSample, CosimError>;
 
-    /// Whether [`CircuitSlave::save`] and [`CircuitSlave::restore`] work.
-    fn can_roll_back(&self) -> bool {
-        false
-    }
-
-    /// Keeps the state, in place of one that was kept before.
+    /// Saves the state in place of the one before.
     ///
     /// # Errors
     /// What the circuit says, or that it cannot do this.
@@ -32,7 +27,7 @@ pub trait CircuitSlave {
         Err(CosimError::NoRollback { label: self.label().to_owned() })
     }
 
-    /// Goes back to the state kept.
+    /// Goes back to the state saved.
     ///
     /// # Errors
     /// What the circuit says, or that it cannot do this.

@@ -67,10 +67,6 @@ impl CircuitSlave for FmuCircuit {
         read(&self.instance, &self.outputs).map(CircuitSample::from_columns)
     }
 
-    fn can_roll_back(&self) -> bool {
-        self.instance.description().co_simulation.can_get_and_set_fmu_state
-    }
-
     fn save(&mut self) -> Result<(), CosimError> {
         self.saved.save(&self.instance)
     }

@@ -1,7 +1,7 @@
 //! The harvester FMU as the master sees it.
 
 use super::CosimError;
-use super::balance::MechanicalEnergies;
+use super::balance::ENERGIES;
 use super::instance::{SavedState, read, references};
 use crate::scenario::{Scenario, Setting};
 use fmu_import::{Fmu, Instance, Logging, Status};
@@ -98,7 +98,7 @@ struct Feedback {
     /// Reference of the electrical work, if the FMU sums it up.
     work: Option<[u32; 1]>,
     /// References of the mechanical energies, if the FMU has them.
-    energies: Option<[u32; MechanicalEnergies::NAMES.len()]>,
+    energies: Option<[u32; ENERGIES.len()]>,
 }
 
 impl HarvesterFmu {
@@ -168,10 +168,10 @@ impl HarvesterFmu {
         work.map(|reference| read(&self.instance, &reference).map(|[work]| -work)).transpose()
     }
 
-    /// Mechanical energies, if the voltages act on the harvester and it has them.
-    pub(super) fn energies(&self) -> Result<Option<MechanicalEnergies>, CosimError> {
+    /// Values of [`ENERGIES`], if the voltages act on the harvester and it has them.
+    pub(super) fn energies(&self) -> Result<Option<[f64; ENERGIES.len()]>, CosimError> {
         let energies = self.feedback.and_then(|feedback| feedback.energies);
-        energies.map(|references| read(&self.instance, &references).map(MechanicalEnergies::new)).transpose()
+        energies.map(|references| read(&self.instance, &references)).transpose()
     }
 
     /// dC/dt of the membranes, left and right, F/s, at the communication point.
@@ -232,6 +232,6 @@ impl Feedback {
         let mut trial = fmu.instantiate("trial", Logging::default())?;
         let takes_rates = trial.set_real_input_derivatives(voltages, &[1, 1], &[0.0, 0.0]).is_ok();
         let work = references(fmu, [ELECTRICAL_WORK]).ok();
-        Ok(Some(Self { takes_rates, work, energies: references(fmu, MechanicalEnergies::NAMES).ok() }))
+        Ok(Some(Self { takes_rates, work, energies: references(fmu, ENERGIES).ok() }))
     }
 }

@@ -92,15 +92,14 @@ impl Master {
     /// A coupling that makes no sense, or an adaptive one with a circuit that cannot go back.
     pub fn new(
         harvester: HarvesterFmu,
-        circuits: Vec<Box<dyn CircuitSlave>>,
+        mut circuits: Vec<Box<dyn CircuitSlave>>,
         scenario: &Scenario,
         coupling: Coupling,
     ) -> Result<Self, CosimError> {
         coupling.check()?;
-        if let Some(stubborn) = circuits.iter().find(|circuit| !circuit.can_roll_back())
-            && coupling.tolerance.is_some()
-        {
-            return Err(CosimError::NoRollback { label: stubborn.label().to_owned() });
+        if coupling.tolerance.is_some() {
+            // A circuit that cannot go back says so before the run.
+            circuits.iter_mut().try_for_each(|circuit| circuit.save())?;
         }
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
         let control = coupling.tolerance.map(|tolerance| StepControl::new(tolerance, scenario.step));
@@ -160,7 +159,7 @@ impl Master {
         let coupling = self.books.summary(&self.coupling, self.steps, self.rejected);
         let balance = energies
             .zip(point.circuits.first())
-            .map(|((start, end), circuit)| EnergyBalance::new(&start, &end, &circuit.ledger));
+            .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
         let warnings = self.harvester.warnings();
         Ok(Outcome { mechanics, circuits: point.circuits, coupling, balance, warnings })
     }

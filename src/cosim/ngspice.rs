@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::ngspice::live::{Job, Ramp, Worker};
-use crate::ngspice::{CapacitanceSource, Elements, PICO, Run, TrapezoidalLedger};
+use crate::ngspice::{CapacitanceSource, Elements, NgspiceError, PICO, Run, TrapezoidalLedger};
 
 /// Real time that ngspice may take from one communication point to the next. It takes some 10 us for a time step of its
 /// own; a step of this length hangs.
@@ -31,9 +31,8 @@ impl NgspiceCircuit {
         capacitance: [f64; 2],
         run: &Run,
     ) -> Result<Self, CosimError> {
-        let netlist = elements
-            .netlist(CapacitanceSource::External, capacitance, run)
-            .map_err(|cause| CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause) })?;
+        let netlist = elements.netlist(CapacitanceSource::External, capacitance, run);
+        let netlist = netlist.map_err(|cause| failed(label, cause))?;
         let job = Job {
             netlist: netlist.text().lines().map(str::to_owned).collect(),
             sources: vec!["vcl".to_owned(), "vcr".to_owned()],
@@ -42,10 +41,13 @@ impl NgspiceCircuit {
             // Not the end of the run: there ngspice would end the analysis without a word.
             stop: 2.0 * run.until,
         };
-        let worker = Worker::start(program, &job, PATIENCE)
-            .map_err(|cause| CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause.into()) })?;
+        let worker = Worker::start(program, &job, PATIENCE).map_err(|cause| failed(label, cause))?;
         Ok(Self { label: label.to_owned(), worker, ledger: TrapezoidalLedger::new(elements, capacitance) })
     }
+}
+
+fn failed(label: &str, cause: impl Into<NgspiceError>) -> CosimError {
+    CosimError::Ngspice { label: label.to_owned(), cause: Box::new(cause.into()) }
 }
 
 impl CircuitSlave for NgspiceCircuit {
@@ -57,9 +59,7 @@ impl CircuitSlave for NgspiceCircuit {
         let pico = |capacitance: [f64; 2]| capacitance.map(|c| c / PICO).to_vec();
         let ramp = Ramp { from: time, to: time + step, start: pico(start), end: pico(end) };
         let ledger = &mut self.ledger;
-        self.worker
-            .step(&ramp, |time, values| ledger.add(time, values))
-            .map_err(|cause| CosimError::Ngspice { label: self.label.clone(), cause: Box::new(cause.into()) })
+        self.worker.step(&ramp, |time, values| ledger.add(time, values)).map_err(|cause| failed(&self.label, cause))
     }
 
     fn sample(&self) -> Result<CircuitSample, CosimError> {

@@ -17,9 +17,6 @@ pub struct CapacitanceRatios {
 
 impl CapacitanceRatios {
     /// Runs the mechanics of `scenario` alone. Impacts within one communication step count as equal.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn of(fmu: &Fmu, scenario: &Scenario, mechanical: &[Setting]) -> Result<Self, CosimError> {
         let mut harvester = HarvesterFmu::new(fmu, scenario, mechanical)?;
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);

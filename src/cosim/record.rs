@@ -139,18 +139,15 @@ impl Trace {
     /// Length of the detail, s: some periods of the paper's 2 Hz.
     const LENGTH: f64 = 2.0;
 
-    /// A trace of a run of `scenario`.
-    pub fn of(scenario: &Scenario) -> Self {
-        Self::new(scenario.until, Self::LENGTH.min(scenario.until))
-    }
-
     /// Start of the detail, s.
     pub fn detail_from(&self) -> f64 {
         self.detail_from
     }
 
-    /// A trace of a run up to `until`, s, with its last `detail`, s, in detail.
-    pub fn new(until: f64, detail: f64) -> Self {
+    /// A trace of a run of `scenario`.
+    pub fn of(scenario: &Scenario) -> Self {
+        let until = scenario.until;
+        let detail = Self::LENGTH.min(until);
         let spacing = [detail / Self::DETAIL, until / Self::OVERVIEW];
         let detail_from = until - detail;
         Self { until, detail_from, spacing, due: [detail_from, 0.0], detail: Vec::new(), overview: Vec::new() }

@@ -16,10 +16,8 @@ pub struct CircuitRequest {
 }
 
 impl CircuitRequest {
-    /// Divides `settings` into those of the harvester and those of the circuit. A name that both have is the harvester's.
-    ///
-    /// # Errors
-    /// A setting that neither has, or a value that the circuit cannot take.
+    /// Divides `settings` into those of the harvester and those of the circuit. A name that both have is the harvester's. An
+    /// error is a setting that neither has, or a value that the circuit cannot take.
     pub fn split(harvester: &ModelDescription, settings: &[Setting]) -> Result<(Vec<Setting>, Self), CosimError> {
         let (mut mechanical, mut circuit) = (Vec::new(), Self::default());
         for setting in settings {

@@ -105,11 +105,13 @@ impl Setting {
 }
 
 /// Values that the paper prints for a case.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct PaperValues {
-    /// Average voltage gain, V/s (Table 2).
+    /// `<U>`, V/s (Table 2).
+    #[serde(rename = "average_voltage_gain")]
     pub voltage_gain: Option<f64>,
-    /// Power, W (Table 3).
+    /// P, W (Table 3).
+    #[serde(rename = "average_power")]
     pub power: Option<f64>,
 }
 
