@@ -36,15 +36,15 @@ impl Tree {
         let tree = Self { guard: tempfile::tempdir().unwrap() };
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         for name in ["Cargo.toml", "fmu/harvester/Cargo.toml", "fmu/circuit/Cargo.toml"] {
-            tree.put(name, &root.join(name));
+            tree.copy(name, &root.join(name));
         }
-        tree.put("target/release/videg", Path::new(env!("CARGO_BIN_EXE_videg")));
+        tree.copy("target/release/videg", Path::new(env!("CARGO_BIN_EXE_videg")));
         for name in NAMES {
             let description = format!("modelDescription/{name}.xml");
-            tree.put(&description, &root.join(&description));
+            tree.copy(&description, &root.join(&description));
             let unpacked = Archive::open(PACKAGED.path().join(format!("{name}.fmu"))).unwrap().unpack().unwrap();
             let library = unpacked.path().join(format!("binaries/linux64/{name}.so"));
-            tree.put(&format!("target/release/lib{name}.so"), &library);
+            tree.copy(&format!("target/release/lib{name}.so"), &library);
         }
         fs::create_dir(tree.path("work")).unwrap();
         tree
@@ -54,7 +54,7 @@ impl Tree {
         self.guard.path().join(name)
     }
 
-    fn put(&self, name: &str, from: &Path) {
+    fn copy(&self, name: &str, from: &Path) {
         let path = self.path(&format!("tree/{name}"));
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::copy(from, path).unwrap();

@@ -194,9 +194,9 @@ fn decades(low: f64, high: f64, max_ticks: usize) -> Vec<f64> {
     if fine.len() <= max_ticks {
         return fine;
     }
-    let whole = multiples(low, high, &[1.0]);
-    let stride = whole.len().div_ceil(max_ticks.max(1)).max(1);
-    whole.into_iter().step_by(stride).collect()
+    let powers = multiples(low, high, &[1.0]);
+    let stride = powers.len().div_ceil(max_ticks.max(1)).max(1);
+    powers.into_iter().step_by(stride).collect()
 }
 
 /// Logarithms, from `low` to `high`, of these multiples of powers of ten.

@@ -1,9 +1,9 @@
-//! What shows of bands and of vertical bars.
+//! The visible parts of bands and of vertical bars.
 
 use super::axis::Axis;
 use super::clip::Window;
 use super::figure::{Band, Bars};
-use super::metrics::whole;
+use super::metrics::floored;
 use super::reduce::reduce_within;
 use super::trace::{DENSITY, Space};
 
@@ -29,7 +29,7 @@ pub(super) fn heights(limits: &[(f64, f64, f64)], space: Space, x: &Axis) -> imp
 pub(super) fn areas(band: &Band, space: Space, (x, y): (&Axis, &Axis), width: f64) -> Vec<Vec<Point>> {
     let limits: Vec<_> = band.limits.iter().map(|&(x, low, high)| (space.x(x), space.y(low), space.y(high))).collect();
     let runs = limits.split(|limit| ![limit.0, limit.1, limit.2].iter().all(|value| value.is_finite()));
-    let columns = whole(width * DENSITY);
+    let columns = floored(width * DENSITY);
     let polygon = |run: &[(f64, f64, f64)]| {
         let lower = reduce_within(run.iter().map(|limit| (limit.0, limit.1)), (x.low, x.high), columns);
         let upper = reduce_within(run.iter().map(|limit| (limit.0, limit.2)), (x.low, x.high), columns);

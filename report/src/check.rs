@@ -1,4 +1,4 @@
-//! What must hold for a figure to be drawn.
+//! Checks of a figure before it is drawn.
 
 use super::error::ReportError;
 use super::figure::{Figure, HeatMap, Panel, Scale};

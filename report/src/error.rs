@@ -1,4 +1,4 @@
-//! What can be wrong with a figure or a report.
+//! Errors of figures and reports.
 
 /// Why a figure or a report could not be rendered.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! What a figure shows: panels, series, reference lines.
+//! Content of a figure: panels, series, reference lines.
 
 /// Panels, rendered by [`render_svg`](super::render_svg).
 #[derive(Debug, Clone, Default)]

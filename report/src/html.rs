@@ -81,7 +81,7 @@ fn check_table(section: &str, table: &Table, ids: &[String]) -> Result<(), Repor
     }
 }
 
-/// What keeps an SVG text from being copied into a page.
+/// Why an SVG text must not be copied into a page.
 ///
 /// In text, `<` and quotes are escaped: these patterns can only be markup.
 fn fault(svg: &str) -> Option<&'static str> {

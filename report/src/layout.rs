@@ -1,4 +1,4 @@
-//! Where everything goes: axes, the parts of each series that show, legend rows, margins.
+//! Layout: axes, the visible parts of each series, legend rows, margins.
 
 use super::axes::{x_axes, y_axis};
 use super::axis::Axis;
@@ -9,7 +9,7 @@ use super::figure::{Figure, Panel, Scale};
 use super::legend::{Entry, legend, wrap};
 use super::metrics::{
     BAR_GAP, BAR_WIDTH, BOLD, DIGIT, EDGE, LABEL_ROW, LETTER, TEXT_SIZE, TICK_LABEL_DROP, TICK_ROOM, TITLE_ROW,
-    TITLE_SIZE, X_LABEL_DROP, whole,
+    TITLE_SIZE, X_LABEL_DROP, floored,
 };
 use super::trace::{Space, Trace, finish, trace};
 
@@ -69,7 +69,7 @@ pub(super) fn plan<'f>(figure: &'f Figure<'f>) -> Result<Plan<'f>, ReportError> 
         place_column(&mut panels, (column, figure.columns), cell);
     }
     let title_left = panels.first().map_or(EDGE, |plan| plan.frame.0);
-    let title = wrap(&figure.title, whole((figure.width - title_left - EDGE) / (BOLD * TITLE_SIZE)));
+    let title = wrap(&figure.title, floored((figure.width - title_left - EDGE) / (BOLD * TITLE_SIZE)));
     let mut top = EDGE + title.len() as f64 * TITLE_ROW;
     for row in panels.chunks_mut(figure.columns) {
         top = place_row(row, top) + EDGE;
@@ -102,7 +102,7 @@ fn plan_panel<'f>(panel: &'f Panel<'f>, x: Axis, width: f64) -> Result<PanelPlan
         whiskers: panel.bars.iter().map(|bars| whiskers(bars, space, (&x, &y))).collect(),
         x,
         y,
-        y_label: wrap(&panel.y_label, whole(height / (LETTER * TEXT_SIZE))),
+        y_label: wrap(&panel.y_label, floored(height / (LETTER * TEXT_SIZE))),
         label_rows: 0,
         traces,
         bar: color_bar(panel, cells.as_ref(), height),
@@ -177,11 +177,11 @@ fn bar_width(bar: &ColorBar) -> f64 {
 }
 
 fn x_ticks(width: f64) -> usize {
-    whole(width / 75.0).max(2)
+    floored(width / 75.0).max(2)
 }
 
 fn y_ticks(height: f64) -> usize {
-    whole(height / 26.0).max(2)
+    floored(height / 26.0).max(2)
 }
 
 #[cfg(test)]

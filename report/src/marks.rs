@@ -1,4 +1,4 @@
-//! What a panel shows within its frame, on the canvas of the plotting library.
+//! Content of a frame, on the canvas of the plotting library.
 
 use plotters::element::{Circle, Cross, DashedPathElement, EmptyElement, PathElement, Polygon};
 use plotters::style::{Color, ShapeStyle};

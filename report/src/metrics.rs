@@ -28,7 +28,7 @@ pub(super) const BAR_WIDTH: f64 = 11.0;
     clippy::cast_sign_loss,
     reason = "sizes are checked to be positive and at most some thousand px"
 )]
-pub(super) fn whole(value: f64) -> usize {
+pub(super) fn floored(value: f64) -> usize {
     value as usize
 }
 

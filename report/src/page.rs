@@ -1,4 +1,4 @@
-//! What a report holds: sections of text, tables, figures and notes.
+//! Content of a report: sections of text, tables, figures and notes.
 
 use super::drawing::Drawing;
 use super::table::Table;

@@ -126,11 +126,11 @@ fn thinned(series: &Series, space: Space) -> Vec<Point> {
 /// Closed outlines, one for each stretch without a gap.
 fn band_trace(band: &Band, space: Space) -> Value {
     let mut outline = Vec::new();
-    let whole = |limit: &(f64, f64, f64)| {
+    let is_complete = |limit: &(f64, f64, f64)| {
         let (x, low, high) = (space.x(limit.0), space.y(limit.1), space.y(limit.2));
         is_finite(&(x, low)) && high.is_finite()
     };
-    for run in band.limits.split(|limit| !whole(limit)).filter(|run| !run.is_empty()) {
+    for run in band.limits.split(|limit| !is_complete(limit)).filter(|run| !run.is_empty()) {
         let stride = run.len().div_ceil(POINTS / 2);
         let run: Vec<_> = run.iter().step_by(stride).collect();
         outline.extend(run.iter().map(|limit| (limit.0, limit.1)));

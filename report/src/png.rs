@@ -41,7 +41,7 @@ pub fn render_png(svg: &str, scale: f64) -> Result<Vec<u8>, ReportError> {
         let (what, value) = ("number of pixels".to_owned(), width * height);
         return Err(ReportError::InvalidScale { what, value, min: 1.0, max: LARGEST });
     }
-    let mut pixels = Pixmap::new(whole(width), whole(height)).ok_or_else(|| failed("it has no size"))?;
+    let mut pixels = Pixmap::new(rounded(width), rounded(height)).ok_or_else(|| failed("it has no size"))?;
     pixels.fill(Color::WHITE);
     #[expect(clippy::cast_possible_truncation, reason = "a small number")]
     let scale = Transform::from_scale(scale as f32, scale as f32);
@@ -92,7 +92,7 @@ fn paint(paint: &usvg::Paint, opacity: f32, smooth: bool) -> Result<Paint<'stati
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be at most 64 million")]
-fn whole(size: f64) -> u32 {
+fn rounded(size: f64) -> u32 {
     size.round() as u32
 }
 

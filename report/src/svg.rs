@@ -151,10 +151,10 @@ mod tests {
 
     #[test]
     fn gaps_split_the_line() {
-        let (whole, gap) = ([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0)], f64::NAN);
+        let (line, gap) = ([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0)], f64::NAN);
         let torn = [(0.0, 0.0), (1.0, 1.0), (1.5, gap), (2.0, 0.0), (3.0, 1.0)];
         let lines = |points| one(Series::points("", points)).matches("#0072B2").count();
-        assert_eq!((lines(&whole), lines(&torn)), (1, 2));
+        assert_eq!((lines(&line), lines(&torn)), (1, 2));
     }
 
     #[test]

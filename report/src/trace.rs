@@ -1,9 +1,9 @@
-//! What shows of a series: the part within the axes, thinned out to the pixels.
+//! The visible part of a series: within the axes, thinned out to the pixels.
 
 use super::axis::Axis;
 use super::clip::{Window, clip};
 use super::figure::{Data, Panel, Series, Style};
-use super::metrics::whole;
+use super::metrics::floored;
 use super::reduce::{is_finite, reduce_markers, reduce_within};
 
 type Point = (f64, f64);
@@ -13,7 +13,7 @@ pub(super) const DENSITY: f64 = 2.0;
 /// Values are cut here so that differences of coordinates stay finite.
 const LARGEST: f64 = 1e300;
 
-/// What shows of a series.
+/// The visible part of a series.
 pub(super) struct Trace {
     pub parts: Vec<Vec<Point>>,
     pub key: Key,
@@ -99,7 +99,7 @@ pub(super) fn trace(series: &Series, space: Space, x: &Axis, width: f64) -> Trac
         let marks = points.filter(|p| is_finite(p) && open.contains(p)).collect();
         return Trace { parts: vec![marks], key };
     }
-    let mut kept = reduce_within(points, open.x, whole(width * DENSITY));
+    let mut kept = reduce_within(points, open.x, floored(width * DENSITY));
     if series.style == Style::Steps {
         kept = stairs(&kept);
     }
@@ -114,7 +114,7 @@ pub(super) fn finish(trace: &mut Trace, series: &Series, (x, y): (&Axis, &Axis),
         // Small dots cover a px or two: finer than a px they would only hide each other.
         let density = if series.style == Style::Dots { 1.0 } else { DENSITY };
         let marks = parts.into_iter().flatten().filter(|p| window.contains(p));
-        let cells = (whole(width * density), whole(height * density));
+        let cells = (floored(width * density), floored(height * density));
         vec![reduce_markers(marks, (window.x, window.y), cells)]
     } else {
         let lines = parts.iter().flat_map(|part| clip(part, window));

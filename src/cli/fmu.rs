@@ -191,8 +191,7 @@ fn row<'a>(items: &Items<'a>, variable: &'a Variable) -> Row<'a> {
 fn text(info: &Info) -> String {
     let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
     table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
-    let whole = vec![ColumnConstraint::ContentWidth; 4];
-    table.set_constraints(whole);
+    table.set_constraints(vec![ColumnConstraint::ContentWidth; 4]); // not wrapped
     for variable in &info.variables {
         let unit = variable.unit.map_or_else(|| variable.r#type.to_lowercase(), ToOwned::to_owned);
         let start = variable.start.as_deref().unwrap_or_default().to_owned();

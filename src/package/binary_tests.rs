@@ -84,9 +84,9 @@ fn what_is_no_fmu_library_is_refused() {
     assert!(error.contains("holds no shared library (Executable)"), "{error}");
     let error = add("darwin64", NAME, &mach_o(X86_64, LIBRARY, "_fmi2InstantiateToo")).unwrap_err();
     assert!(error.ends_with("does not export fmi2Instantiate"), "{error}");
-    let whole = mach_o(X86_64, LIBRARY, "_fmi2Instantiate");
-    for length in 0..whole.len() {
-        assert!(add("darwin64", NAME, &whole[..length]).is_err(), "cut to {length} bytes");
+    let library = mach_o(X86_64, LIBRARY, "_fmi2Instantiate");
+    for length in 0..library.len() {
+        assert!(add("darwin64", NAME, &library[..length]).is_err(), "cut to {length} bytes");
     }
 }
 

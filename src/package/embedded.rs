@@ -43,7 +43,7 @@ pub(super) fn archives(options: &Options) -> Option<[&'static [u8]; FMUS.len()]>
 }
 
 /// Whether the FMU `identifier` inside the program has a library of these bytes.
-pub(super) fn holds(identifier: &str, library: &[u8]) -> bool {
+pub(super) fn has(identifier: &str, library: &[u8]) -> bool {
     let archives = ARCHIVES.iter().flatten().zip(&FMUS);
     let mut own = archives.filter(|(_, fmu)| fmu.identifier == identifier);
     own.any(|(archive, _)| has_library(archive, library))

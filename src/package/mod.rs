@@ -107,7 +107,7 @@ pub fn is_own(identifier: &str, library: &Path) -> bool {
     let Some(fmu) = FMUS.iter().find(|fmu| fmu.identifier == identifier) else { return false };
     let Ok(bytes) = std::fs::read(library) else { return false };
     locate::own_libraries(fmu).iter().any(|own| std::fs::read(own).is_ok_and(|own| own == bytes))
-        || embedded::holds(identifier, &bytes)
+        || embedded::has(identifier, &bytes)
 }
 
 /// Where FMUs are written by default, for a source tree.

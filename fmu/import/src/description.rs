@@ -1,4 +1,4 @@
-//! What `modelDescription.xml` says, as typed values.
+//! The content of `modelDescription.xml`, as typed values.
 
 use std::collections::HashMap;
 use std::str::FromStr;

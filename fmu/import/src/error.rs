@@ -1,4 +1,4 @@
-//! What can go wrong with an FMU.
+//! Errors of the importer.
 //!
 //! Every message is one line that names what, where, found and allowed. Causes are part of that line instead of a
 //! chain of sources, so that no way of printing loses or repeats them.

@@ -1,4 +1,4 @@
-//! What an FMU tells its environment: statuses, messages, and the C callbacks that collect them.
+//! Statuses and messages of an FMU, and the C callbacks that collect them.
 
 use std::collections::VecDeque;
 use std::ffi::{CStr, c_char, c_void};

@@ -1,4 +1,4 @@
-//! Causes: what is wrong with an archive, a description or a value.
+//! Causes: faults of an archive, a description or a value.
 
 use thiserror::Error;
 

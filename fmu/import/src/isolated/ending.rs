@@ -1,4 +1,4 @@
-//! How a worker ended: which FMU, which call, what happened, what it had said.
+//! The end of a worker: FMU, call, cause, and its last messages.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -7,16 +7,16 @@ use std::process::ExitStatus;
 use super::bounds::Bounds;
 use crate::logging::LogRecord;
 
-/// What happened to a worker.
+/// Why a worker ended.
 #[derive(Debug, Clone)]
 pub(super) enum How {
     /// Its process ended.
     Ended(ExitStatus),
     /// A call took longer than it may.
     TooLong,
-    /// It does not answer any more, but its process goes on.
+    /// It closed its pipes, but its process goes on.
     Silent,
-    /// It sent what is no answer.
+    /// It sent something that is no answer.
     Garbled(String),
     /// The system refused something.
     Refused(String),

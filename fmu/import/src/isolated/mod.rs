@@ -1,4 +1,4 @@
-//! FMUs that run in a process of their own: whatever becomes of them, this process goes on and says what happened.
+//! FMUs that run in a process of their own: if one fails, this process goes on and reports how.
 //!
 //! Each instance has a worker: a child process that loads the library, calls it for one instance, and exchanges messages
 //! with this process over its stdin and stdout (`protocol`). On this side an isolated instance (`remote`) has the same functions as one

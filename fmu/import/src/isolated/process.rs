@@ -127,7 +127,7 @@ impl Process {
         }
     }
 
-    /// The next message, if it has come as a whole.
+    /// The next message, if it is complete.
     fn heard(&mut self, longest: usize) -> Result<Option<Reply>, How> {
         // Log records come with any call.
         unframe(&mut self.heard, longest.max(SPARE)).map_err(|cause| How::Garbled(cause.to_string()))

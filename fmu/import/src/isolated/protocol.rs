@@ -1,4 +1,4 @@
-//! What the two processes say to each other: frames of a length and a message, numbers with all their bits.
+//! Messages between the two processes: frames of a length and a message, numbers with all their bits.
 
 use std::ffi::{CStr, CString, OsString};
 use std::io::{self, Read, Write};
@@ -179,7 +179,7 @@ pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
     Ok(frame)
 }
 
-/// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is there as a whole.
+/// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is complete.
 pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) -> io::Result<Option<T>> {
     let Some(&head) = bytes.first_chunk::<HEAD>() else { return Ok(None) };
     let end = HEAD + length(head, longest)?;
