@@ -239,6 +239,7 @@ fn two_sweeps_do_not_write_one_file() {
 
 #[test]
 #[cfg(unix)]
+#[ignore = "slow"]
 fn a_full_disk_is_named_and_what_was_written_is_gone_on_with() {
     let (_guard, folder) = folder();
     let [whole, full] = ["whole", "full"].map(|name| folder.join(name));
