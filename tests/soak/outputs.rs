@@ -79,6 +79,7 @@ fn disturb(arguments: &[&str], at_most: u64, what: &str) -> u64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_fault_in_the_middle_of_any_verb_leaves_each_file_old_or_new() {
     for (name, arguments) in VERBS {
         assert!(disturb(arguments, extent(24, 400), name) > 5, "{name}");
@@ -86,6 +87,7 @@ fn a_fault_in_the_middle_of_any_verb_leaves_each_file_old_or_new() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_fault_in_the_middle_of_reproduce_leaves_each_file_old_or_new() {
     let arguments = ["reproduce", "--quick", "table1", "fig7"];
     assert!(disturb(&arguments, extent(12, 100), "reproduce") > 3);

@@ -46,6 +46,7 @@ fn started(mut command: Command, folder: &Path, lines: usize) -> Child {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
     let (_guard, folder) = folder();
     let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
@@ -124,6 +125,7 @@ fn an_interrupted_sweep_ends_in_order_and_says_how_to_go_on() {
 
 #[test]
 #[cfg(unix)]
+#[ignore = "slow"]
 fn a_sweep_interrupted_at_any_moment_leaves_nothing_half_written_and_ends_in_the_same_bytes() {
     let (_guard, folder) = folder();
     let [whole, broken] = ["whole", "broken"].map(|name| folder.join(name));
