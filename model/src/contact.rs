@@ -18,11 +18,12 @@
 //! are integrated.
 
 mod law;
+mod point;
 mod step;
 
 pub(crate) use self::law::{Law, Recoil};
 pub use self::law::{Phase, Ramp};
-pub use self::step::Point;
+pub use self::point::Point;
 pub(crate) use self::step::Work;
 
 use self::step::Step;

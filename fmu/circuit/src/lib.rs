@@ -4,10 +4,11 @@
 //! are in `variables.rs`, the parameters among them in the circuit's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
+mod harvesting;
 mod slave;
 mod state;
 mod variables;
 
-pub use slave::Harvesting;
+pub use harvesting::Harvesting;
 
 fmu_export::export_fmu!(Harvesting);

@@ -3,7 +3,7 @@
 use fmu_export::{StateError, StateReader, StateWriter};
 use videg_circuit::{Circuit, Ledger, Settings, State};
 
-use crate::slave::{Harvesting, REST_CAPACITANCE, handed_over};
+use crate::harvesting::{Harvesting, REST_CAPACITANCE, handed_over};
 
 impl Harvesting {
     /// Parameters, inputs and, once it has a state of its own, the circuit.

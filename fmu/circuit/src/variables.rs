@@ -4,7 +4,7 @@
 use fmu_export::{EnumerationType, Variable, concat};
 use videg_circuit::{Choice, Circuit, Quantity, Settings, names};
 
-use crate::slave::{Harvesting, REST_CAPACITANCE};
+use crate::harvesting::{Harvesting, REST_CAPACITANCE};
 
 type V = Variable<Harvesting>;
 

@@ -80,8 +80,10 @@ mod book {}
 
 mod access;
 mod call_state;
+mod check;
 mod error;
 pub mod ffi;
+mod fingerprint;
 mod fnv;
 mod guid;
 mod info;
@@ -90,6 +92,7 @@ mod logger;
 mod macros;
 #[cfg(feature = "model-description")]
 mod model_description;
+mod panics;
 #[cfg(feature = "model-description")]
 mod references;
 mod resource;
@@ -99,6 +102,7 @@ mod units;
 mod variable;
 
 pub use call_state::{CallState, Function, Interface, Legality};
+pub use check::TableError;
 pub use error::{Severity, SlaveError};
 pub use fmu_abi as abi;
 pub use guid::Guid;
@@ -114,6 +118,5 @@ pub use slave::{EventOutcome, Experiment, Slave};
 pub use units::{BaseUnit, base_unit};
 pub use variable::{
     BooleanSpec, Causality, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial, IntegerSpec, Kind,
-    ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, TableError, Variability, Variable, concat,
-    value_reference,
+    ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat, value_reference,
 };

@@ -3,12 +3,13 @@
 //! Elements come in the order that the schema of FMI 2.0 prescribes. The text is the same on every run (it holds
 //! no date), so that it can be kept under version control and compared.
 
+use crate::check::{TableError, check_fmu};
 use crate::guid::Guid;
 use crate::info::ModelInfo;
 use crate::logger::LogCategory;
 use crate::slave::Slave;
 use crate::units::{BaseUnit, base_unit};
-use crate::variable::{Causality, EnumerationType, Kind, TableError, Variable, check_fmu, value_reference};
+use crate::variable::{Causality, EnumerationType, Kind, Variable, value_reference};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
 use std::io;

@@ -5,12 +5,13 @@
 //! in `variables.rs`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
+mod harvester;
 mod limits;
 mod sensitivity;
 mod slave;
 mod state;
 mod variables;
 
-pub use slave::Harvester;
+pub use harvester::Harvester;
 
 fmu_export::export_fmu!(Harvester, model_exchange);

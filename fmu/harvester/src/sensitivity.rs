@@ -15,7 +15,7 @@
 
 use videg_model::{ContactLaw, Direction, Harvester as Model, Sensitivities, Side};
 
-use crate::slave::Harvester;
+use crate::harvester::Harvester;
 use crate::variables::STATES;
 
 impl Harvester {

@@ -6,7 +6,7 @@ use videg_model::{
     PulseChange, Ramp, Side, Snapshot, Start, Totals, Works,
 };
 
-use crate::slave::Harvester;
+use crate::harvester::Harvester;
 
 impl Harvester {
     /// Parameters, inputs and, once it has a state of its own, the model.

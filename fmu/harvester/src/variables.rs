@@ -7,7 +7,7 @@ mod parameters;
 use fmu_export::{Variable, concat};
 use videg_model::{Energies, Side};
 
-use crate::slave::Harvester;
+use crate::harvester::Harvester;
 use initial::{BALL, DRIVE, FILM, FORCE, FORCE_LAW, IMPACT, OPTIONS, VOLTAGES};
 use parameters::{CHOICES, PARAMETERS};
 

@@ -1,6 +1,6 @@
 //! The forces of a contact: membrane with hysteresis, Maxwell force, and what accelerates the wall.
 
-use super::step::Point;
+use super::point::Point;
 use crate::membrane::Membrane;
 use crate::motion::cylinder::CylinderMotion;
 use crate::motion::flight::Flight;

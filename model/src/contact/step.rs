@@ -1,6 +1,7 @@
 //! One internal step of a contact: x and x' as series in time, by collocation.
 
 use super::law::{Law, Phase};
+use super::point::Point;
 use crate::numerics::chebyshev::{DEGREE, GRID, NODES, Series, Values};
 
 /// Error of the velocity that a step may make, relative to the velocity.
@@ -9,17 +10,6 @@ const TOLERANCE: f64 = 1e-13;
 /// The velocity that counts is at least this fraction of what the forces alone would change: where they balance, nothing
 /// is gained by resolving their rounding.
 const FLOOR: f64 = 1e-2;
-
-/// Deflection x and rate x' at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Point {
-    /// s.
-    pub time: f64,
-    /// m, inwards.
-    pub x: f64,
-    /// m/s.
-    pub v: f64,
-}
 
 /// Work on the ball since the start of a step, J.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,8 +1,9 @@
 //! `fmi2Instantiate` and `fmi2FreeInstance`.
 
-use super::{Fmu, Handle, guard, text};
-use crate::instance::{Instance, panic_message};
+use super::{Fmu, Handle, text};
+use crate::instance::Instance;
 use crate::logger::Logger;
+use crate::panics::{guard, panic_message};
 use crate::resource::resource_path;
 use crate::slave::Slave;
 use core::ptr::null_mut;

@@ -23,17 +23,16 @@ pub mod model_exchange;
 pub mod state;
 
 use crate::call_state::Function;
+use crate::check::{TableError, check_fmu};
 use crate::error::CallError;
 use crate::guid::Guid;
 use crate::instance::{Call, Instance};
 use crate::slave::Slave;
-use crate::variable::{TableError, check_fmu};
 use core::cell::UnsafeCell;
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 use fmu_abi::{fmi2Component, fmi2Error, fmi2Status};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
 /// What is worked out once per FMU and process: the GUID, once the table is known to be sound. It takes no memory that an
@@ -100,14 +99,6 @@ unsafe fn enter<S: Slave>(
         return fmi2Error;
     };
     handle.with(|i| i.run(function, call))
-}
-
-/// Keeps a panic from unwinding into C.
-pub(crate) fn guard<T>(otherwise: T, body: impl FnOnce() -> T) -> T {
-    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
-        let _ = crate::instance::panic_message(payload);
-        otherwise
-    })
 }
 
 /// Checks a pointer that is to become a slice.

@@ -11,12 +11,11 @@ mod values;
 
 use crate::call_state::{CallState, Function, Interface, Legality};
 use crate::error::CallError;
-use crate::ffi::guard;
 use crate::guid::Guid;
 use crate::logger::Logger;
+use crate::panics::{guard, panic_message};
 use crate::slave::{Experiment, Slave};
 use co_simulation::LastStep;
-use core::any::Any;
 use cores::Cores;
 use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
@@ -153,19 +152,5 @@ impl<S: Slave> Instance<S> {
             self.core.dirty = false;
         }
         Ok(())
-    }
-}
-
-/// The text of a panic. A payload that is no text is leaked: its destructor might panic in turn.
-pub(crate) fn panic_message(payload: Box<dyn Any + Send>) -> String {
-    match payload.downcast::<String>() {
-        Ok(text) => *text,
-        Err(payload) => match payload.downcast::<&'static str>() {
-            Ok(text) => (*text).to_owned(),
-            Err(payload) => {
-                core::mem::forget(payload);
-                "no message".to_owned()
-            }
-        },
     }
 }

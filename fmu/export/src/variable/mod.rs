@@ -10,13 +10,10 @@
 
 mod assign;
 mod builder;
-mod check;
 mod kind;
 
 pub(crate) use assign::{AsBoolean, AsInteger, AsReal, AsString, Transfer};
 pub use builder::{Declaration, ReadOnly, Settable};
-pub use check::TableError;
-pub(crate) use check::check_fmu;
 pub use kind::{
     BooleanSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, RealSpec, SetDerivative,
     StringSpec,

@@ -3,7 +3,7 @@
 use fmu_export::{EnumerationType, Variable};
 use videg_model::{Choice, Parameters, Quantity};
 
-use crate::slave::Harvester;
+use crate::harvester::Harvester;
 
 type V = Variable<Harvester>;
 

@@ -1,10 +1,9 @@
 //! Checks of a table and its [`ModelInfo`] as a whole, once per process: a mistake in it would otherwise surface
 //! as an FMU that some importers refuse.
 
-use super::kind::{EnumerationType, Kind, RealSpec};
-use super::{Causality, Initial, Variability, Variable};
 use crate::info::ModelInfo;
 use crate::slave::Slave;
+use crate::variable::{Causality, EnumerationType, Initial, Kind, RealSpec, Variability, Variable};
 use std::collections::{HashMap, HashSet};
 
 /// A mistake in a variable table or in the facts about the FMU.

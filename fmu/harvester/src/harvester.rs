@@ -1,0 +1,79 @@
+//! What the importer sets, and the model that is driven by it.
+
+use videg_model::{Harvester as Model, ModelError, Parameters};
+
+/// The harvester as a slave.
+pub struct Harvester {
+    pub(crate) parameters: Parameters,
+    pub(crate) external_force: f64,
+    pub(crate) external_force_rate: f64,
+    pub(crate) voltages: [f64; 2],
+    pub(crate) voltage_rates: [f64; 2],
+    pub(crate) start_time: f64,
+    /// The model runs under an integrator of the importer's: model exchange.
+    pub(crate) placed: bool,
+    /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
+    pub(crate) checked: [f64; 2],
+    /// The model; before initialisation it is made anew from the parameters whenever they are read.
+    pub(crate) model: Result<Model, ModelError>,
+}
+
+impl Clone for Harvester {
+    fn clone(&self) -> Self {
+        Self { model: self.model.clone(), ..*self }
+    }
+
+    /// Takes no memory that is there already.
+    fn clone_from(&mut self, source: &Self) {
+        let Self {
+            parameters,
+            external_force,
+            external_force_rate,
+            voltages,
+            voltage_rates,
+            start_time,
+            placed,
+            checked,
+            ref model,
+        } = *source;
+        self.model.clone_from(model);
+        (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
+        (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
+        (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
+    }
+}
+
+impl Harvester {
+    /// Reads a value from the model; NaN while the parameters contradict each other (before initialisation only).
+    pub(crate) fn read(&self, value: impl FnOnce(&Model) -> f64) -> f64 {
+        self.model.as_ref().map_or(f64::NAN, value)
+    }
+
+    /// A time, s, that the model foresees under the inputs as they are set, the largest double if there is none.
+    pub(crate) fn foresee(&self, time: impl FnOnce(&Model) -> Option<f64>) -> f64 {
+        self.read(|model| time(self.pending(model).as_ref().unwrap_or(model)).unwrap_or(f64::MAX))
+    }
+
+    /// The model under the inputs as they are set, if it does not run under these: it takes them over with the next step.
+    /// None, too, if it refuses them, which that step says.
+    pub(crate) fn pending(&self, model: &Model) -> Option<Model> {
+        let force = [self.external_force, self.external_force_rate];
+        if self.placed || model.has_inputs(force, self.voltages, self.voltage_rates) {
+            return None;
+        }
+        model.under_inputs(force, self.voltages, self.voltage_rates).ok()
+    }
+
+    /// The model, once initialised.
+    pub(crate) fn model(&self) -> Option<&Model> {
+        self.model.as_ref().ok()
+    }
+
+    /// The model at the start, as parameters and inputs have it.
+    pub(crate) fn at_start(&self) -> Result<Model, ModelError> {
+        let mut model = Model::new(&self.parameters, self.start_time)?;
+        model.set_external_force(self.external_force, 0.0)?;
+        model.set_voltages(self.voltages, [0.0; 2])?;
+        Ok(model)
+    }
+}
