@@ -97,7 +97,7 @@ impl Ngspice {
         &self.program
     }
 
-    /// Runs `elements` over the whole of `table`.
+    /// Runs `elements` over `table` to its end.
     ///
     /// # Errors
     /// What ngspice says, or does not say: see [`NgspiceError`].

@@ -1,4 +1,4 @@
-//! The master's side: starts the worker, exchanges a message a communication step, and ends it.
+//! The master's side: starts the worker, sends and receives a message each communication step, and ends it.
 
 use std::io::{self, BufReader, BufWriter};
 use std::path::{Path, PathBuf};
@@ -108,7 +108,7 @@ impl Worker {
         let _ = send(&mut self.requests, ramp);
         let begun = Instant::now();
         loop {
-            // Of the whole step: a worker that creeps has something to tell now and then.
+            // The limit is for the step: a worker that creeps sends points now and then.
             match self.replies.recv_timeout(self.limit.saturating_sub(begun.elapsed())) {
                 Ok(Ok(Some(Reply::Points(values)))) => {
                     for row in values.chunks_exact(1 + self.vectors) {

@@ -1,7 +1,7 @@
 //! The shared library of ngspice and the functions that a transient analysis with external sources takes.
 
 use std::error::Error as _;
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{CString, NulError, c_char, c_int, c_void};
 use std::path::PathBuf;
 
 use libloading::Library;
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Environment variable that names the library where the system does not find it.
 pub const LIBRARY_VARIABLE: &str = "VIDEG_NGSPICE_LIBRARY";
 
-/// What the library is called.
+/// File names of the library.
 const NAMES: &[&str] = if cfg!(windows) {
     &["ngspice.dll"]
 } else if cfg!(target_vendor = "apple") {
@@ -28,12 +28,12 @@ pub enum LibraryError {
          libngspice0) or name it in {LIBRARY_VARIABLE}"
     )]
     Missing {
-        /// What was looked for.
+        /// The names that were tried.
         names: String,
         /// What the system said of the last.
         cause: String,
     },
-    /// It is some other library.
+    /// It is another library.
     #[error("{path} is not the shared library of ngspice: it does not export {symbol}")]
     Symbol {
         /// The library.
@@ -41,9 +41,9 @@ pub enum LibraryError {
         /// What is missing.
         symbol: &'static str,
     },
-    /// A text for ngspice holds a zero byte.
-    #[error("a line for ngspice holds a zero byte: {0:?}")]
-    ZeroByte(String),
+    /// A text for ngspice has a zero byte.
+    #[error("a line for ngspice: {0}")]
+    ZeroByte(#[from] NulError),
 }
 
 /// One value of the data that ngspice sends at each accepted time point.
@@ -125,7 +125,7 @@ impl Ngspice {
             // SAFETY: loading runs foreign code, which is what the caller asked for.
             match unsafe { Library::new(path) } {
                 Ok(library) => return Self::resolve(library, &path.display().to_string()),
-                // The source holds what the linker said; the error itself only what failed.
+                // The source has the words of the linker; the error itself says only what failed.
                 Err(error) => cause = error.source().unwrap_or(&error).to_string(),
             }
         }
@@ -166,7 +166,7 @@ impl Ngspice {
 
     /// Reads a circuit. ngspice reports success even for a bad one; the analysis then does not run.
     pub fn circuit(&self, lines: &[String]) -> Result<(), LibraryError> {
-        let lines = lines.iter().map(|line| text(line)).collect::<Result<Vec<_>, _>>()?;
+        let lines = lines.iter().map(|line| CString::new(line.as_str())).collect::<Result<Vec<_>, _>>()?;
         let mut pointers: Vec<*mut c_char> = lines.iter().map(|line| line.as_ptr().cast_mut()).collect();
         pointers.push(std::ptr::null_mut());
         // SAFETY: ngspice copies the lines; the array ends with NULL.
@@ -176,13 +176,9 @@ impl Ngspice {
 
     /// Executes a command; returns when it is done. A transient analysis calls back meanwhile.
     pub fn command(&self, command: &str) -> Result<(), LibraryError> {
-        let command = text(command)?;
+        let command = CString::new(command)?;
         // SAFETY: ngspice copies the command.
         unsafe { (self.command)(command.as_ptr().cast_mut()) };
         Ok(())
     }
-}
-
-fn text(line: &str) -> Result<CString, LibraryError> {
-    CString::new(line).map_err(|_| LibraryError::ZeroByte(line.to_owned()))
 }

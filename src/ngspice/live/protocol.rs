@@ -1,4 +1,4 @@
-//! What the master's process and the worker say to each other: one JSON object a line, numbers with all their digits.
+//! Messages between the master's process and the worker: one JSON object a line, numbers with all their digits.
 
 use std::io::{self, BufRead, Read as _, Write};
 

@@ -129,8 +129,8 @@ impl<W: Write> Session<W> {
         send(&mut self.replies, &Reply::Points(std::mem::take(&mut self.points)))
     }
 
-    /// At the communication point: answers and waits for the next ramp. Says whether there is one.
-    fn exchange(&mut self) -> io::Result<bool> {
+    /// At the communication point: answers and waits for the next ramp; whether there is one.
+    fn next_ramp(&mut self) -> io::Result<bool> {
         self.send_points()?;
         send(&mut self.replies, &Reply::Reached)?;
         match receive::<Ramp>(&mut self.requests)? {
@@ -143,7 +143,7 @@ impl<W: Write> Session<W> {
     /// The step that ngspice may take at `time` when it wants `step`, s. None ends the process.
     fn clip(&mut self, time: f64, step: f64) -> io::Result<Option<f64>> {
         while self.ramp.to - time <= SAME_TIME * self.job.longest_step {
-            if !self.exchange()? {
+            if !self.next_ramp()? {
                 return Ok(None);
             }
         }
