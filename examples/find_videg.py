@@ -1,4 +1,4 @@
-"""What the scripts here share: the FMUs and the command-line tool, as they are there. Nothing is compiled."""
+"""Finds the FMUs and the command-line tool for the scripts in this folder. It compiles nothing."""
 
 import os
 import shutil
@@ -10,18 +10,18 @@ ROOT = Path(__file__).resolve().parents[1]
 FMUS = Path(os.environ.get("VIDEG_FMUS") or ROOT / "target" / "fmu")
 RELEASE = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "release"
 
-# The tool of the source tree counts where none is on the PATH, and takes libraries as they are.
+# A tool on the PATH comes before that of the source tree, which does not build the libraries anew.
 os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", ""), str(RELEASE)])
 os.environ["VIDEG_NO_BUILD"] = "1"
 
 
 def find() -> str | None:
-    """The command-line tool, if it is there."""
+    """The command-line tool, or None."""
     return shutil.which("videg")
 
 
 def fmu(name: str) -> str:
-    """The FMU of this name: of the folder VIDEG_FMUS, else of target/fmu, where the tool writes it if it is not there."""
+    """The FMU of this name in the folder VIDEG_FMUS, else in target/fmu, where the tool writes it if it is missing."""
     path = FMUS / f"{name}.fmu"
     if not path.is_file():
         need(f"there is no {path}, and videg", f"set VIDEG_FMUS to the folder of {path.name}, or ")
@@ -30,7 +30,7 @@ def fmu(name: str) -> str:
 
 
 def run(command: str) -> None:
-    """Run a line of shell that calls the tool."""
+    """Run a shell command that calls the tool."""
     need("videg", "")
     ended = subprocess.run(command, shell=True).returncode
     if ended:

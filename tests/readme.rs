@@ -58,22 +58,42 @@ fn paper_table(findings: &[&Value]) -> String {
     table
 }
 
-/// P of Eq. (14) in mW, with contacts that last and act back on the cylinder.
-fn power_with_reaction(case: &str) -> f64 {
-    let settings = ["--set", "contact.law=compliant", "--set", "contact.reaction=true"];
-    let result = run(&[&["simulate", "--case", case], &settings[..]].concat());
-    1e3 * result["average_power_eq13"].as_f64().unwrap()
+/// Contacts of the table of the mass ratio, and their settings.
+const CONTACTS: [(&str, &[&str]); 3] = [
+    ("impulsive, as in the paper", &[]),
+    ("with a duration: `contact.law=compliant`", &["contact.law=compliant"]),
+    (
+        "with a duration and a reaction: also `contact.reaction=true`",
+        &["contact.law=compliant", "contact.reaction=true"],
+    ),
+];
+
+/// P of Eq. (14) in mW for each of the contacts: Table 3 at 2 and 5 Hz, Fig. 14.
+fn powers() -> [[f64; 3]; 3] {
+    CONTACTS.map(|(_, settings)| {
+        ["table3-2hz", "table3-5hz", "fig14"].map(|case| {
+            let set = settings.iter().flat_map(|setting| ["--set", setting]);
+            let arguments: Vec<_> = ["simulate", "--case", case].into_iter().chain(set).collect();
+            1e3 * run(&arguments)["average_power_eq13"].as_f64().unwrap()
+        })
+    })
+}
+
+fn mass_table(powers: &[[f64; 3]; 3]) -> String {
+    let mut table = String::from("| contacts | Table 3, 2 Hz | Table 3, 5 Hz | Fig. 14 |\n|---|---|---|---|\n");
+    for ((contacts, _), [slow, fast, light]) in CONTACTS.iter().zip(powers) {
+        writeln!(table, "| {contacts} | {slow:.2} mW | {fast:.2} mW | {light:.4} mW |").unwrap();
+    }
+    table
 }
 
 /// The three findings of the README.
-fn three_findings(findings: &[Value], circuits: &[Circuit]) -> String {
-    let power = |place: &str, quantity: &str| {
-        let found = findings.iter().find(|it| text(it, "place") == place && text(it, "quantity").starts_with(quantity));
-        1e3 * found.unwrap()["videg"].as_f64().unwrap()
+fn three_findings(findings: &[Value], powers: &[[f64; 3]; 3], circuits: &[Circuit]) -> String {
+    let is_stepping = |it: &&Value| {
+        text(it, "place") == "Table 3, 2 Hz" && text(it, "quantity").starts_with("P by the paper's stepping")
     };
-    let [slow, fast] = ["Table 3, 2 Hz", "Table 3, 5 Hz"].map(|place| power(place, "P, Eq. (14)"));
-    let stepping = power("Table 3, 2 Hz", "P by the paper's stepping");
-    let [slow_heavy, fast_heavy] = ["table3-2hz", "table3-5hz"].map(power_with_reaction);
+    let stepping = 1e3 * findings.iter().find(is_stepping).unwrap()["videg"].as_f64().unwrap();
+    let ([slow, fast, _], [slow_heavy, fast_heavy, _]) = (powers[0], powers[2]);
     let surplus = |circuit: &Circuit| 1e3 * circuit.energy["surplus"].as_f64().unwrap();
     let (loss, gain) = (-surplus(&circuits[0]), surplus(circuits.last().unwrap()));
     format!(
@@ -174,14 +194,15 @@ fn check(page: &str, name: &str, expected: &str) {
 
 #[test]
 fn the_tables_are_what_the_commands_say() {
-    let (findings, circuits) = (findings(), circuits());
+    let (findings, powers, circuits) = (findings(), powers(), circuits());
     let all: Vec<_> = findings.iter().collect();
     // Table 2 and the powers of Table 3, without the emulated stepping.
     let quantities = ["<U>, Eq. (15)", "P, Eq. (14)"];
     let short: Vec<_> = findings.iter().filter(|it| quantities.contains(&text(it, "quantity"))).collect();
     check("README.md", "paper", &paper_table(&short));
-    check("README.md", "findings", &three_findings(&findings, &circuits));
+    check("README.md", "findings", &three_findings(&findings, &powers, &circuits));
     check("docs/results/paper.md", "paper", &paper_table(&all));
+    check("docs/results/paper.md", "mass", &mass_table(&powers));
     check("docs/results/energy.md", "energy", &energy_table(&circuits));
     if videg::ngspice::Ngspice::find(None).is_ok() || std::env::var_os("VIDEG_ALL_TOOLS").is_some() {
         check("docs/results/crosscheck.md", "crosscheck", &crosscheck_table());
