@@ -7,7 +7,7 @@ use crate::error::{Error, finite};
 /// What the mechanics gave is summed twice, on two paths that share no arithmetic: [`converted`](Self::converted)
 /// from the elements and the stored energy, `mechanical` from the work on the capacitances. Their difference,
 /// [`residual`](Self::residual), is the error of the sums.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Ledger {
     /// Energy drawn from the supply, `U_in` times its charge (J).
     pub supply: f64,

@@ -51,7 +51,7 @@ impl Node {
 /// Exported by [`Circuit::state`](crate::Circuit::state), imported by
 /// [`Circuit::restore`](crate::Circuit::restore); a restored circuit goes on to the last bit as the original.
 /// Index 0 is the left membrane, or the shared node; index 1 is the right membrane.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// Time since the start (s).
     pub time: f64,

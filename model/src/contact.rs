@@ -31,7 +31,7 @@ use crate::motion::side::Side;
 use crate::numerics::chebyshev::Series;
 
 /// A contact at the start of a pass, the motion on one branch of the membrane's force. What comes follows from it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactState {
     /// The membrane that is touched.
     pub side: Side,

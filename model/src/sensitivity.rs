@@ -77,7 +77,7 @@ pub struct ParameterChange {
 }
 
 /// Changes that are carried along, and the time from which they count.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Changes {
     /// The force is changed from here on, s.
     pub since: f64,

@@ -1,49 +1,32 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
 use fmu_export::{StateError, StateReader, StateWriter};
-use videg_circuit::{Circuit, Ledger, Settings, State};
+use videg_circuit::{Circuit, Settings, State};
 
 use crate::harvesting::{Harvesting, REST_CAPACITANCE, handed_over};
 
+/// Values of the parameters, in the order of the two tables; capacitances and their rates; the state of the circuit.
+type Content = (Vec<f64>, Vec<i32>, [f64; 2], [Option<f64>; 2], Option<State>);
+
 impl Harvesting {
     /// Parameters, inputs and, once it has a state of its own, the circuit.
-    pub(crate) fn write(&self, out: &mut StateWriter) {
-        for quantity in Settings::QUANTITIES {
-            out.f64((quantity.get)(&self.settings));
-        }
-        for choice in Settings::CHOICES {
-            out.i32((choice.get)(&self.settings));
-        }
-        self.capacitance.into_iter().for_each(|value| out.f64(value));
-        self.rate.into_iter().for_each(|value| out.option_f64(value));
+    pub(crate) fn write(&self, out: &mut StateWriter) -> Result<(), StateError> {
+        let reals = Settings::QUANTITIES.iter().map(|quantity| (quantity.get)(&self.settings)).collect();
+        let choices = Settings::CHOICES.iter().map(|choice| (choice.get)(&self.settings)).collect();
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
         let circuit = self.circuit().filter(|circuit| *circuit.parameters() == self.settings.parameters());
-        out.bool(circuit.is_some());
-        if let Some(circuit) = circuit {
-            write_state(&circuit.state(), out);
-        }
+        let content: Content = (reals, choices, self.capacitance, self.rate, circuit.map(Circuit::state));
+        out.put(&content)
     }
 
     /// What [`Harvesting::write`] wrote.
     pub(crate) fn read_from(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        let mut settings = Settings::default();
-        for quantity in Settings::QUANTITIES {
-            (quantity.set)(&mut settings, from.f64()?);
-        }
-        for choice in Settings::CHOICES {
-            let item = from.i32()?;
-            if !(1..).zip(choice.items).any(|(number, _)| number == item) {
-                return Err(invalid(format!("{}: no such item", choice.name)));
-            }
-            (choice.set)(&mut settings, item);
-        }
-        let capacitance = pair(from)?;
-        let rate = [from.option_f64()?, from.option_f64()?];
+        let (reals, choices, capacitance, rate, state): Content = from.take()?;
+        let settings = settings(&reals, &choices)?;
         if let Some(bad) = capacitance.into_iter().chain(rate.into_iter().flatten()).find(|value| !value.is_finite()) {
             return Err(invalid(format!("a capacitance or its rate is {bad}")));
         }
-        let circuit = if from.bool()? {
-            let state = read_state(from)?;
+        let circuit = if let Some(state) = state {
             let mut circuit = Circuit::new(settings.parameters(), state.capacitance).map_err(invalid)?;
             circuit.restore(&state).map_err(invalid)?;
             Ok(circuit)
@@ -54,68 +37,24 @@ impl Harvesting {
     }
 }
 
+fn settings(reals: &[f64], choices: &[i32]) -> Result<Settings, StateError> {
+    if (reals.len(), choices.len()) != (Settings::QUANTITIES.len(), Settings::CHOICES.len()) {
+        return Err(invalid("another number of parameters"));
+    }
+    let mut settings = Settings::default();
+    for (quantity, value) in Settings::QUANTITIES.iter().zip(reals) {
+        (quantity.set)(&mut settings, *value);
+    }
+    for (choice, item) in Settings::CHOICES.iter().zip(choices) {
+        (choice.set)(&mut settings, *item);
+        if (choice.get)(&settings) != *item {
+            return Err(invalid(format!("{} = {item} is no choice", choice.name)));
+        }
+    }
+    Ok(settings)
+}
+
 #[allow(clippy::needless_pass_by_value)] // so that it fits into map_err
 fn invalid(reason: impl core::fmt::Display) -> StateError {
-    StateError::Invalid(format!("{reason}"))
-}
-
-fn pair(from: &mut StateReader<'_>) -> Result<[f64; 2], StateError> {
-    Ok([from.f64()?, from.f64()?])
-}
-
-fn flags(from: &mut StateReader<'_>) -> Result<[bool; 2], StateError> {
-    Ok([from.bool()?, from.bool()?])
-}
-
-fn write_state(state: &State, out: &mut StateWriter) {
-    out.f64(state.time);
-    state.charge.into_iter().chain(state.capacitance).for_each(|value| out.f64(value));
-    let flags = state.charging.into_iter().chain(state.holding).chain(state.releasing);
-    flags.for_each(|flag| out.bool(flag));
-    let ledger = &state.ledger;
-    for value in [
-        state.load_voltage,
-        state.load_current,
-        state.supply_current,
-        state.internal_step,
-        state.initial_energy,
-        ledger.supply,
-        ledger.load,
-        ledger.zener,
-        ledger.diode,
-        ledger.stored,
-        ledger.mechanical,
-        ledger.supply_charge,
-        ledger.load_charge,
-    ] {
-        out.f64(value);
-    }
-    out.u64(state.events);
-}
-
-fn read_state(from: &mut StateReader<'_>) -> Result<State, StateError> {
-    Ok(State {
-        time: from.f64()?,
-        charge: pair(from)?,
-        capacitance: pair(from)?,
-        charging: flags(from)?,
-        holding: flags(from)?,
-        releasing: flags(from)?,
-        load_voltage: from.f64()?,
-        load_current: from.f64()?,
-        supply_current: from.f64()?,
-        internal_step: from.f64()?,
-        initial_energy: from.f64()?,
-        ledger: Ledger {
-            supply: from.f64()?,
-            load: from.f64()?,
-            zener: from.f64()?,
-            diode: from.f64()?,
-            stored: from.f64()?,
-            mechanical: from.f64()?,
-            supply_charge: from.f64()?,
-            load_charge: from.f64()?,
-        },
-        events: from.u64()?,
-    })
+    StateError::Invalid(reason.to_string())
 }

@@ -5,8 +5,8 @@ use HarvestingCircuit::Harvesting;
 use fmu_export::{Causality, Kind, Logger, Slave, StateError, StateReader, StateWriter, value_reference};
 
 fn bytes(slave: &Harvesting) -> Vec<u8> {
-    let mut out = StateWriter::new();
-    slave.write_state(&mut out);
+    let mut out = StateWriter::default();
+    slave.write_state(&mut out).expect("bytes");
     out.into_bytes()
 }
 

@@ -65,17 +65,13 @@ impl Slave for Lag {
         Ok(())
     }
 
-    fn write_state(&self, out: &mut StateWriter) {
-        out.f64s(&[self.time_constant, self.initial_output, self.input, self.rate, self.output]);
+    fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
+        out.put(&[self.time_constant, self.initial_output, self.input, self.rate, self.output])
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        match from.f64s()?[..] {
-            [time_constant, initial_output, input, rate, output] => {
-                Ok(Self { time_constant, initial_output, input, rate, output })
-            }
-            _ => Err(StateError::Invalid("the state of a lag is five numbers".to_owned())),
-        }
+        let [time_constant, initial_output, input, rate, output] = from.take()?;
+        Ok(Self { time_constant, initial_output, input, rate, output })
     }
 }
 

@@ -25,7 +25,7 @@ impl fmt::Display for Interface {
 }
 
 /// State of an instance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[repr(u8)]
 pub enum CallState {
     /// After `fmi2Instantiate` or `fmi2Reset`.
@@ -70,11 +70,6 @@ impl CallState {
 
     const fn bit(self) -> u16 {
         1 << self as u8
-    }
-
-    /// The state with this number.
-    pub(crate) fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.get(usize::from(number)).copied()
     }
 
     /// Whether initialisation is still ahead, so that calculated values are brought up to date by

@@ -1,30 +1,26 @@
-//! Bytes of a serialised FMU state: a writer, a bounds-checked reader and the envelope around both.
+//! Bytes of a serialised FMU state: its content, in the format of postcard, and the envelope around it.
 //!
 //! Layout of the envelope, little-endian: magic (8 bytes), format version (u32), GUID of the FMU (16 bytes),
 //! length of the content (u64), content, FNV-1a checksum of all that (u64). A blob that is foreign, truncated,
-//! padded or damaged is refused before the model sees a byte of it.
+//! padded or damaged is refused before the model sees a byte of it. postcard reserves no more memory for a list than its
+//! bytes justify, whatever count they claim.
+
+use serde::{Deserialize, Serialize};
 
 use crate::fnv::fnv64;
 use crate::guid::Guid;
 
 const MAGIC: [u8; 8] = *b"FMI2RsSt";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const HEADER: usize = 8 + 4 + 16 + 8;
 const CHECKSUM: usize = 8;
 
 /// Why the bytes of a serialised state are refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StateError {
-    /// The bytes end too early.
-    #[error("{wanted} bytes wanted at offset {offset}, {left} left")]
-    Truncated {
-        /// Where reading stopped, from the start of the content.
-        offset: usize,
-        /// How many bytes were wanted.
-        wanted: usize,
-        /// How many there were.
-        left: usize,
-    },
+    /// The content cannot be written or read as what it is.
+    #[error("its content is malformed: {0}")]
+    Malformed(#[from] postcard::Error),
     /// Bytes are left over.
     #[error("{0} bytes left over")]
     LeftOver(usize),
@@ -67,199 +63,89 @@ pub struct StateWriter {
     bytes: Vec<u8>,
 }
 
-/// Gives the state of a model back, in the order in which it was written.
-#[derive(Debug)]
-pub struct StateReader<'a> {
-    bytes: &'a [u8],
-    offset: usize,
-}
-
-macro_rules! numbers {
-    ($($name:ident)*) => {
-        impl StateWriter {
-            $(#[doc = concat!("Writes one `", stringify!($name), "`, bit for bit.")]
-            pub fn $name(&mut self, value: $name) {
-                self.bytes.extend_from_slice(&value.to_le_bytes());
-            })*
-        }
-        impl StateReader<'_> {
-            $(#[doc = concat!("Reads one `", stringify!($name), "`.")]
-            ///
-            /// # Errors
-            /// If the bytes end too early.
-            pub fn $name(&mut self) -> Result<$name, StateError> {
-                self.array().map($name::from_le_bytes)
-            })*
-        }
-    };
-}
-numbers!(u8 u32 i32 u64 i64 u128 f64);
-
 impl StateWriter {
-    /// A writer with nothing in it.
-    pub fn new() -> Self {
-        Self::default()
+    /// Writes a value, numbers with all their bits.
+    ///
+    /// # Errors
+    /// If the value is of a kind that cannot be written, such as a list of unknown length.
+    pub fn put(&mut self, value: &impl Serialize) -> Result<(), StateError> {
+        self.bytes.extend(postcard::to_stdvec(value)?);
+        Ok(())
     }
 
     /// What was written.
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
+}
 
-    /// Writes a bool.
-    pub fn bool(&mut self, value: bool) {
-        self.u8(u8::from(value));
-    }
-
-    /// Writes a length or count.
-    pub fn len(&mut self, value: usize) {
-        self.u64(value as u64);
-    }
-
-    /// Writes a string.
-    pub fn str(&mut self, value: &str) {
-        self.len(value.len());
-        self.bytes.extend_from_slice(value.as_bytes());
-    }
-
-    /// Writes an optional number.
-    pub fn option_f64(&mut self, value: Option<f64>) {
-        self.bool(value.is_some());
-        self.f64(value.unwrap_or_default());
-    }
-
-    /// Writes a list of numbers.
-    pub fn f64s(&mut self, values: &[f64]) {
-        self.len(values.len());
-        for &value in values {
-            self.f64(value);
-        }
-    }
+/// Gives the state of a model back, in the order in which it was written.
+#[derive(Debug)]
+pub struct StateReader<'a> {
+    bytes: &'a [u8],
 }
 
 impl<'a> StateReader<'a> {
     /// A reader of these bytes.
     pub const fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, offset: 0 }
+        Self { bytes }
     }
 
-    /// Reads a bool.
+    /// Reads a value.
     ///
     /// # Errors
-    /// If the bytes end too early or hold neither 0 nor 1.
-    pub fn bool(&mut self) -> Result<bool, StateError> {
-        match self.u8()? {
-            0 => Ok(false),
-            1 => Ok(true),
-            other => Err(StateError::Invalid(format!("{other} is no bool"))),
-        }
-    }
-
-    /// Reads a length or count. It is checked against the bytes that are left, at `size` bytes an element (at
-    /// least 1), so that a damaged count cannot ask for more memory than that.
-    ///
-    /// # Errors
-    /// If the bytes cannot hold so many elements.
-    pub fn len(&mut self, size: usize) -> Result<usize, StateError> {
-        let count = self.u64()?;
-        let left = self.left();
-        usize::try_from(count)
-            .ok()
-            .filter(|n| n.checked_mul(size.max(1)).is_some_and(|bytes| bytes <= left))
-            .ok_or_else(|| StateError::Invalid(format!("{count} elements in {left} bytes")))
-    }
-
-    /// Reads a string.
-    ///
-    /// # Errors
-    /// If the bytes end too early or are not UTF-8.
-    pub fn str(&mut self) -> Result<&'a str, StateError> {
-        let length = self.len(1)?;
-        core::str::from_utf8(self.take(length)?).map_err(|e| StateError::Invalid(e.to_string()))
-    }
-
-    /// Reads an optional number.
-    ///
-    /// # Errors
-    /// If the bytes end too early.
-    pub fn option_f64(&mut self) -> Result<Option<f64>, StateError> {
-        let some = self.bool()?;
-        let value = self.f64()?;
-        Ok(some.then_some(value))
-    }
-
-    /// Reads a list of numbers.
-    ///
-    /// # Errors
-    /// If the bytes end too early.
-    pub fn f64s(&mut self) -> Result<Vec<f64>, StateError> {
-        let count = self.len(size_of::<f64>())?;
-        (0..count).map(|_| self.f64()).collect()
+    /// If the bytes end too early or are no such value.
+    pub fn take<T: Deserialize<'a>>(&mut self) -> Result<T, StateError> {
+        let (value, rest) = postcard::take_from_bytes(self.bytes)?;
+        self.bytes = rest;
+        Ok(value)
     }
 
     /// Ends reading.
     ///
     /// # Errors
     /// If bytes are left over.
-    pub fn finish(self) -> Result<(), StateError> {
-        match self.left() {
+    pub const fn finish(self) -> Result<(), StateError> {
+        match self.bytes.len() {
             0 => Ok(()),
             left => Err(StateError::LeftOver(left)),
         }
-    }
-
-    const fn left(&self) -> usize {
-        self.bytes.len() - self.offset
-    }
-
-    fn take(&mut self, wanted: usize) -> Result<&'a [u8], StateError> {
-        let error = StateError::Truncated { offset: self.offset, wanted, left: self.left() };
-        let end = self.offset.checked_add(wanted).ok_or(error.clone())?;
-        let taken = self.bytes.get(self.offset..end).ok_or(error)?;
-        self.offset = end;
-        Ok(taken)
-    }
-
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], StateError> {
-        let mut array = [0; N];
-        array.copy_from_slice(self.take(N)?);
-        Ok(array)
     }
 }
 
 /// Puts content into the envelope.
 pub(crate) fn seal(guid: Guid, content: &[u8]) -> Vec<u8> {
-    let mut out = StateWriter { bytes: Vec::with_capacity(HEADER + content.len() + CHECKSUM) };
-    out.bytes.extend_from_slice(&MAGIC);
-    out.u32(FORMAT);
-    out.u128(guid.0);
-    out.len(content.len());
-    out.bytes.extend_from_slice(content);
-    let checksum = fnv64(&out.bytes);
-    out.u64(checksum);
-    out.bytes
+    let length = content.len() as u64;
+    let header = [&MAGIC[..], &FORMAT.to_le_bytes(), &guid.0.to_le_bytes(), &length.to_le_bytes()];
+    let mut bytes = [&header.concat(), content].concat();
+    bytes.extend(fnv64(&bytes).to_le_bytes());
+    bytes
 }
 
 /// Takes content out of the envelope.
 pub(crate) fn unseal(guid: Guid, blob: &[u8]) -> Result<&[u8], StateError> {
-    let mut header = StateReader::new(blob);
-    if header.array()? != MAGIC {
+    let size = |expected| StateError::Size { found: blob.len(), expected };
+    let too_short = || size((HEADER + CHECKSUM) as u64);
+    let (magic, rest) = blob.split_first_chunk().ok_or_else(too_short)?;
+    let (format, rest) = rest.split_first_chunk().ok_or_else(too_short)?;
+    let (found, rest) = rest.split_first_chunk().ok_or_else(too_short)?;
+    let (length, rest) = rest.split_first_chunk().ok_or_else(too_short)?;
+    let (content, checksum) = rest.split_last_chunk().ok_or_else(too_short)?;
+    if *magic != MAGIC {
         return Err(StateError::NoMagic);
     }
-    let format = header.u32()?;
+    let format = u32::from_le_bytes(*format);
     if format != FORMAT {
         return Err(StateError::Format(format));
     }
-    let found = Guid(header.u128()?);
-    let length = header.u64()?;
-    let expected = length.saturating_add((HEADER + CHECKSUM) as u64);
-    if blob.len() as u64 != expected {
-        return Err(StateError::Size { found: blob.len(), expected });
+    let length = u64::from_le_bytes(*length);
+    if content.len() as u64 != length {
+        return Err(size(length.saturating_add((HEADER + CHECKSUM) as u64)));
     }
-    let content = header.take(header.left() - CHECKSUM)?;
-    if header.u64()? != fnv64(&blob[..blob.len() - CHECKSUM]) {
+    if u64::from_le_bytes(*checksum) != fnv64(&blob[..HEADER + content.len()]) {
         return Err(StateError::Checksum);
     }
+    let found = Guid(u128::from_le_bytes(*found));
     if found != guid {
         return Err(StateError::Guid { found: found.to_string(), expected: guid.to_string() });
     }
@@ -271,33 +157,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back_bit_for_bit() {
-        let mut out = StateWriter::new();
-        out.f64(-0.0);
-        out.f64s(&[1.0, f64::INFINITY, 5e-324]);
-        out.option_f64(None);
-        out.option_f64(Some(2.5));
-        out.str("a\0b");
-        out.bool(true);
-        out.i64(i64::MIN);
+    fn what_is_written_is_read_back_bit_for_bit_and_nothing_else_is() {
+        let value = (-0.0, vec![1.0, f64::INFINITY, 5e-324], Some(2.5), "a\0b".to_owned(), i64::MIN);
+        let mut out = StateWriter::default();
+        out.put(&value).unwrap();
         let bytes = out.into_bytes();
         let mut from = StateReader::new(&bytes);
-        assert_eq!(from.f64().unwrap().to_bits(), (-0.0_f64).to_bits());
-        assert_eq!(from.f64s().unwrap(), [1.0, f64::INFINITY, 5e-324]);
-        assert_eq!(from.option_f64().unwrap(), None);
-        assert_eq!(from.option_f64().unwrap(), Some(2.5));
-        assert_eq!(from.str().unwrap(), "a\0b");
-        assert!(from.bool().unwrap());
-        assert_eq!(from.i64().unwrap(), i64::MIN);
+        let found: (f64, Vec<f64>, Option<f64>, String, i64) = from.take().unwrap();
+        assert!(found == value && found.0.is_sign_negative());
         from.finish().unwrap();
+        assert!(matches!(StateReader::new(&bytes[..7]).take::<f64>(), Err(StateError::Malformed(_))));
+        assert_eq!(StateReader::new(&bytes).finish(), Err(StateError::LeftOver(bytes.len())));
     }
 
     #[test]
     fn a_count_beyond_the_bytes_is_refused_before_memory_is_taken() {
-        let mut out = StateWriter::new();
-        out.u64(u64::MAX / 8);
+        let mut out = StateWriter::default();
+        out.put(&(u64::MAX / 8)).unwrap();
         let bytes = out.into_bytes();
-        assert!(matches!(StateReader::new(&bytes).f64s(), Err(StateError::Invalid(_))));
+        assert!(matches!(StateReader::new(&bytes).take::<Vec<f64>>(), Err(StateError::Malformed(_))));
     }
 
     #[test]

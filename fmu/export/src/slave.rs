@@ -8,7 +8,7 @@ use crate::serialize::{StateError, StateReader, StateWriter};
 use crate::variable::Variable;
 
 /// What the importer says about the experiment before initialisation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Experiment {
     /// Time at which the simulation starts, s.
     pub start_time: f64,
@@ -139,8 +139,12 @@ pub trait Slave: Clone + Send + 'static {
 
     /// Writes everything that [`read_state`](Self::read_state) needs. Called only if
     /// [`ModelInfo::can_serialize`] is set.
-    fn write_state(&self, out: &mut StateWriter) {
+    ///
+    /// # Errors
+    /// What [`StateWriter::put`] says.
+    fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         let _ = out;
+        Err(StateError::Unsupported)
     }
 
     /// Rebuilds a model from what [`write_state`](Self::write_state) wrote, in the same order. The bytes have

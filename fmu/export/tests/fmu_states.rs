@@ -6,8 +6,8 @@ mod common;
 use common::toy::*;
 use common::*;
 use core::ptr::{dangling_mut, null, null_mut, without_provenance_mut};
-use fmu_export::CallState;
 use fmu_export::abi::*;
+use fmu_export::{CallState, Experiment};
 
 /// Everything that can be read, bit for bit.
 fn fingerprint(host: &Host) -> (Vec<u64>, Vec<i32>, String) {
@@ -224,68 +224,65 @@ fn damaged_truncated_and_foreign_bytes_are_refused() {
     assert_eq!(deserialize(&host, &good, &mut state), fmi2OK);
 }
 
-/// A serialised state with `change` made to its content, and a checksum that is right again.
-fn changed(good: &[fmi2Byte], change: impl FnOnce(&mut [u8])) -> Vec<fmi2Byte> {
+/// What the exporter keeps about a model: call state, model exchange, time, whether something was set, experiment, and
+/// status, time and end of the last step.
+type Record = (CallState, bool, f64, bool, Option<Experiment>, (fmi2Status, Option<f64>, bool));
+
+/// A serialised state with `change` made to its record, and length and checksum that are right again.
+fn changed(good: &[fmi2Byte], change: impl FnOnce(&mut Record)) -> Vec<fmi2Byte> {
     const HEADER: usize = 36;
     const CHECKSUM: usize = 8;
-    let mut bytes: Vec<u8> = good.iter().map(|byte| byte.to_ne_bytes()[0]).collect();
-    let end = bytes.len() - CHECKSUM;
-    change(&mut bytes[HEADER..end]);
+    let bytes: Vec<u8> = good.iter().map(|byte| byte.to_ne_bytes()[0]).collect();
+    let content = &bytes[HEADER..bytes.len() - CHECKSUM];
+    let (mut record, model): (Record, _) = postcard::take_from_bytes(content).expect("a record");
+    change(&mut record);
+    let content = [&postcard::to_stdvec(&record).expect("bytes"), model].concat();
+    let mut bytes = [&bytes[..HEADER - 8], &(content.len() as u64).to_le_bytes(), &content].concat();
     // FNV-1a
     let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    let checksum = bytes[..end].iter().fold(0xcbf2_9ce4_8422_2325, step);
-    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    bytes.extend(bytes.iter().fold(0xcbf2_9ce4_8422_2325, step).to_le_bytes());
     bytes.into_iter().map(|byte| fmi2Byte::from_ne_bytes([byte])).collect()
 }
 
+/// A number that switches checks off, or that no call leads to, behind a checksum that is right.
 #[test]
-fn times_that_no_call_leads_to_are_refused() {
-    const TIME_AT: usize = 2;
-    const START_AT: usize = 12;
-    const STOP_AT: usize = 21;
-    const TOLERANCE_AT: usize = 30;
-    const STATUS_AT: usize = 38;
-    const REACHED_AT: usize = 43;
+fn bytes_that_are_intact_but_tell_of_no_possible_state_are_refused() {
     let host = busy_host();
     let good = serialize(&host, host.save());
-    let mut state = null_mut();
-    assert_eq!(deserialize(&host, &changed(&good, |_| ()), &mut state), fmi2OK, "the checksum is right");
-    let refused = |at: usize, value: f64, what: &str| {
-        let optional = [STOP_AT, TOLERANCE_AT, REACHED_AT].contains(&at);
-        let bytes = changed(&good, |content| {
-            content[at..at + 8].copy_from_slice(&value.to_le_bytes());
-            if optional {
-                content[at - 1] = 1;
-            }
-        });
+    assert_eq!(deserialize(&host, &changed(&good, |_| ()), &mut null_mut()), fmi2OK, "the checksum is right");
+    let refused = |what: &str, change: &dyn Fn(&mut Record)| {
         let mut state = null_mut();
-        assert_eq!(deserialize(&host, &bytes, &mut state), fmi2Error, "{what} = {value}");
-        assert!(state.is_null() && host.error().contains(&format!("{what} = {value}")), "{}", host.error());
+        assert_eq!(deserialize(&host, &changed(&good, change), &mut state), fmi2Error, "{what}");
+        let error = host.error();
+        assert!(state.is_null() && error.contains(what), "{what}: {error}");
     };
+    let experiment = Experiment { start_time: 0.0, stop_time: None, tolerance: None };
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        refused(TIME_AT, value, "time");
-        refused(START_AT, value, "startTime");
-        refused(REACHED_AT, value, "last successful time");
-        refused(TOLERANCE_AT, value, "tolerance");
+        refused(&format!("time = {value}"), &|record| record.2 = value);
+        let start = Experiment { start_time: value, ..experiment };
+        refused(&format!("startTime = {value}"), &|record| record.4 = Some(start));
+        refused(&format!("last successful time = {value}"), &|record| record.5.1 = Some(value));
     }
-    refused(STOP_AT, f64::NAN, "stopTime");
-    refused(STOP_AT, -1.0, "stopTime");
-    refused(TOLERANCE_AT, -1.0, "tolerance");
-    let status = changed(&good, |content| content[STATUS_AT] = 77);
-    assert_eq!(deserialize(&host, &status, &mut null_mut()), fmi2Error);
-    assert!(host.error().contains("77 is no status of a step"), "{}", host.error());
+    for value in [f64::NAN, -1.0] {
+        let stop = Experiment { stop_time: Some(value), ..experiment };
+        refused(&format!("stopTime = {value}"), &|record| record.4 = Some(stop));
+    }
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0] {
+        let tolerance = Experiment { tolerance: Some(value), ..experiment };
+        refused(&format!("tolerance = {value}"), &|record| record.4 = Some(tolerance));
+    }
+    refused("77 is no status of a step", &|record| record.5.0 = 77);
 }
 
 #[test]
 fn call_states_that_are_never_saved_are_refused() {
     use CallState::*;
-    const STATE_AT: usize = 0;
     let of_steps = [StepComplete, StepFailed];
     let of_exchange = [EventMode, ContinuousTimeMode];
     for (host, wrong) in [(Host::initialized(), of_exchange), (Host::exchanging(), of_steps)] {
         let good = serialize(&host, host.save());
         for state in CallState::ALL {
-            let bytes = changed(&good, |content| content[STATE_AT] = state as u8);
+            let bytes = changed(&good, |record| record.0 = state);
             let refused = wrong.contains(&state) || matches!(state, StepInProgress | StepCanceled | Fatal);
             let status = deserialize(&host, &bytes, &mut null_mut());
             assert_eq!(status, if refused { fmi2Error } else { fmi2OK }, "{state}");

@@ -196,8 +196,8 @@ impl Slave for Harvester {
         self.partial(unknown.name(), known.name())
     }
 
-    fn write_state(&self, out: &mut StateWriter) {
-        self.write(out);
+    fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
+        self.write(out)
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {

@@ -20,8 +20,8 @@ fn compliant(options: &[&str]) -> Harvester {
 }
 
 fn restored(slave: &Harvester) -> Harvester {
-    let mut out = StateWriter::new();
-    slave.write_state(&mut out);
+    let mut out = StateWriter::default();
+    slave.write_state(&mut out).expect("bytes");
     let bytes = out.into_bytes();
     Harvester::read_state(&mut StateReader::new(&bytes)).expect("a state")
 }

@@ -15,8 +15,8 @@ const NOISY: &[(&str, f64)] = &[("excitation.phaseNoise", 0.7), ("excitation.noi
 const STATE: &str = "VIDEG_TEST_SERIALISED_STATE";
 
 fn bytes(slave: &Harvester) -> Vec<u8> {
-    let mut out = StateWriter::new();
-    slave.write_state(&mut out);
+    let mut out = StateWriter::default();
+    slave.write_state(&mut out).expect("bytes");
     out.into_bytes()
 }
 

@@ -7,7 +7,7 @@ use crate::paper::impact;
 use crate::parameters::Parameters;
 
 /// Sums over all impacts so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Totals {
     /// Impacts resolved one by one; under the compliant law, contacts begun. Of a chattering sequence, the endless tail that is
     /// summed in closed form is not counted here; its gains are contained below.
@@ -32,7 +32,7 @@ impl Totals {
 }
 
 /// Sums of the energy up to the last event.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Works {
     /// Work of the walls on the ball, J; while the ball rests under the impulsive law, less its kinetic energy.
     pub wall: f64,

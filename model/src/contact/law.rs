@@ -9,7 +9,7 @@ use crate::paper::{excitation, force};
 use crate::parameters::Parameters;
 
 /// A voltage that is linear in time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Ramp {
     /// Time at which it has `value`, s.
     pub start: f64,
@@ -32,7 +32,7 @@ impl Ramp {
 }
 
 /// On which branch of the membrane's force a contact is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Phase {
     /// Deeper than ever in this contact: the force is K x^n.
     Loading,

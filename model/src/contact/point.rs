@@ -1,7 +1,7 @@
 //! Where the ball is in a membrane.
 
 /// Deflection x and rate x' at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Point {
     /// s.
     pub time: f64,

@@ -20,7 +20,7 @@ use crate::sensitivity::{Changes, Tangent};
 ///
 /// Exported by [`Harvester::snapshot`], imported by [`Harvester::restore`]. What follows from these values, such as the
 /// time of the next impact, is worked out again.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Snapshot {
     /// Present time, s.
     pub time: f64,

@@ -4,7 +4,7 @@ use super::side::Side;
 use crate::contact::Contact;
 
 /// Position, m, and velocity, m/s, at a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Start {
     /// s.
     pub time: f64,

@@ -9,7 +9,7 @@ use crate::numerics::roots::convex_root;
 use crate::numerics::series::hypergeometric;
 
 /// Changes of a pulse per unit of what is moved, to first order.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct PulseChange {
     /// Of the time of the impact, s.
     pub start: f64,
@@ -20,7 +20,7 @@ pub struct PulseChange {
 }
 
 /// One pulse: an impact and what it does to the membrane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pulse {
     /// Time of the impact, s.
     pub start: f64,

@@ -1,7 +1,7 @@
 //! The ends of the cylinder.
 
 /// End of the cylinder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Side {
     /// The end that the ball meets at `z_M` - `z_m` = +s/2.
     Left,

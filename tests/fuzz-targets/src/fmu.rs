@@ -17,8 +17,8 @@ const STEPS: u32 = 20;
 const TAPE: usize = 400;
 
 fn written<S: Slave>(slave: &S) -> Vec<u8> {
-    let mut out = StateWriter::new();
-    slave.write_state(&mut out);
+    let mut out = StateWriter::default();
+    slave.write_state(&mut out).unwrap_or_else(|error| panic!("not written: {error}"));
     out.into_bytes()
 }
 

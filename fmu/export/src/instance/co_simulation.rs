@@ -12,7 +12,7 @@ use fmu_abi::{
 };
 
 /// How the last step went, for the status functions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct LastStep {
     pub(super) status: fmi2Status,
     /// Time up to which it was carried out, s; `None` before the first.

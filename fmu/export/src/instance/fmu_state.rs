@@ -28,8 +28,8 @@ impl<S: Slave> Instance<S> {
     /// `fmi2SerializedFMUstateSize` and `fmi2SerializeFMUstate`
     pub(crate) fn serialize(&self, token: usize) -> Call<Vec<u8>> {
         check_serializable::<S>()?;
-        let mut out = StateWriter::new();
-        self.core.saved(token)?.write(&mut out);
+        let mut out = StateWriter::default();
+        self.core.saved(token)?.write(&mut out)?;
         Ok(seal(self.guid, &out.into_bytes()))
     }
 
@@ -63,45 +63,21 @@ impl<S: Slave> Clone for Core<S> {
     }
 }
 
+/// What the exporter knows about a model, as it is serialised: all of [`Core`] but the model.
+type Record = (CallState, bool, f64, bool, Option<Experiment>, LastStep);
+
 impl<S: Slave> Core<S> {
-    fn write(&self, out: &mut StateWriter) {
-        out.u8(self.state as u8);
-        out.bool(self.exchange);
-        out.f64(self.time);
-        out.bool(self.dirty);
-        out.bool(self.experiment.is_some());
-        if let Some(experiment) = self.experiment {
-            out.f64(experiment.start_time);
-            out.option_f64(experiment.stop_time);
-            out.option_f64(experiment.tolerance);
-        }
-        out.i32(self.last_step.status);
-        out.option_f64(self.last_step.successful_time);
-        out.bool(self.last_step.terminated);
-        self.model.write_state(out);
+    fn write(&self, out: &mut StateWriter) -> Result<(), StateError> {
+        let Self { ref model, state, exchange, time, experiment, dirty, last_step } = *self;
+        let record: Record = (state, exchange, time, dirty, experiment, last_step);
+        out.put(&record)?;
+        model.write_state(out)
     }
 
     fn read(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        let number = from.u8()?;
-        let state =
-            CallState::from_number(number).ok_or_else(|| StateError::Invalid(format!("{number} is no call state")))?;
-        let core = Self {
-            state,
-            exchange: from.bool()?,
-            time: from.f64()?,
-            dirty: from.bool()?,
-            experiment: if from.bool()? {
-                Some(Experiment {
-                    start_time: from.f64()?,
-                    stop_time: from.option_f64()?,
-                    tolerance: from.option_f64()?,
-                })
-            } else {
-                None
-            },
-            last_step: LastStep { status: from.i32()?, successful_time: from.option_f64()?, terminated: from.bool()? },
-            model: S::read_state(from)?,
-        };
+        let (state, exchange, time, dirty, experiment, last_step): Record = from.take()?;
+        let model = S::read_state(from)?;
+        let core = Self { model, state, exchange, time, experiment, dirty, last_step };
         core.check()?;
         Ok(core)
     }

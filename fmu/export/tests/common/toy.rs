@@ -4,6 +4,7 @@ use fmu_export::{
     EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
     StateWriter, Variable, export_fmu,
 };
+use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 
 thread_local! {
@@ -17,7 +18,7 @@ thread_local! {
     pub static PANIC_IN_DROP: Cell<bool> = const { Cell::new(false) };
 }
 
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Toy {
     gain: f64,
     limit: f64,
@@ -249,37 +250,13 @@ impl Slave for Toy {
         assert!(PANIC_IN_CALL.get() != Some(function), "panic in {}", function.name());
     }
 
-    fn write_state(&self, out: &mut StateWriter) {
+    fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         self.fail_in("write");
-        out.f64s(&[self.gain, self.limit, self.doubled, self.input, self.slope, self.integral]);
-        out.f64s(&[self.start_time, self.time, self.switched]);
-        out.i32(self.count);
-        out.i32(self.seed);
-        out.bool(self.on);
-        out.str(&self.label);
-        out.i32(self.law);
-        out.str(&self.trouble);
-        out.i32(self.updates);
+        out.put(self)
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        let numbers = from.f64s()?;
-        let times = from.f64s()?;
-        let ([gain, limit, doubled, input, slope, integral], [start_time, time, switched]) = (&numbers[..], &times[..])
-        else {
-            return Err(StateError::Invalid("wrong number of numbers".into()));
-        };
-        let mut toy = Self::default();
-        (toy.gain, toy.limit, toy.doubled) = (*gain, *limit, *doubled);
-        (toy.input, toy.slope, toy.integral) = (*input, *slope, *integral);
-        (toy.start_time, toy.time, toy.switched) = (*start_time, *time, *switched);
-        toy.count = from.i32()?;
-        toy.seed = from.i32()?;
-        toy.on = from.bool()?;
-        from.str()?.clone_into(&mut toy.label);
-        toy.law = from.i32()?;
-        from.str()?.clone_into(&mut toy.trouble);
-        toy.updates = from.i32()?;
+        let toy: Self = from.take()?;
         toy.fail_in("read");
         Ok(toy)
     }
