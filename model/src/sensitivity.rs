@@ -111,7 +111,7 @@ pub struct Tangent {
 }
 
 /// How everything that a harvester shows changes, per unit of a [`Direction`]. Lists have the values left and right.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensitivities {
     /// Of `z_M`, `z_M'` and `z_M''`.
     pub cylinder: [f64; 3],

@@ -27,8 +27,7 @@ pub struct ModelInfo {
     /// Whether [`Slave::write_state`](crate::Slave::write_state) and
     /// [`Slave::read_state`](crate::Slave::read_state) are implemented (`canSerializeFMUstate`).
     pub can_serialize: bool,
-    /// Whether [`Slave::partial_derivative`](crate::Slave::partial_derivative) is implemented
-    /// (`providesDirectionalDerivative`).
+    /// Whether the table gives partial derivatives (`providesDirectionalDerivative`).
     pub directional_derivatives: bool,
     /// Number of event indicators, if the FMU offers model exchange, too: the functions of [`Slave`](crate::Slave) for it
     /// are implemented and the table names the derivatives of the continuous states.

@@ -118,5 +118,6 @@ pub use slave::{EventOutcome, Experiment, Slave};
 pub use units::{BaseUnit, base_unit};
 pub use variable::{
     BooleanSpec, Causality, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial, IntegerSpec, Kind,
-    ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat, value_reference,
+    PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat,
+    value_reference,
 };

@@ -115,21 +115,6 @@ pub trait Slave: Clone + Send + 'static {
         Ok(())
     }
 
-    /// Partial derivative of `unknown` with respect to `known`, both Real, everything else that may be set being constant.
-    /// Called only if [`ModelInfo::directional_derivatives`] is set. `unknown` is an output or the derivative of a
-    /// continuous state, before the end of initialisation also a calculated parameter; `known` is an input or, before
-    /// the end of initialisation, a parameter, afterwards a continuous state.
-    ///
-    /// Of an input in co-simulation it is the derivative of the outputs at the end of the last step with respect to the
-    /// input held during that step, of a state that at the communication point. In model exchange, after initialisation, it
-    /// is called only where the unknown depends on the known, as its row of the table says; else the derivative is zero.
-    ///
-    /// NaN where the model knows none: the call is an error then.
-    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        let _ = (unknown, known);
-        0.0
-    }
-
     /// Called at the head of each C function that acts on the instance and is legal, but `fmi2FreeInstance`. For tests
     /// that look at the exporter, or make it fail anywhere.
     #[doc(hidden)]

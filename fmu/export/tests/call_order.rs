@@ -204,11 +204,7 @@ fn an_input_set_before_initialization_mode_is_tolerated_its_derivative_is_legal(
     let host = Host::new();
     assert_eq!(host.set_real(toy::INPUT, 3.0), fmi2OK);
     assert_eq!(told(&host), ["FMI 2.0 forbids that input u be set in state instantiated; tolerated"]);
-    let (reference, order, slope) = (toy::INPUT, 1, 2.0);
-    let set = unsafe {
-        fmi2SetRealInputDerivatives(host.component, &raw const reference, 1, &raw const order, &raw const slope)
-    };
-    assert_eq!(set, fmi2OK);
+    assert_eq!(host.set_derivative(toy::INPUT, 1, 2.0), fmi2OK);
     assert_eq!(host.setup(0.0, None), fmi2OK);
     assert_eq!(host.initialize(), fmi2OK);
     assert_eq!(host.step(0.0, 1.0), fmi2OK);

@@ -9,19 +9,7 @@ use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
 
 fn derivative(host: &Host, unknowns: &[u32], knowns: &[u32], seeds: &[f64]) -> Result<Vec<f64>, String> {
-    let mut values = vec![-77.0; unknowns.len()];
-    let status = unsafe {
-        fmi2GetDirectionalDerivative(
-            host.component,
-            unknowns.as_ptr(),
-            unknowns.len(),
-            knowns.as_ptr(),
-            knowns.len(),
-            seeds.as_ptr(),
-            values.as_mut_ptr(),
-        )
-    };
-    if status == fmi2OK { Ok(values) } else { Err(host.error()) }
+    host.directional_derivative(unknowns, knowns, seeds).map_err(|_| host.error())
 }
 
 #[test]

@@ -21,11 +21,8 @@ fn busy_host() -> Host {
     let host = Host::initializing();
     assert_eq!(host.set_real(GAIN, 1.1), fmi2OK);
     assert_eq!(host.set_string(LABEL, "busy"), fmi2OK);
-    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
-    let (vr, order, value) = (INPUT, 1, 0.7);
-    let status =
-        unsafe { fmi2SetRealInputDerivatives(host.component, &raw const vr, 1, &raw const order, &raw const value) };
-    assert_eq!(status, fmi2OK);
+    assert_eq!(host.exit_initialization(), fmi2OK);
+    assert_eq!(host.set_derivative(INPUT, 1, 0.7), fmi2OK);
     assert_eq!(host.step(0.0, 0.3), fmi2OK);
     host
 }
@@ -36,19 +33,6 @@ fn run_on(host: &Host) {
         assert_eq!(host.set_real(INPUT, t.sin()), fmi2OK);
         assert_eq!(host.step(t, 0.1), fmi2OK);
     }
-}
-
-fn serialize(host: &Host, state: fmi2FMUstate) -> Vec<fmi2Byte> {
-    let mut size = 0;
-    assert_eq!(unsafe { fmi2SerializedFMUstateSize(host.component, state, &raw mut size) }, fmi2OK);
-    let mut bytes = vec![0; size];
-    let status = unsafe { fmi2SerializeFMUstate(host.component, state, bytes.as_mut_ptr(), size) };
-    assert_eq!(status, fmi2OK);
-    bytes
-}
-
-fn deserialize(host: &Host, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
-    unsafe { fmi2DeSerializeFMUstate(host.component, bytes.as_ptr(), bytes.len(), state) }
 }
 
 #[test]
@@ -68,11 +52,11 @@ fn a_restored_state_runs_on_bit_for_bit() {
 fn a_state_holds_the_call_state_too() {
     let host = Host::initializing();
     let saved = host.save();
-    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
+    assert_eq!(host.exit_initialization(), fmi2OK);
     assert_eq!(host.terminate(), fmi2OK);
     assert_eq!(host.restore(saved), fmi2OK);
     assert_eq!(host.set_real(GAIN, 3.0), fmi2OK, "back in initialization mode");
-    assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, fmi2OK);
+    assert_eq!(host.exit_initialization(), fmi2OK);
 }
 
 #[test]
@@ -81,7 +65,7 @@ fn a_state_given_back_is_overwritten_in_place() {
     let mut state = host.save();
     let token = state;
     assert_eq!(host.step(0.3, 1.0), fmi2OK);
-    assert_eq!(unsafe { fmi2GetFMUstate(host.component, &raw mut state) }, fmi2OK);
+    assert_eq!(host.save_in(&mut state), fmi2OK);
     assert_eq!(state, token);
     let here = fingerprint(&host);
     assert_eq!(host.step(1.3, 1.0), fmi2OK);
@@ -103,7 +87,7 @@ fn states_stay_what_they_were_whatever_is_saved_restored_overwritten_and_freed_m
         match choice % 8 {
             0 | 1 => held.push((host.save(), time, fingerprint(&host))),
             2 if !held.is_empty() => {
-                unsafe { assert_eq!(fmi2GetFMUstate(host.component, &raw mut held[k].0), fmi2OK) };
+                assert_eq!(host.save_in(&mut held[k].0), fmi2OK);
                 (held[k].1, held[k].2) = (time, fingerprint(&host));
             }
             3 | 4 if !held.is_empty() => {
@@ -113,7 +97,7 @@ fn states_stay_what_they_were_whatever_is_saved_restored_overwritten_and_freed_m
             }
             5 if held.len() > 5 => {
                 let mut freed = held.swap_remove(k).0;
-                assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut freed) }, fmi2OK);
+                assert_eq!(host.free_state(&mut freed), fmi2OK);
             }
             _ => {
                 assert_eq!(host.set_real(INPUT, time.sin() + f64::from(round)), fmi2OK);
@@ -184,27 +168,27 @@ fn states_that_are_foreign_stale_or_null_are_refused() {
 #[test]
 fn a_serialised_state_runs_on_in_another_instance() {
     let host = busy_host();
-    let bytes = serialize(&host, host.save());
+    let bytes = host.serialize(host.save());
     run_on(&host);
     let other = Host::new();
     let mut state = null_mut();
-    assert_eq!(deserialize(&other, &bytes, &mut state), fmi2OK);
-    assert_eq!(serialize(&other, state), bytes, "the bytes are the same again");
+    assert_eq!(other.deserialize(&bytes, &mut state), fmi2OK);
+    assert_eq!(other.serialize(state), bytes, "the bytes are the same again");
     assert_eq!(other.restore(state), fmi2OK);
     run_on(&other);
     assert_eq!(fingerprint(&other), fingerprint(&host));
     let before = state;
-    assert_eq!(deserialize(&other, &bytes, &mut state), fmi2OK);
+    assert_eq!(other.deserialize(&bytes, &mut state), fmi2OK);
     assert_eq!(state, before, "a state given back is overwritten");
 }
 
 #[test]
 fn damaged_truncated_and_foreign_bytes_are_refused() {
     let host = busy_host();
-    let good = serialize(&host, host.save());
+    let good = host.serialize(host.save());
     let refused = |bytes: &[fmi2Byte], what: &str| {
         let mut state = null_mut();
-        assert_eq!(deserialize(&host, bytes, &mut state), fmi2Error, "{what}");
+        assert_eq!(host.deserialize(bytes, &mut state), fmi2Error, "{what}");
         assert!(state.is_null(), "{what}");
         assert!(host.error().contains("the serialised state is refused"), "{what}");
     };
@@ -221,7 +205,7 @@ fn damaged_truncated_and_foreign_bytes_are_refused() {
         assert_eq!(fmi2DeSerializeFMUstate(host.component, null(), 10, &raw mut state), fmi2Error);
         assert_eq!(fmi2DeSerializeFMUstate(host.component, good.as_ptr(), good.len(), null_mut()), fmi2Error);
     }
-    assert_eq!(deserialize(&host, &good, &mut state), fmi2OK);
+    assert_eq!(host.deserialize(&good, &mut state), fmi2OK);
 }
 
 /// What the exporter keeps about a model: call state, model exchange, time, whether something was set, experiment, and
@@ -248,11 +232,11 @@ fn changed(good: &[fmi2Byte], change: impl FnOnce(&mut Record)) -> Vec<fmi2Byte>
 #[test]
 fn bytes_that_are_intact_but_tell_of_no_possible_state_are_refused() {
     let host = busy_host();
-    let good = serialize(&host, host.save());
-    assert_eq!(deserialize(&host, &changed(&good, |_| ()), &mut null_mut()), fmi2OK, "the checksum is right");
+    let good = host.serialize(host.save());
+    assert_eq!(host.deserialize(&changed(&good, |_| ()), &mut null_mut()), fmi2OK, "the checksum is right");
     let refused = |what: &str, change: &dyn Fn(&mut Record)| {
         let mut state = null_mut();
-        assert_eq!(deserialize(&host, &changed(&good, change), &mut state), fmi2Error, "{what}");
+        assert_eq!(host.deserialize(&changed(&good, change), &mut state), fmi2Error, "{what}");
         let error = host.error();
         assert!(state.is_null() && error.contains(what), "{what}: {error}");
     };
@@ -280,11 +264,11 @@ fn call_states_that_are_never_saved_are_refused() {
     let of_steps = [StepComplete, StepFailed];
     let of_exchange = [EventMode, ContinuousTimeMode];
     for (host, wrong) in [(Host::initialized(), of_exchange), (Host::exchanging(), of_steps)] {
-        let good = serialize(&host, host.save());
+        let good = host.serialize(host.save());
         for state in CallState::ALL {
             let bytes = changed(&good, |record| record.0 = state);
             let refused = wrong.contains(&state) || matches!(state, StepInProgress | StepCanceled | Fatal);
-            let status = deserialize(&host, &bytes, &mut null_mut());
+            let status = host.deserialize(&bytes, &mut null_mut());
             assert_eq!(status, if refused { fmi2Error } else { fmi2OK }, "{state}");
             assert!(!refused || host.error().contains(&format!("no state that is saved is in state {state}")));
         }
@@ -295,7 +279,7 @@ fn call_states_that_are_never_saved_are_refused() {
 fn a_buffer_that_is_too_small_or_null_is_refused_and_untouched() {
     let host = busy_host();
     let state = host.save();
-    let size = serialize(&host, state).len();
+    let size = host.serialize(state).len();
     let mut buffer = vec![0x55; size];
     let c = host.component;
     assert_eq!(unsafe { fmi2SerializeFMUstate(c, state, buffer.as_mut_ptr(), size - 1) }, fmi2Error);

@@ -8,27 +8,29 @@ use common::*;
 use core::ptr::null_mut;
 use fmu_export::abi::*;
 
-fn derivative(host: &Host) -> f64 {
-    let mut value = -77.0;
-    assert_eq!(unsafe { fmi2GetDerivatives(host.component, &raw mut value, 1) }, fmi2OK);
+type Get = unsafe extern "C" fn(fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
+
+/// The only derivative, event indicator or state.
+fn only(host: &Host, get: Get) -> f64 {
+    let mut value = UNTOUCHED;
+    assert_eq!(unsafe { get(host.component, &raw mut value, 1) }, fmi2OK);
     value
+}
+
+fn derivative(host: &Host) -> f64 {
+    only(host, fmi2GetDerivatives)
 }
 
 fn indicator(host: &Host) -> f64 {
-    let mut value = -77.0;
-    assert_eq!(unsafe { fmi2GetEventIndicators(host.component, &raw mut value, 1) }, fmi2OK);
-    value
+    only(host, fmi2GetEventIndicators)
 }
 
 fn state(host: &Host) -> f64 {
-    let mut value = -77.0;
-    assert_eq!(unsafe { fmi2GetContinuousStates(host.component, &raw mut value, 1) }, fmi2OK);
-    value
+    only(host, fmi2GetContinuousStates)
 }
 
 fn place(host: &Host, time: f64, state: f64) -> fmi2Status {
-    assert_eq!(unsafe { fmi2SetTime(host.component, time) }, fmi2OK);
-    unsafe { fmi2SetContinuousStates(host.component, &raw const state, 1) }
+    host.place(time, &[state])
 }
 
 #[test]
@@ -45,10 +47,12 @@ fn derivatives_and_indicators_follow_states_and_inputs() {
 
 #[test]
 fn an_event_changes_states_and_announces_the_next_one() {
-    let host = Host::of_limit(1.0);
+    let host = Host::of_kind(fmi2ModelExchange);
+    assert_eq!(host.set_real(LIMIT, 1.0), fmi2OK);
+    assert_eq!((host.setup(0.0, None), host.initialize(), host.enter_continuous_time_mode()), (fmi2OK, fmi2OK, fmi2OK));
     assert_eq!(place(&host, 0.5, 1.0), fmi2OK);
     assert_eq!(indicator(&host), 0.0);
-    assert_eq!(unsafe { fmi2EnterEventMode(host.component) }, fmi2OK);
+    assert_eq!(host.enter_event_mode(), fmi2OK);
     let (status, info) = host.new_discrete_states();
     assert_eq!(status, fmi2OK);
     let flags = [info.newDiscreteStatesNeeded, info.terminateSimulation, info.nominalsOfContinuousStatesChanged];
@@ -57,7 +61,7 @@ fn an_event_changes_states_and_announces_the_next_one() {
     assert_eq!((info.nextEventTimeDefined, info.nextEventTime), (fmi2True, 1.0));
     assert_eq!(state(&host), 0.0);
     assert_eq!(host.new_discrete_states().1.valuesOfContinuousStatesChanged, fmi2False);
-    assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+    assert_eq!(host.enter_continuous_time_mode(), fmi2OK);
 }
 
 #[test]
@@ -66,14 +70,14 @@ fn a_continuous_state_can_be_set_by_name_between_events_with_inputs_or_without()
     assert_eq!(host.set_real(INTEGRAL, 0.75), fmi2OK);
     assert_eq!((state(&host), host.real(INTEGRAL)), (0.75, 0.75));
     let (references, values) = ([INPUT, INTEGRAL], [4.0, 0.5]);
-    assert_eq!(unsafe { fmi2SetReal(host.component, references.as_ptr(), 2, values.as_ptr()) }, fmi2OK);
+    assert_eq!(host.set_reals(&references, &values), fmi2OK);
     assert_eq!((state(&host), derivative(&host)), (0.5, 8.0));
     for (references, values, reason) in [
         ([INPUT, INTEGRAL], [7.0, f64::NAN], "variable integral = NaN: it must be finite"),
         ([INTEGRAL, INPUT], [7.0, f64::NAN], "variable u = NaN: it must be finite"),
     ] {
         let host = Host::exchanging();
-        assert_eq!(unsafe { fmi2SetReal(host.component, references.as_ptr(), 2, values.as_ptr()) }, fmi2Error);
+        assert_eq!(host.set_reals(&references, &values), fmi2Error);
         assert_eq!(host.error(), format!("fmi2SetReal: {reason}"));
         assert_eq!((host.real(INPUT), host.real(INTEGRAL)), (1.0, 0.0), "all or nothing");
     }
@@ -94,7 +98,7 @@ fn an_integrator_may_look_beyond_the_stop_time() {
     let host = Host::of_kind(fmi2ModelExchange);
     assert_eq!(host.setup(0.0, Some(1.0)), fmi2OK);
     assert_eq!(host.initialize(), fmi2OK);
-    assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, fmi2OK);
+    assert_eq!(host.enter_continuous_time_mode(), fmi2OK);
     assert_eq!(place(&host, 1.5, 0.5), fmi2OK);
 }
 
@@ -149,15 +153,9 @@ fn a_saved_state_leads_back_and_does_not_fit_the_other_interface() {
     assert_eq!(place(&host, 0.6, 2.0), fmi2OK);
     assert_eq!(host.restore(saved), fmi2OK);
     assert_eq!((state(&host), host.real(common::toy::TIME)), (0.75, 0.5));
-    let (mut size, mut bytes) = (0, vec![0; 4096]);
-    unsafe {
-        assert_eq!(fmi2SerializedFMUstateSize(host.component, saved, &raw mut size), fmi2OK);
-        assert_eq!(fmi2SerializeFMUstate(host.component, saved, bytes.as_mut_ptr(), size), fmi2OK);
-        let mut state = null_mut();
-        let twin = Host::exchanging();
-        assert_eq!(fmi2DeSerializeFMUstate(twin.component, bytes.as_ptr(), size, &raw mut state), fmi2OK);
-        let (other, mut state) = (Host::initialized(), null_mut());
-        assert_eq!(fmi2DeSerializeFMUstate(other.component, bytes.as_ptr(), size, &raw mut state), fmi2Error);
-        assert!(other.error().contains("the other interface type"));
-    }
+    let bytes = host.serialize(saved);
+    assert_eq!(Host::exchanging().deserialize(&bytes, &mut null_mut()), fmi2OK);
+    let other = Host::initialized();
+    assert_eq!(other.deserialize(&bytes, &mut null_mut()), fmi2Error);
+    assert!(other.error().contains("the other interface type"));
 }

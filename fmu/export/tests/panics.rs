@@ -73,7 +73,7 @@ fn a_panic_in_update_is_an_error() {
 fn a_panic_in_initialize_is_an_error() {
     let host = Host::initializing();
     host.trouble("panic initialize");
-    let status = unsafe { fmi2ExitInitializationMode(host.component) };
+    let status = host.exit_initialization();
     assert_survives(&host, status, "fmi2ExitInitializationMode", "initialize");
 }
 
@@ -105,18 +105,13 @@ fn a_panic_in_an_accessor_is_an_error() {
 fn a_panic_in_serialisation_is_an_error() {
     let host = Host::initialized();
     host.trouble("panic write");
-    let mut size = 0;
-    let status = unsafe { fmi2SerializedFMUstateSize(host.component, host.save(), &raw mut size) };
+    let status = host.try_serialize(host.save()).expect_err("a panic");
     assert_survives(&host, status, "fmi2SerializedFMUstateSize", "write");
 
     let host = Host::initialized();
     host.trouble("panic read");
-    let (mut state, mut bytes) = (host.save(), vec![0; 1024]);
-    let status = unsafe {
-        assert_eq!(fmi2SerializedFMUstateSize(host.component, state, &raw mut size), fmi2OK);
-        assert_eq!(fmi2SerializeFMUstate(host.component, state, bytes.as_mut_ptr(), size), fmi2OK);
-        fmi2DeSerializeFMUstate(host.component, bytes.as_ptr(), size, &raw mut state)
-    };
+    let bytes = host.serialize(host.save());
+    let status = host.deserialize(&bytes, &mut null_mut());
     assert_survives(&host, status, "fmi2DeSerializeFMUstate", "read");
 }
 
@@ -135,7 +130,7 @@ fn a_panic_in_clone_is_an_error() {
     let host = Host::initialized();
     host.save();
     PANIC_IN_CLONE.set(true);
-    let status = unsafe { fmi2GetFMUstate(host.component, &raw mut state) };
+    let status = host.save_in(&mut state);
     PANIC_IN_CLONE.set(false);
     assert!(state.is_null());
     assert_survives(&host, status, "fmi2GetFMUstate", "clone");
@@ -190,7 +185,7 @@ fn host_with_a_spare() -> (Host, fmi2FMUstate) {
     let second = host.save();
     assert_eq!(host.step(1.0, 1.0), fmi2OK);
     assert_eq!(host.restore(first), fmi2OK);
-    assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut first) }, fmi2OK);
+    assert_eq!(host.free_state(&mut first), fmi2OK);
     assert_eq!(host.step(0.0, 3.0), fmi2OK);
     (host, second)
 }
@@ -211,7 +206,7 @@ fn a_panic_in_drop_does_not_lose_the_state_that_was_just_restored() {
 fn a_panic_in_drop_does_not_lose_the_state_that_was_just_saved() {
     let (host, mut saved) = host_with_a_spare();
     PANIC_IN_DROP.set(true);
-    assert_eq!(unsafe { fmi2GetFMUstate(host.component, &raw mut saved) }, fmi2Error);
+    assert_eq!(host.save_in(&mut saved), fmi2Error);
     assert!(!PANIC_IN_DROP.get(), "nothing was dropped");
     assert_eq!(host.restore(saved), fmi2OK);
     assert_eq!(host.real(TIME), 3.0);

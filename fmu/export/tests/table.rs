@@ -234,8 +234,6 @@ fn a_model_without_further_hooks_takes_everything_but_model_exchange_and_states(
     assert_eq!(sample.event_indicators(), [0.0; 0]);
     let outcome = sample.handle_events(&log).unwrap();
     assert_eq!((outcome.states_changed, outcome.next_event_time), (false, None));
-    let rows = reals();
-    assert_eq!(sample.partial_derivative(&rows[5], &rows[3]), 0.0);
     assert_eq!(sample.write_state(&mut StateWriter::default()), Err(StateError::Unsupported));
     assert_eq!(Sample::read_state(&mut StateReader::new(&[])), Err(StateError::Unsupported));
     assert_eq!(sample, Sample::default());

@@ -192,10 +192,6 @@ impl Slave for Harvester {
         Ok(())
     }
 
-    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        self.partial(unknown.name(), known.name())
-    }
-
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         self.write(out)
     }

@@ -8,21 +8,42 @@ use fmu_export::{Variable, concat};
 use videg_model::{Energies, Side};
 
 use crate::harvester::Harvester;
-use initial::{BALL, DRIVE, FILM, FORCE, FORCE_LAW, IMPACT, OPTIONS, VOLTAGES};
+use initial::{BALL, DRIVE, FILM, FORCE_LAW, IMPACT, OPTIONS};
 use parameters::{CHOICES, PARAMETERS};
 
 type V = Variable<Harvester>;
+
+/// Inputs by name.
+pub(crate) const FORCE: &str = "externalForce";
+pub(crate) const VOLTAGES: [&str; 2] = ["left.voltage", "right.voltage"];
+
+/// Partial derivatives that the sensitivities of the model hold.
+macro_rules! change {
+    ($($path:tt)+) => {
+        |slave, known| slave.partial(known, |change| change.shown(|changes| changes.$($path)+))
+    };
+}
 
 /// What follows from the parameters.
 static CALCULATED: [V; 4] = [
     V::calculated_parameter("membrane.radius", "m", "R_2 = lambda R_1: radius of the membrane in its frame, Table 1")
         .initially_depends_on(&[&["membrane.initialRadius", "membrane.prestretch"]])
+        .partial_derivative(|slave, known| {
+            slave.partial_by_parameters(known, |p, d| p.prestretch * d.initial_radius + d.prestretch * p.initial_radius)
+        })
         .get(|slave| slave.parameters.membrane_radius()),
     V::calculated_parameter("membrane.thickness", "m", "h_2 = h_1 / lambda^2: thickness of the flat membrane, Table 1")
         .initially_depends_on(&[&["membrane.initialThickness", "membrane.prestretch"]])
+        .partial_derivative(|slave, known| {
+            slave.partial_by_parameters(known, |p, d| {
+                let relative = d.initial_thickness / p.initial_thickness - 2.0 * d.prestretch / p.prestretch;
+                p.membrane_thickness() * relative
+            })
+        })
         .get(|slave| slave.parameters.membrane_thickness()),
     V::calculated_parameter("membrane.restCapacitance", "F", "C_2: capacitance of the flat membrane, Eq. (1)")
         .initially_depends_on(&[FILM])
+        .partial_derivative(change!(capacitance[0]))
         .get(|slave| slave.read(|model| model.membrane().rest_capacitance())),
     V::calculated_parameter(
         "ball.travel",
@@ -30,15 +51,16 @@ static CALCULATED: [V; 4] = [
         "s = d + 2 w - 2 r_b: largest distance that the ball moves, Section 3.2",
     )
     .initially_depends_on(&[&["cylinder.length", "frame.width", "ball.radius"]])
+    .partial_derivative(|slave, known| slave.partial_by_parameters(known, |_, d| d.travel()))
     .get(|slave| slave.parameters.travel()),
 ];
 
 static INPUTS: [V; 3] = [
-    V::input("externalForce", "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7); with its first derivative set it runs on over the step and stays at the value reached")
+    V::input(FORCE, "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7); with its first derivative set it runs on over the step and stays at the value reached")
         .input_derivatives(1, |slave, _order, value| slave.external_force_rate = value)
         .access(|slave| slave.external_force, |slave, force| slave.external_force = force),
     V::input(
-        "left.voltage",
+        VOLTAGES[0],
         "V",
         2000.0,
         "U_DE: voltage across the left membrane; acts with contact.electrostaticFeedback",
@@ -46,7 +68,7 @@ static INPUTS: [V; 3] = [
     .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[0] = rate)
     .access(|slave| slave.voltages[0], |slave, voltage| slave.voltages[0] = voltage),
     V::input(
-        "right.voltage",
+        VOLTAGES[1],
         "V",
         2000.0,
         "U_DE: voltage across the right membrane; acts with contact.electrostaticFeedback",
@@ -70,6 +92,7 @@ macro_rules! membrane_outputs {
                 .output_derivatives(1, |slave, _order| slave.read(|model| model.capacitance_rate($side)))
                 .depends_on(&[])
                 .initially_depends_on(&[FILM])
+                .partial_derivative(change!(capacitance[$side.index()]))
                 .get(|slave| slave.read(|model| model.capacitance($side))),
             V::output(
                 $deflection,
@@ -84,6 +107,7 @@ macro_rules! membrane_outputs {
             .output_derivatives(1, |slave, _order| slave.read(|model| model.deflection($side).rate))
             .depends_on(&[])
             .initially_depends_on(&[])
+            .partial_derivative(change!(deflection[$side.index()]))
             .get(|slave| slave.read(|model| model.deflection($side).value)),
             V::output(
                 $area_ratio,
@@ -92,6 +116,7 @@ macro_rules! membrane_outputs {
             )
             .depends_on(&[])
             .initially_depends_on(&[])
+            .partial_derivative(change!(area_ratio[$side.index()]))
             .get(|slave| slave.read(|model| model.membrane().area_ratio(model.deflection($side).value))),
         ]
     };
@@ -105,15 +130,8 @@ static RIGHT: [V; 3] =
 pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
 
 /// What the times foreseen depend on.
-const FORESEEN_FROM: [&str; 7] = [
-    "cylinder.position",
-    "cylinder.velocity",
-    "ball.position",
-    "ball.velocity",
-    "externalForce",
-    "left.voltage",
-    "right.voltage",
-];
+const FORESEEN_FROM: [&str; 7] =
+    ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", FORCE, VOLTAGES[0], VOLTAGES[1]];
 
 /// The continuous states, and what depends on them.
 static MOTION: [V; 5] = [
@@ -122,12 +140,14 @@ static MOTION: [V; 5] = [
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_velocity))
         .depends_on(&["cylinder.position"])
         .initially_depends_on(&[&["initial.cylinderPosition"]])
+        .partial_derivative(change!(cylinder[0]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_position)),
     V::output("cylinder.velocity", "m/s", "z_M': velocity of the cylinder, Eq. (7)")
         .nominal(1e-1)
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_acceleration))
         .depends_on(&["cylinder.velocity"])
         .initially_depends_on(&[&["initial.cylinderVelocity"]])
+        .partial_derivative(change!(cylinder[1]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
         .nominal(1e-2)
@@ -135,16 +155,19 @@ static MOTION: [V; 5] = [
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::ball_velocity))
         .depends_on(&["cylinder.position", "ball.position"])
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(change!(ball[0]))
         .get(|slave| slave.read(videg_model::Harvester::ball_position)),
     V::output("ball.velocity", "m/s", "z_m': velocity of the ball, Eq. (11)")
         .nominal(1e-1)
         .reinit()
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(change!(ball[1]))
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output("relativeDisplacement", "m", "z_M - z_m: relative displacement, Eq. (8)")
         .depends_on(&["cylinder.position", "ball.position"])
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(change!(relative_displacement))
         .get(|slave| slave.read(videg_model::Harvester::relative_displacement)),
 ];
 
@@ -156,6 +179,7 @@ static EVENTS: [V; 8] = [
         .discrete()
         .depends_on(&[])
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(change!(last_speed))
         .get(|slave| slave.read(|model| model.totals().last_speed)),
     V::output(
         "impact.nextTime",
@@ -164,8 +188,9 @@ static EVENTS: [V; 8] = [
     )
     .discrete()
     .depends_on(&FORESEEN_FROM)
-    .initially_depends_on(&[IMPACT, FORCE])
-    .get(|slave| slave.foresee(videg_model::Harvester::next_impact)),
+    .initially_depends_on(&[IMPACT, &[FORCE]])
+    .partial_derivative(|slave, known| slave.partial(known, |change| change.next(0, |it| it.next_impact)))
+        .get(|slave| slave.foresee(videg_model::Harvester::next_impact)),
     V::output(
         "pulse.nextKnot",
         "s",
@@ -173,18 +198,21 @@ static EVENTS: [V; 8] = [
     )
     .discrete()
     .depends_on(&FORESEEN_FROM)
-    .initially_depends_on(&[IMPACT, BALL, FORCE, FILM, FORCE_LAW, OPTIONS, VOLTAGES])
-    .get(|slave| slave.foresee(videg_model::Harvester::next_knot)),
+    .initially_depends_on(&[IMPACT, BALL, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
+    .partial_derivative(|slave, known| slave.partial(known, |change| change.next(1, |it| it.next_knot)))
+        .get(|slave| slave.foresee(videg_model::Harvester::next_knot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])
         .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
+        .partial_derivative(change!(voltage_gain))
         .get(|slave| slave.read(|model| model.totals().voltage_gain)),
     V::output("gain.energyEq13", "J", "Sum of W over all impacts, Eqs. (13) and (14)")
         .discrete()
         .nominal(1e-6)
         .depends_on(&[])
         .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
+        .partial_derivative(change!(energy))
         .get(|slave| slave.read(|model| model.totals().energy)),
     V::boolean_output("contact.resting", "The ball rests on a membrane, pressed by the acceleration of the cylinder")
         .local()
@@ -205,40 +233,49 @@ static ENERGIES: [V; 8] = [
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .initially_depends_on(&[IMPACT, BALL])
+        .partial_derivative(change!(energies.ball))
         .get(|slave| energy(slave, |e| e.ball)),
     V::output("energy.cylinderKinetic", "J", "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction")
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
         .initially_depends_on(&[&["cylinder.mass", "initial.cylinderVelocity"]])
+        .partial_derivative(change!(energies.cylinder))
         .get(|slave| energy(slave, |e| e.cylinder)),
     V::output("energy.elastic", "J", "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law")
         .nominal(1e-4)
         .depends_on(&[])
         .initially_depends_on(&[])
+        .partial_derivative(change!(energies.elastic))
         .get(|slave| energy(slave, |e| e.elastic)),
     V::output("energy.impactLoss", "J", "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact")
         .nominal(1e-4)
         .depends_on(&[])
         .initially_depends_on(&[IMPACT, BALL])
+        .partial_derivative(change!(energies.impact_loss))
         .get(|slave| energy(slave, |e| e.impact_loss)),
     V::output("energy.excitation", "J", "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction")
         .nominal(1e-3)
         .depends_on(&["cylinder.velocity"])
         .initially_depends_on(&[])
+        .partial_derivative(change!(energies.excitation))
         .get(|slave| energy(slave, |e| e.excitation)),
     V::output("energy.electrical", "J", "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC")
         .nominal(1e-6)
         .depends_on(&[])
         .initially_depends_on(&[])
+        .partial_derivative(change!(energies.electrical))
         .get(|slave| energy(slave, |e| e.electrical)),
     V::output("energy.wall", "J", "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed")
         .nominal(1e-4)
         .depends_on(&["cylinder.velocity"])
         .initially_depends_on(&[IMPACT, BALL])
+        .partial_derivative(change!(energies.wall))
         .get(|slave| energy(slave, |e| e.wall)),
     V::output("contact.time", "s", "Time in contact since the start under the compliant law; impacts of the impulsive law take none")
         .depends_on(&[])
         .initially_depends_on(&[])
+        // Impacts of the impulsive law take no time.
+        .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
         .get(|slave| slave.read(videg_model::Harvester::contact_time)),
 ];
 
@@ -260,6 +297,7 @@ macro_rules! membrane_loads {
             .nominal(1e7)
             .depends_on(&[$voltage])
             .initially_depends_on(&[&[$voltage, "membrane.initialThickness", "membrane.prestretch"]])
+            .partial_derivative(|slave, known| slave.partial(known, |change| change.field($side)))
             .get(|slave| {
                 let voltage = slave.voltages[$side.index()];
                 slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
@@ -275,6 +313,7 @@ macro_rules! membrane_loads {
             )
             .depends_on(&[])
             .initially_depends_on(&[&["membrane.prestretch"]])
+            .partial_derivative(change!(stretch[$side.index()]))
             .get(|slave| slave.read(|model| model.membrane().stretch(model.deflection($side).value))),
         ]
     };
@@ -291,18 +330,21 @@ static DERIVATIVES: [V; 4] = [
         .depends_on(&["cylinder.velocity"])
         .derivative_of("cylinder.position")
         .initially_depends_on(&[&["initial.cylinderVelocity"]])
+        .partial_derivative(change!(cylinder[1]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("der(cylinder.velocity)", "m/s2", "z_M'': time derivative of cylinder.velocity, Eq. (7)")
         .local()
         .depends_on(&["externalForce"])
         .derivative_of("cylinder.velocity")
-        .initially_depends_on(&[DRIVE, FORCE])
+        .initially_depends_on(&[DRIVE, &[FORCE]])
+        .partial_derivative(change!(cylinder[2]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_acceleration)),
     V::output("der(ball.position)", "m/s", "z_m': time derivative of ball.position")
         .local()
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .derivative_of("ball.position")
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(change!(ball[1]))
         .get(|slave| slave.read(videg_model::Harvester::ball_velocity)),
     V::output(
         "der(ball.velocity)",
@@ -312,7 +354,8 @@ static DERIVATIVES: [V; 4] = [
     .local()
     .depends_on(&["externalForce"])
     .derivative_of("ball.velocity")
-    .initially_depends_on(&[IMPACT, BALL, FORCE])
+    .initially_depends_on(&[IMPACT, BALL, &[FORCE]])
+    .partial_derivative(change!(ball[2]))
     .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
 ];
 
@@ -323,6 +366,7 @@ static TWINS: [V; 2] = [
         .discrete()
         .depends_on(&[])
         .initially_depends_on(&[IMPACT])
+        .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
         .get(|slave| slave.model().map_or(0.0, |model| as_real(model.totals().impacts))),
     V::output(
         "contact.restingReal",
@@ -332,6 +376,7 @@ static TWINS: [V; 2] = [
     .discrete()
     .depends_on(&[])
     .initially_depends_on(&[IMPACT])
+    .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
     .get(|slave| slave.model().map_or(0.0, |model| f64::from(u8::from(model.resting().is_some())))),
 ];
 

@@ -14,7 +14,7 @@ fn case(name: &str, law: i32) -> Host {
         Parameters::TABLE.iter().map(|quantity| (quantity.name, (quantity.get)(&parameters))).collect();
     let host = Host::initializing(fmi2CoSimulation, 0.0, &settings);
     host.choose("contact.law", law);
-    host.exit_initialization();
+    fmu_host::ok(host.exit_initialization());
     host
 }
 

@@ -6,6 +6,7 @@ mod common;
 use common::differences::{Random, compare, natural_size};
 use common::host::{Host, continuous_unknowns, initial_knowns, initial_unknowns, unknowns};
 use fmu_export::abi::{fmi2CoSimulation, fmi2ModelExchange};
+use fmu_host::ok;
 
 type Settings = Vec<(&'static str, f64)>;
 
@@ -167,7 +168,7 @@ fn check_point(host: &Host, names: &[&str], time: f64, states: [f64; 4], force: 
             let mut moved = states;
             moved.iter_mut().skip(k).take(1).for_each(|state| *state += distance);
             host.set("externalForce", if k == 4 { force + distance } else { force });
-            host.place(time, moved);
+            ok(host.place(time, &moved));
             Some(host.get_all(names))
         };
         values(0.0);
@@ -194,19 +195,19 @@ fn derivatives_in_model_exchange_agree_with_central_differences() {
             ("excitation.noiseHold", 1e-3),
             ("cylinder.mass", random.between(0.05, 0.3)),
         ]);
-        host.new_discrete_states();
+        ok(host.new_discrete_states().0);
         resting += usize::from(host.rests());
         let position = random.between(-0.01, 0.01);
         let velocity = random.between(-0.3, 0.3);
         let ball = if rests { [position - 0.022, velocity] } else { [position - 0.01, random.between(-0.3, 0.3)] };
         let states = [position, velocity, ball[0], ball[1]];
         let force = random.between(-0.3, 0.3);
-        host.enter_continuous_time_mode();
+        ok(host.enter_continuous_time_mode());
         let not_zero = check_point(&host, &continuous_unknowns(), 0.01, states, force);
         assert!(not_zero >= 8, "{not_zero}");
         let table = |names: &[&str]| STATES.map(|state| host.derivatives(names, state));
         let between = table(&continuous_unknowns());
-        host.enter_event_mode();
+        ok(host.enter_event_mode());
         assert_eq!(table(&continuous_unknowns()), between);
         let is_discrete = |name: &&str| !continuous_unknowns().contains(name);
         let discrete: Vec<_> = unknowns().into_iter().filter(is_discrete).collect();
@@ -226,7 +227,7 @@ fn discrete_outputs_are_unknowns_everywhere_and_constant_between_events() {
     assert!(is_answered(&Host::stepping(&[])));
     let host = Host::exchanging(&[]);
     assert!(is_answered(&host));
-    host.enter_continuous_time_mode();
+    ok(host.enter_continuous_time_mode());
     for (unknown, derivative) in unknowns().iter().zip(host.derivatives(&unknowns(), "ball.velocity")) {
         assert!(derivative == 0.0 || continuous_unknowns().contains(unknown), "{unknown}: {derivative}");
     }

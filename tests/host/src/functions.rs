@@ -47,6 +47,24 @@ macro_rules! functions {
             }
         }
 
+        /// The functions of the FMU that is linked into this program, with model exchange, under their own names.
+        #[macro_export]
+        macro_rules! linked_names {
+            () => {
+                mod symbols {
+                    unsafe extern "C" { $(pub fn $name();)* $(pub fn $exchange();)* }
+                }
+                // SAFETY: `export_fmu!` has checked the signatures.
+                $(pub static $name: $crate::abi::$signature = unsafe {
+                    ::core::mem::transmute::<unsafe extern "C" fn(), $crate::abi::$signature>(symbols::$name)
+                };)*
+                // SAFETY: as above.
+                $(pub static $exchange: $crate::abi::$exchange_signature = unsafe {
+                    ::core::mem::transmute::<unsafe extern "C" fn(), $crate::abi::$exchange_signature>(symbols::$exchange)
+                };)*
+            };
+        }
+
         /// The functions of the FMU that is linked into this program; `linked_functions!(model_exchange)` if it has those.
         #[macro_export]
         macro_rules! linked_functions {

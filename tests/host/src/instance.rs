@@ -1,9 +1,11 @@
 //! An instance, and what the host knows about it.
 
-use crate::{Fmu, Log};
+use crate::{Fmu, Host, Log};
 use core::ffi::CStr;
+use core::marker::PhantomData;
+use core::ops::{Deref, DerefMut};
 use core::ptr::null;
-use fmu_export::abi::{fmi2CoSimulation, fmi2Component, fmi2FMUstate, fmi2False, fmi2ModelExchange, fmi2True};
+use fmu_export::abi::{fmi2CoSimulation, fmi2FMUstate, fmi2False, fmi2ModelExchange};
 use fmu_export::{CallState, Interface};
 
 /// Call state and time, as the host knows them.
@@ -35,10 +37,8 @@ impl Blob {
 
 /// An instance of an FMU; dropping it frees it.
 pub struct Instance<'a> {
-    fmu: &'a Fmu,
-    /// The component.
-    pub component: fmi2Component,
-    log: *mut Log,
+    host: Host,
+    fmu: PhantomData<&'a Fmu>,
     pub(crate) interface: Interface,
     pub(crate) known: Known,
     /// Whether all that is logged reaches the log.
@@ -49,13 +49,17 @@ pub struct Instance<'a> {
     pub(crate) freed: Vec<fmi2FMUstate>,
 }
 
-impl Drop for Instance<'_> {
-    fn drop(&mut self) {
-        // SAFETY: the component is live or NULL, the log came from `Box::into_raw`, and nobody uses them any more.
-        unsafe {
-            (self.fmu.functions.fmi2FreeInstance)(self.component);
-            drop(Box::from_raw(self.log));
-        }
+impl Deref for Instance<'_> {
+    type Target = Host;
+
+    fn deref(&self) -> &Host {
+        &self.host
+    }
+}
+
+impl DerefMut for Instance<'_> {
+    fn deref_mut(&mut self) -> &mut Host {
+        &mut self.host
     }
 }
 
@@ -66,23 +70,13 @@ impl<'a> Instance<'a> {
     /// What the FMU logged if it gave none.
     pub fn new(fmu: &'a Fmu, interface: Interface) -> Result<Self, String> {
         let kind = if interface == Interface::ModelExchange { fmi2ModelExchange } else { fmi2CoSimulation };
-        let log = Box::into_raw(Box::<Log>::default());
-        // SAFETY: the log lives until the instance is dropped; the strings are zero-terminated.
-        let component = unsafe {
-            let functions = (*log).callbacks();
-            let (name, guid, instantiate) = (c"host".as_ptr(), fmu.guid.as_ptr(), fmu.functions.fmi2Instantiate);
-            instantiate(name, kind, guid, null(), &raw const functions, fmi2False, fmi2True)
-        };
+        let host = Host::new(fmu.functions, c"host", &fmu.guid, kind);
+        if host.component.is_null() {
+            return Err(format!("no instance: {:?}", host.lines()));
+        }
         let known = Known { state: CallState::Instantiated, time: 0.0 };
         let (saved, freed) = (Vec::new(), Vec::new());
-        let mut new = Self { fmu, component, log, interface, known, logs_all: true, saved, freed };
-        if component.is_null() { Err(format!("no instance: {:?}", new.log().take())) } else { Ok(new) }
-    }
-
-    /// What it has logged.
-    pub fn log(&mut self) -> &mut Log {
-        // SAFETY: the log lives as long as the instance, and the FMU is in no call.
-        unsafe { &mut *self.log }
+        Ok(Self { host, fmu: PhantomData, interface, known, logs_all: true, saved, freed })
     }
 }
 
@@ -106,5 +100,5 @@ pub(crate) fn is_refused(fmu: &Fmu, number: usize) -> bool {
     let component = unsafe {
         (fmu.functions.fmi2Instantiate)(name, kind, guid, null(), &raw const functions, fmi2False, fmi2False)
     };
-    component.is_null() && (log.0.len() == 1 || !crate::LOGS)
+    component.is_null() && log.lines.len() == 1
 }

@@ -2,12 +2,14 @@
 //! make without breaking its own memory. Each answer is checked against the tables of FMI 2.0 and against what the host
 //! knows of the state of the instance.
 
+#![cfg_attr(miri, feature(c_variadic))] // for the logger
 #![allow(non_upper_case_globals)] // the constants of the ABI, in patterns, are spelled as in the standard
 
 mod arguments;
 mod call;
 pub mod experiment;
 mod functions;
+mod host;
 pub mod hostile;
 pub mod initial;
 mod instance;
@@ -17,8 +19,9 @@ mod session;
 
 pub use fmu_export::{Function, Interface, abi};
 pub use functions::{Exchange, Functions};
+pub use host::{Host, UNTOUCHED, ok};
 pub use instance::Instance;
-pub use log::{LOGS, Line, Log};
+pub use log::{Line, Log};
 pub use random::Random;
 pub use session::{Census, run, run_tape};
 

@@ -56,7 +56,8 @@ impl<S: Slave> Instance<S> {
         let constant = |variable: &Variable<S>| variable.variability() == Variability::Discrete;
         let between_events = self.core.state == CallState::ContinuousTimeMode;
         let asked = ask && !(between_events && (constant(unknown) || constant(known)));
-        if asked { self.core.model.partial_derivative(unknown, known) } else { 0.0 }
+        let derivative = if let Kind::Real(spec) = unknown.kind() { spec.partial_derivative } else { None };
+        derivative.filter(|_| asked).map_or(0.0, |derivative| derivative(&self.core.model, known))
     }
 
     /// An input; during initialisation a parameter, afterwards a continuous state, too.

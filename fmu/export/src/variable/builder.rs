@@ -5,7 +5,9 @@
 //! [`get`](Declaration::get) where it only reads. A row without accessors does not compile, nor does an
 //! output that can be written.
 
-use super::kind::{BooleanSpec, EnumerationSpec, EnumerationType, IntegerSpec, Kind, RealSpec, StringSpec};
+use super::kind::{
+    BooleanSpec, EnumerationSpec, EnumerationType, IntegerSpec, Kind, PartialDerivative, RealSpec, StringSpec,
+};
 use super::{Causality, Variability, Variable};
 use core::marker::PhantomData;
 
@@ -79,6 +81,7 @@ const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
         set: None,
         input_derivatives: None,
         output_derivatives: None,
+        partial_derivative: None,
     }
 }
 
@@ -322,6 +325,12 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
     /// Gives time derivatives of an output up to `max_order`; `get` gets the order, from 1.
     pub const fn output_derivatives(mut self, max_order: u32, get: fn(&M, u32) -> f64) -> Self {
         self.spec.output_derivatives = Some((max_order, get));
+        self
+    }
+
+    /// Gives partial derivatives; see [`RealSpec::partial_derivative`].
+    pub const fn partial_derivative(mut self, get: PartialDerivative<M>) -> Self {
+        self.spec.partial_derivative = Some(get);
         self
     }
 

@@ -1,5 +1,7 @@
 //! The types of FMI 2.0 with their attributes and the accessors into the model.
 
+use super::Variable;
+
 /// Type of a variable with the attributes of that type.
 pub enum Kind<M: 'static> {
     /// `fmi2Real`
@@ -19,6 +21,9 @@ pub type SetDerivative<M> = fn(&mut M, u32, f64);
 
 /// Gives a time derivative of an output: model, order from 1.
 pub type GetDerivative<M> = fn(&M, u32) -> f64;
+
+/// Gives the partial derivative of a Real with respect to `known`; see [`RealSpec::partial_derivative`].
+pub type PartialDerivative<M> = fn(&M, known: &Variable<M>) -> f64;
 
 /// Attributes and accessors of a Real.
 pub struct RealSpec<M: 'static> {
@@ -42,6 +47,17 @@ pub struct RealSpec<M: 'static> {
     pub input_derivatives: Option<(u32, SetDerivative<M>)>,
     /// Highest order and getter of the time derivatives of an output.
     pub output_derivatives: Option<(u32, GetDerivative<M>)>,
+    /// Partial derivative with respect to another Real, everything else that may be set being constant; zero if none is
+    /// given. Asked for only if [`ModelInfo::directional_derivatives`](crate::ModelInfo::directional_derivatives) is set.
+    /// This Real is an output or the derivative of a continuous state, before the end of initialisation also a calculated
+    /// parameter; the other is an input or, before the end of initialisation, a parameter, afterwards a continuous state.
+    ///
+    /// Of an input in co-simulation it is the derivative at the end of the last step with respect to the input held during
+    /// that step, of a state that at the communication point. In model exchange, after initialisation, it is asked for
+    /// only where this Real depends on the other, as its row says; else it is zero.
+    ///
+    /// NaN where the model knows none: the call is an error then.
+    pub partial_derivative: Option<PartialDerivative<M>>,
 }
 
 /// Attributes and accessors of an Integer.

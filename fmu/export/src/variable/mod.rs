@@ -15,8 +15,8 @@ mod kind;
 pub(crate) use assign::{AsBoolean, AsInteger, AsReal, AsString, Transfer};
 pub use builder::{Declaration, ReadOnly, Settable};
 pub use kind::{
-    BooleanSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, RealSpec, SetDerivative,
-    StringSpec,
+    BooleanSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, PartialDerivative, RealSpec,
+    SetDerivative, StringSpec,
 };
 
 /// What a variable is for.

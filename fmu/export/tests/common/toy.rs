@@ -90,13 +90,18 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
         .tunable()
         .infinity_allowed()
         .access(|m| m.limit, |m, v| m.limit = v),
-    V::calculated_parameter("doubled", "N/m", "2 k").initially_depends_on(&[&["toy.gain"]]).get(|m| m.doubled),
+    V::calculated_parameter("doubled", "N/m", "2 k")
+        .initially_depends_on(&[&["toy.gain"]])
+        .partial_derivative(|m, known| m.of(known, "toy.gain", 2.0))
+        .get(|m| m.doubled),
     V::input("u", "V", 1.0, "Input")
         .input_derivatives(1, |m, _order, v| m.slope = v)
         .access(|m| m.input, |m, v| m.input = v),
     V::output("integral", "N.s/m", "Integral of k u")
         .depends_on(&[])
         .output_derivatives(1, |m, _order| m.gain * m.input)
+        // Through a step of one second; at one point it depends on nothing, as the row says.
+        .partial_derivative(|m, known| m.of(known, "u", m.gain))
         .reinit()
         .get(|m| m.integral),
     V::integer_parameter("seed", 1, "Seed").min(0).max(9).access(|m| m.seed, |m, v| m.seed = v),
@@ -116,11 +121,13 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
         .depends_on(&["u", "switched"])
         .initially_depends_on(&[&["toy.gain"], &["u", "switched"]])
         .derivative_of("integral")
+        .partial_derivative(|m, known| m.of(known, "u", m.gain) + m.of(known, "switched", 1.0))
         .get(|m| m.gain * m.input + m.switched),
     V::input("switched", "1", 0.0, "Added to k u").discrete().access(|m| m.switched, |m, v| m.switched = v),
     V::output("held", "1", "What is added to k u")
         .discrete()
         .initially_depends_on(&[&["switched"]])
+        .partial_derivative(|m, known| m.of(known, "switched", 1.0))
         .get(|m| m.switched),
 ];
 
@@ -128,6 +135,12 @@ impl Toy {
     /// Panics if the variable `trouble` says so.
     fn fail_in(&self, hook: &str) {
         assert!(self.trouble != format!("panic {hook}"), "panic in {hook}");
+    }
+
+    /// A partial derivative that is `value` with respect to the variable `name`, zero with respect to others.
+    fn of(&self, known: &V, name: &str, value: f64) -> f64 {
+        self.fail_in("derivative");
+        if known.name() == name { value } else { 0.0 }
     }
 
     /// Panics or returns an error if the variable `trouble` says so.
@@ -233,17 +246,6 @@ impl Slave for Toy {
             self.count += 1;
         }
         Ok(EventOutcome { states_changed, next_event_time: Some(self.time.floor() + 1.0) })
-    }
-
-    fn partial_derivative(&self, unknown: &Variable<Self>, known: &Variable<Self>) -> f64 {
-        self.fail_in("derivative");
-        match (unknown.name(), known.name()) {
-            ("doubled", "toy.gain") => 2.0,
-            // Of the integral through a step of one second; at one point it depends on nothing, as the table says.
-            ("der(integral)" | "integral", "u") => self.gain,
-            ("der(integral)" | "held", "switched") => 1.0,
-            _ => 0.0,
-        }
     }
 
     fn on_call(&self, function: Function) {

@@ -38,11 +38,6 @@ pub(super) const IMPACT: &[&str] = &[
 
 pub(super) const BALL: &[&str] = &["ball.mass"];
 
-pub(super) const FORCE: &[&str] = &["externalForce"];
-
-/// What acts in a contact with the Maxwell force.
-pub(super) const VOLTAGES: &[&str] = &["left.voltage", "right.voltage"];
-
 /// The capacitance of a flat membrane.
 pub(super) const FILM: &[&str] =
     &["membrane.initialRadius", "membrane.initialThickness", "membrane.prestretch", "membrane.relativePermittivity"];
