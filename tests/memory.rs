@@ -30,7 +30,7 @@ fn cycle(library: &Path, description: &str) {
         let library = libloading::Library::new(library).unwrap();
         let fmu = Fmu::new(Functions::load(&library).unwrap(), description).unwrap();
         let f = &fmu.functions;
-        let mut instance = Instance::new(&fmu, fmu_host::Interface::CoSimulation).unwrap();
+        let instance = Instance::new(&fmu, fmu_host::Interface::CoSimulation).unwrap();
         let (c, mut state) = (instance.component, std::ptr::null_mut());
         assert_eq!((f.fmi2SetupExperiment)(c, 0, 0.0, 0.0, 0, 0.0), abi::fmi2OK);
         assert_eq!((f.fmi2EnterInitializationMode)(c), abi::fmi2OK);
