@@ -74,7 +74,7 @@ impl Host {
         let log = Box::into_raw(Box::<Log>::default());
         // SAFETY: the log lives until the instance is dropped; the strings are zero-terminated.
         let component = unsafe {
-            let callbacks = (*log).callbacks();
+            let callbacks = Log::callbacks(log);
             let instantiate = functions.fmi2Instantiate;
             instantiate(name.as_ptr(), kind, guid.as_ptr(), null(), &raw const callbacks, fmi2False, fmi2True)
         };

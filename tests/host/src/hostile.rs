@@ -240,7 +240,7 @@ pub fn instantiation(fmu: &Fmu) -> Result<(), String> {
     };
     for location in odd.into_iter().map(CStr::as_ptr).chain([null()]) {
         let mut log = Log::default();
-        let logging = log.callbacks();
+        let logging = Log::callbacks(&raw mut log);
         for callbacks in [null(), &raw const none, &raw const logging] {
             works(fmu, location, callbacks)?;
         }

@@ -94,7 +94,7 @@ const REFUSED: [(Option<&CStr>, i32, bool); 6] = [
 pub(crate) fn is_refused(fmu: &Fmu, number: usize) -> bool {
     let (name, kind, with_guid) = REFUSED[number % REFUSED.len()];
     let mut log = Log::default();
-    let functions = log.callbacks();
+    let functions = Log::callbacks(&raw mut log);
     let (name, guid) = (name.map_or(null(), CStr::as_ptr), if with_guid { fmu.guid.as_ptr() } else { null() });
     // SAFETY: the log outlives the call; strings are NULL or zero-terminated.
     let component = unsafe {

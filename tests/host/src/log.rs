@@ -36,14 +36,15 @@ impl Log {
         core::mem::take(&mut self.lines)
     }
 
-    /// Callbacks that write to this log, which must stay where it is.
-    pub fn callbacks(&mut self) -> fmi2CallbackFunctions {
+    /// Callbacks that write to this log, which must stay where it is. Not of a reference: the one who owns the log looks at
+    /// it between the calls.
+    pub fn callbacks(log: *mut Self) -> fmi2CallbackFunctions {
         fmi2CallbackFunctions {
             logger: Some(logger()),
             allocateMemory: None,
             freeMemory: None,
             stepFinished: None,
-            componentEnvironment: core::ptr::from_mut(self).cast(),
+            componentEnvironment: log.cast(),
         }
     }
 }

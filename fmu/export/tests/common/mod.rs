@@ -17,7 +17,7 @@ fmu_host::linked_names!();
 
 /// Callbacks that write to `log`.
 pub fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
-    log.callbacks()
+    Log::callbacks(log)
 }
 
 pub fn guid() -> String {
