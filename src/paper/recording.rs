@@ -97,23 +97,17 @@ pub(super) fn impacts(study: &Study<'_>, settings: &[Setting], window: [f64; 2])
     Ok(record(study, settings, window, window[1] - window[0])?.impacts)
 }
 
-struct Recorder {
+struct Recorder<'a> {
+    study: &'a Study<'a>,
     instance: Instance,
     time: f64,
-    outputs: Vec<u32>,
-    events: Vec<u32>,
     recording: Recording,
 }
 
-impl Recorder {
-    fn new(study: &Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
-        Ok(Self {
-            instance: study.start(settings)?,
-            time: 0.0,
-            outputs: OUTPUTS.iter().map(|(name, ..)| study.reference(name)).collect::<Result<_, _>>()?,
-            events: EVENTS.iter().map(|name| study.reference(name)).collect::<Result<_, _>>()?,
-            recording: Recording { samples: Vec::new(), impacts: Vec::new() },
-        })
+impl<'a> Recorder<'a> {
+    fn new(study: &'a Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
+        let recording = Recording { samples: Vec::new(), impacts: Vec::new() };
+        Ok(Self { study, instance: study.start(settings)?, time: 0.0, recording })
     }
 
     /// Steps on; the time is kept as the FMU keeps it, as a sum.
@@ -125,16 +119,13 @@ impl Recorder {
     }
 
     fn note(&mut self) -> Result<(), PaperError> {
-        let mut values = [0.0; OUTPUTS.len()];
-        self.instance.get_real(&self.outputs, &mut values)?;
+        let values = self.study.reals(&self.instance, OUTPUTS.map(|(name, ..)| name))?;
         self.recording.samples.push(Sample { time: self.time, values });
         Ok(())
     }
 
     fn events(&self) -> Result<[f64; EVENTS.len()], PaperError> {
-        let mut values = [0.0; EVENTS.len()];
-        self.instance.get_real(&self.events, &mut values)?;
-        Ok(values)
+        self.study.reals(&self.instance, EVENTS)
     }
 
     /// To `target` or to what comes before it.

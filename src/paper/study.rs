@@ -73,14 +73,10 @@ impl Study<'_> {
         Ok(instance)
     }
 
-    /// Value reference of the variable called `name`.
-    pub(super) fn reference(&self, name: &str) -> Result<u32, PaperError> {
-        Ok(self.fmu.description().variable(name)?.value_reference)
-    }
-
     /// Values of variables of an instance, in the order of `names`.
     pub(super) fn reals<const N: usize>(&self, instance: &Instance, names: [&str; N]) -> Result<[f64; N], PaperError> {
-        let references = names.iter().map(|name| self.reference(name)).collect::<Result<Vec<_>, _>>()?;
+        let reference = |name: &&str| Ok(self.fmu.description().variable(name)?.value_reference);
+        let references = names.iter().map(reference).collect::<Result<Vec<_>, PaperError>>()?;
         let mut values = [0.0; N];
         instance.get_real(&references, &mut values)?;
         Ok(values)
@@ -96,8 +92,8 @@ impl Study<'_> {
     /// The sums that averages are made of.
     pub(super) fn gains(&self, instance: &Instance) -> Result<Gains, PaperError> {
         let [voltage, energy] = self.reals(instance, ["gain.voltage", "gain.energyEq13"])?;
-        let mut impacts = [0];
-        instance.get_integer(&[self.reference("impact.count")?], &mut impacts)?;
+        let (count, mut impacts) = (self.fmu.description().variable("impact.count")?, [0]);
+        instance.get_integer(&[count.value_reference], &mut impacts)?;
         Ok(Gains { voltage, energy, impacts: impacts[0] })
     }
 
