@@ -72,14 +72,6 @@ pub enum SweepError {
         /// The reason.
         reason: String,
     },
-    /// The Parquet file.
-    #[error("cannot write {}: {cause}", path.display())]
-    Parquet {
-        /// The file.
-        path: PathBuf,
-        /// The error of the writer.
-        cause: parquet::errors::ParquetError,
-    },
 }
 
 /// The place of an `option` and its `value` in the words of the user.

@@ -121,7 +121,7 @@ fn check_last(sweep: &Sweep, engine: &Engine, record: &Record) -> Result<(), Swe
         return Ok(());
     }
     let reason = format!(
-        "run {} comes out otherwise here: the results are of another build of the model or another machine; go on with \
+        "run {} gives another result here: the results are of another build of the model or another machine; go on with \
          that, or begin anew with --fresh",
         run.number
     );

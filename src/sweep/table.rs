@@ -37,7 +37,7 @@ pub(super) fn write(
     let path = path(csv);
     if anew || !path.exists() {
         let filled = atomic_file::fill(&path, |file| fill(csv, columns, document, file));
-        filled.map_err(|cause| SweepError::Parquet { path: path.clone(), cause })?;
+        filled.map_err(|cause| SweepError::file("write", &path)(io::Error::other(cause)))?;
     }
     Ok(path)
 }

@@ -198,7 +198,7 @@ fn results_of_another_build_are_not_gone_on_with() {
     assert_ne!(lines[2], text.lines().nth(2).unwrap());
     let (code, message) = refused(&mut interrupted_after(&folder, &lines));
     assert_eq!(code, Some(2));
-    assert!(message.contains("run 1 comes out otherwise here"), "{message}");
+    assert!(message.contains("run 1 gives another result here"), "{message}");
 }
 
 #[test]
@@ -214,7 +214,7 @@ fn a_row_that_failed_stays_and_the_one_before_it_is_compared() {
     assert!(results.starts_with(&lines.join("\n")) && results.lines().last() == text.lines().last(), "{results}");
     lines[2] = lines[2].replace(",0.000", ",0.001");
     let (_, message) = refused(&mut interrupted_after(&folder, &lines));
-    assert!(message.contains("run 1 comes out otherwise here"), "{message}");
+    assert!(message.contains("run 1 gives another result here"), "{message}");
 }
 
 #[test]
