@@ -1,6 +1,6 @@
 //! Progress of a long run: the trait through which every long run tells its caller how far it is.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A task in work.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,3 +30,20 @@ pub trait Progress: Sync {
 }
 
 impl Progress for () {}
+
+/// Does `work` as an item of a run.
+///
+/// # Errors
+/// Those of `work`.
+pub fn during<T, E>(
+    observer: &dyn Progress,
+    name: &str,
+    title: &str,
+    work: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    let started = Instant::now();
+    observer.begin(name, title);
+    let result = work()?;
+    observer.end(name, started.elapsed());
+    Ok(result)
+}

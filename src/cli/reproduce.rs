@@ -1,7 +1,6 @@
 //! `videg reproduce`: the tables and figures of the paper, as data, pictures and one report.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use anyhow::{Context as _, anyhow};
 use clap::Args;
@@ -15,7 +14,7 @@ use crate::cosim::{Cosimulation, CsvRecorder, Options};
 use crate::crosscheck;
 use crate::ngspice::Ngspice;
 use crate::paper::{self, Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
-use crate::progress::Progress;
+use crate::progress::{Progress, during};
 use crate::scenario::Request;
 use fmu_import::{Fmu, nearest_name};
 
@@ -36,7 +35,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What is made beside the items of the paper: where the energy goes, and what ngspice says of it.
+/// Made beside the items of the paper: the energy audit and the comparison with ngspice.
 const AUDIT: &str = "audit";
 const CROSSCHECK: &str = "crosscheck";
 
@@ -60,7 +59,7 @@ struct Row<'a> {
 #[derive(Serialize)]
 struct Output<'a> {
     quick: bool,
-    /// Whether no number differs from the paper's for a reason that is not known, and the solvers of the crosscheck agree.
+    /// Whether each difference from the paper has a known reason, and the solvers of the crosscheck agree.
     passed: bool,
     items: Vec<Made<'a>>,
     warnings: &'a [String],
@@ -68,7 +67,7 @@ struct Output<'a> {
 }
 
 /// Everything made so far.
-struct Book<'a> {
+struct Reproduction<'a> {
     folder: &'a Path,
     chapters: Vec<Chapter>,
     warnings: Vec<String>,
@@ -93,49 +92,35 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
     let folder = &arguments.output;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
-    let mut book = Book { folder, chapters: Vec::new(), warnings: Vec::new(), solvers_disagree: false };
+    let mut made = Reproduction { folder, chapters: Vec::new(), warnings: Vec::new(), solvers_disagree: false };
     let bar = ItemBar::new(wanted.count());
     let study = Study { fmu: &fmu, effort, observer: &bar };
-    for made in paper::reproduce(&study, |name| wanted.has(name)) {
-        let (item, artefact) = made?;
-        book.add(item, artefact)?;
+    for item in paper::reproduce(&study, |name| wanted.has(name)) {
+        let (item, artefact) = item?;
+        made.add(item, artefact)?;
     }
     if wanted.has(AUDIT) {
-        during(&bar, AUDIT, "where the energy goes", || book.audit(&fmu))?;
+        during(&bar, AUDIT, "where the energy goes", || made.audit(&fmu))?;
     }
     if wanted.has(CROSSCHECK) {
-        during(&bar, CROSSCHECK, "against ngspice", || book.crosscheck(&fmu, wanted.names_it(CROSSCHECK), &bar))?;
+        during(&bar, CROSSCHECK, "against ngspice", || made.crosscheck(&fmu, wanted.names_it(CROSSCHECK), &bar))?;
     }
     bar.finish();
-    let passed = !book.solvers_disagree && !book.findings().any(|finding| finding.verdict == Verdict::Differs);
-    let report = page::write(folder, &book.chapters, &book.warnings, &fmu, arguments.quick)?;
-    files::summary(&folder.join("summary.csv"), book.findings())?;
-    let json = serde_json::to_string_pretty(&book.json(arguments.quick, passed, &report))?;
+    let passed = !made.solvers_disagree && !made.findings().any(|finding| finding.verdict == Verdict::Differs);
+    let report = page::write(folder, &made.chapters, &made.warnings, &fmu, arguments.quick)?;
+    files::summary(&folder.join("summary.csv"), made.findings())?;
+    let json = serde_json::to_string_pretty(&made.json(arguments.quick, passed, &report))?;
     output::write(&folder.join("result.json"), &json)?;
     if arguments.json {
         output::print_json(&json)?;
     } else {
-        output::print(&book.text(&report))?;
+        output::print(&made.text(&report))?;
     }
-    output::warn(&book.warnings);
+    output::warn(&made.warnings);
     Ok(if passed { Exit::Passed } else { Exit::Failed })
 }
 
-/// Does `work` as an item.
-fn during<T>(
-    observer: &dyn Progress,
-    name: &str,
-    title: &str,
-    work: impl FnOnce() -> anyhow::Result<T>,
-) -> anyhow::Result<T> {
-    let started = Instant::now();
-    observer.begin(name, title);
-    let result = work()?;
-    observer.end(name, started.elapsed());
-    Ok(result)
-}
-
-/// What is to be made.
+/// Names of the items to make.
 struct Wanted {
     names: Vec<String>,
 }
@@ -155,7 +140,7 @@ impl Wanted {
         self.names.is_empty() || self.names.iter().any(|wanted| wanted == name || wanted == "all")
     }
 
-    /// Whether it is asked for by its name.
+    /// Whether the user gave this name.
     fn names_it(&self, name: &str) -> bool {
         self.names.iter().any(|wanted| wanted == name)
     }
@@ -165,7 +150,7 @@ impl Wanted {
     }
 }
 
-impl Book<'_> {
+impl Reproduction<'_> {
     fn add(&mut self, item: &Item, artefact: Artefact) -> anyhow::Result<()> {
         let files = files::write(self.folder, &artefact)?;
         self.chapters.push(Chapter::new(item.name, item.title, artefact, files));

@@ -35,11 +35,11 @@ mod table2;
 mod table3;
 mod tuning;
 
-use std::time::Instant;
-
 pub use artefact::{Artefact, Finding, Picture, Sheet, Verdict};
 pub use error::PaperError;
 pub use study::{Effort, Run, Study};
+
+use crate::progress::during;
 
 /// Averaging window of the paper, s (Section 5).
 const WINDOW: [f64; 2] = [50.0, 100.0];
@@ -67,11 +67,8 @@ pub fn reproduce<'a>(
     wanted: impl Fn(&str) -> bool + 'a,
 ) -> impl Iterator<Item = Result<(&'static Item, Artefact), PaperError>> + 'a {
     ITEMS.iter().filter(move |item| wanted(item.name)).map(|item| {
-        let started = Instant::now();
-        study.observer.begin(item.name, item.title);
-        let artefact =
-            (item.make)(study).map_err(|cause| PaperError::Item { name: item.name, cause: Box::new(cause) })?;
-        study.observer.end(item.name, started.elapsed());
+        let failed = |cause| PaperError::Item { name: item.name, cause: Box::new(cause) };
+        let artefact = during(study.observer, item.name, item.title, || (item.make)(study)).map_err(failed)?;
         Ok((item, artefact))
     })
 }
