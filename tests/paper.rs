@@ -234,6 +234,7 @@ fn output_rises_with_amplitude_and_frequency() {
 
 /// Figure 17 with the samples of the paper. A few fast balls make the mean, so medians stand beside the means.
 #[test]
+#[ignore = "slow"]
 fn phase_noise_takes_most_of_the_output_until_it_hardly_matters() {
     const SAMPLES: usize = 100;
     // Mean, its standard error, and median.
@@ -280,6 +281,7 @@ fn the_best_voltage_of_a_quick_release_is_that_of_the_closed_form() {
 
 /// P of Eq. (14) as in the README.
 #[test]
+#[ignore = "slow"]
 fn net_gain_depends_on_the_circuit_where_eq_14_does_not() {
     let power = make("power");
     let eq14 = [&power.sheets[0].rows[0], &power.sheets[0].rows[6]].map(|row| row[2]);
