@@ -23,21 +23,18 @@ impl<'a> Figure<'a> {
     }
 
     /// Sets the long description.
-    pub fn caption(mut self, caption: impl Into<String>) -> Self {
-        self.caption = caption.into();
-        self
+    pub fn caption(self, caption: impl Into<String>) -> Self {
+        Self { caption: caption.into(), ..self }
     }
 
     /// Puts `columns` panels side by side.
-    pub fn columns(mut self, columns: usize) -> Self {
-        self.columns = columns;
-        self
+    pub fn columns(self, columns: usize) -> Self {
+        Self { columns, ..self }
     }
 
     /// Sets the nominal width in px.
-    pub fn width(mut self, width: f64) -> Self {
-        self.width = width;
-        self
+    pub fn width(self, width: f64) -> Self {
+        Self { width, ..self }
     }
 
     /// Adds a panel behind the others.
@@ -93,33 +90,28 @@ impl<'a> Panel<'a> {
     }
 
     /// Sets the ends of the x axis.
-    pub fn x_range(mut self, low: f64, high: f64) -> Self {
-        self.x_range = Some((low, high));
-        self
+    pub fn x_range(self, low: f64, high: f64) -> Self {
+        Self { x_range: Some((low, high)), ..self }
     }
 
     /// Names places on the x axis, which then has no numbers; for a linear axis.
-    pub fn x_names<S: Into<String>>(mut self, names: impl IntoIterator<Item = (f64, S)>) -> Self {
-        self.x_names = names.into_iter().map(|(x, name)| (x, name.into())).collect();
-        self
+    pub fn x_names<S: Into<String>>(self, names: impl IntoIterator<Item = (f64, S)>) -> Self {
+        Self { x_names: names.into_iter().map(|(x, name)| (x, name.into())).collect(), ..self }
     }
 
     /// Sets the ends of the y axis.
-    pub fn y_range(mut self, low: f64, high: f64) -> Self {
-        self.y_range = Some((low, high));
-        self
+    pub fn y_range(self, low: f64, high: f64) -> Self {
+        Self { y_range: Some((low, high)), ..self }
     }
 
     /// Sets the height of the frame in px.
-    pub fn height(mut self, height: f64) -> Self {
-        self.height = height;
-        self
+    pub fn height(self, height: f64) -> Self {
+        Self { height, ..self }
     }
 
     /// Shares the x axis of the panel below in the same column.
-    pub fn share_x_with_next(mut self) -> Self {
-        self.share_x_with_next = true;
-        self
+    pub fn share_x_with_next(self) -> Self {
+        Self { share_x_with_next: true, ..self }
     }
 
     /// Adds a series; its colour is the next one of the palette.
@@ -149,27 +141,23 @@ impl<'a> Panel<'a> {
     }
 
     /// Sets the map.
-    pub fn map(mut self, map: HeatMap<'a>) -> Self {
-        self.map = Some(map);
-        self
+    pub fn map(self, map: HeatMap<'a>) -> Self {
+        Self { map: Some(map), ..self }
     }
 
     /// Makes the x axis logarithmic.
-    pub fn log_x(mut self) -> Self {
-        self.log_x = true;
-        self
+    pub fn log_x(self) -> Self {
+        Self { log_x: true, ..self }
     }
 
     /// Makes the y axis logarithmic.
-    pub fn log_y(mut self) -> Self {
-        self.log_y = true;
-        self
+    pub fn log_y(self) -> Self {
+        Self { log_y: true, ..self }
     }
 
     /// Draws x and y to one scale.
-    pub fn equal_aspect(mut self) -> Self {
-        self.equal_aspect = true;
-        self
+    pub fn equal_aspect(self) -> Self {
+        Self { equal_aspect: true, ..self }
     }
 }
 
@@ -251,15 +239,13 @@ impl<'a> Series<'a> {
     }
 
     /// Sets how the points are drawn.
-    pub fn style(mut self, style: Style) -> Self {
-        self.style = style;
-        self
+    pub fn style(self, style: Style) -> Self {
+        Self { style, ..self }
     }
 
     /// Sets the index into the palette, so that one quantity keeps its colour across panels.
-    pub fn color(mut self, index: usize) -> Self {
-        self.color = Some(index);
-        self
+    pub fn color(self, index: usize) -> Self {
+        Self { color: Some(index), ..self }
     }
 
     fn new(label: impl Into<String>, data: Data<'a>) -> Self {

@@ -26,15 +26,13 @@ impl Report {
     }
 
     /// Sets the command line that made the report.
-    pub fn command(mut self, command: impl Into<String>) -> Self {
-        self.command = command.into();
-        self
+    pub fn command(self, command: impl Into<String>) -> Self {
+        Self { command: command.into(), ..self }
     }
 
     /// Sets name and version of the program.
-    pub fn generated_by(mut self, program: impl Into<String>) -> Self {
-        self.generated_by = program.into();
-        self
+    pub fn generated_by(self, program: impl Into<String>) -> Self {
+        Self { generated_by: program.into(), ..self }
     }
 
     /// Adds a section at the end.
@@ -75,9 +73,8 @@ impl Section {
     }
 
     /// Sets the name that links lead to: small letters, digits, `.`, `-` and `_`.
-    pub fn id(mut self, id: impl Into<String>) -> Self {
-        self.id = id.into();
-        self
+    pub fn id(self, id: impl Into<String>) -> Self {
+        Self { id: id.into(), ..self }
     }
 
     /// Adds a table.
