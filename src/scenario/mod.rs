@@ -20,47 +20,23 @@ const DEFAULT_CASE: &str = "fig14";
 
 /// Error of a scenario. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum ScenarioError {
     /// No case has this name.
     #[error("{given}: no such case; there are: {known}")]
-    UnknownCase {
-        /// Name given, and where.
-        given: String,
-        /// Names that exist.
-        known: String,
-    },
+    UnknownCase { given: String, known: String },
     /// A setting lacks its equals sign or one of its sides.
     #[error("--set {text}: not of the form variable.name=VALUE")]
-    BadSetting {
-        /// What was given.
-        text: String,
-    },
+    BadSetting { text: String },
     /// A duration, step or window is out of range.
     #[error("{name} = {value} s: {bound}")]
-    Time {
-        /// Name of the option, or of file and key.
-        name: String,
-        /// Value given.
-        value: f64,
-        /// What is allowed.
-        bound: String,
-    },
+    Time { name: String, value: f64, bound: String },
     /// The case or sweep file cannot be read.
     #[error("cannot read {path}: {cause}")]
-    Unreadable {
-        /// The file.
-        path: String,
-        /// What the system said.
-        cause: std::io::Error,
-    },
+    Unreadable { path: String, cause: std::io::Error },
     /// The case or sweep file has a mistake.
     #[error("{path}: {reason}")]
-    BadFile {
-        /// The file.
-        path: String,
-        /// What is wrong, and where.
-        reason: String,
-    },
+    BadFile { path: String, reason: String },
 }
 
 /// One setting: an FMU variable by name, and its value as text, as a user writes it.
