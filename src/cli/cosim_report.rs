@@ -9,15 +9,15 @@ use videg_report::{self, ReportError, Section};
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
 pub const EXPLANATION: [&str; 10] = [
     "Why they differ: an impact moves the charge dQ = U_in dC from the supply, which gives U_in dQ. W of Eq. (13) is half",
-    "of that: the change of the stored energy, not a gain. A Zener in series then burns U_z dQ, and the load sees only what",
-    "is above U_z. At U_z = U_in a charge q let out at U thus gains q (U - 2 U_in): the paper's circuit loses unless C3/C2 is",
-    "above 2, or 3 with both membranes on one node. An ideal switch at U_z = U_in into a quick load hands on what the supply",
-    "gave; with U_z above U_in the mechanics' work reaches the load, the more so with isolated membranes. It does so without",
-    "a switch to be driven where a diode leads into a storage at U_out, whose intake counts as the load's: a quick release,",
-    "which gains (C3 U_in - C2 U_out) (U_out - U_in), the most at U_out = U_in (C3/C2 + 1)/2. Where impacts differ, the switch",
-    "and the storage of the last two columns are at the voltage that gains most over all of them. A load that takes the",
-    "charge slowly, at C2, gains up to twice that, and at a lower voltage: videg reproduce tuning looks for the best pair.",
-    "The last row is the charge from the supply over what Eq. (13) has in mind, the sum of U_in dC over all impacts.",
+    "of that: the change of the stored energy, not a gain. A Zener in series then burns U_z dQ, and the load gets only the",
+    "voltage above U_z. At U_z = U_in a charge q released at U thus gains q (U - 2 U_in): the paper's circuit loses unless",
+    "C3/C2 is above 2, or 3 with both membranes on one node. With an ideal switch at U_z = U_in and a quick load the net gain",
+    "is zero; with U_z above U_in the work of the mechanics reaches the load, more of it with isolated membranes. A diode into",
+    "a storage at U_out does the same without a driven switch; the energy into the storage counts as the load's. Such a quick",
+    "release gains (C3 U_in - C2 U_out) (U_out - U_in), the most at U_out = U_in (C3/C2 + 1)/2. Where impacts differ, the switch",
+    "and the storage of the last two columns are at the voltage with the largest net gain over all of them. A load that takes",
+    "the charge slowly, at C2, gains up to twice that, and at a lower voltage: videg reproduce tuning finds the best pair.",
+    "The last row is the charge from the supply over the charge in Eq. (13), the sum of U_in dC over all impacts.",
 ];
 
 /// A row of the energy table: its name and how to read it from a circuit, in J.
