@@ -90,11 +90,11 @@ impl Motion {
     }
 
     pub fn cylinder_position_at(&self, time: f64) -> f64 {
-        self.cylinder.position(time) + self.recoil(time).position
+        self.cylinder.at(time).position + self.recoil(time).position
     }
 
     pub fn cylinder_velocity_at(&self, time: f64) -> f64 {
-        self.cylinder.velocity(time) + self.recoil(time).velocity
+        self.cylinder.at(time).velocity + self.recoil(time).velocity
     }
 
     /// `z_M` - `z_m`, m, and its rate, m/s.
@@ -112,7 +112,7 @@ impl Motion {
     pub fn ball_position_at(&self, time: f64) -> f64 {
         match &self.ball {
             Ball::Free => self.last.position + self.last.velocity * (time - self.last.time),
-            Ball::Resting(side) => self.cylinder.position(time) - side.sign() * self.half_travel,
+            Ball::Resting(side) => self.cylinder.at(time).position - side.sign() * self.half_travel,
             Ball::InContact(_) => {
                 let [dz, _] = self.relative_at(time);
                 self.cylinder_position_at(time) - dz
@@ -123,7 +123,7 @@ impl Motion {
     pub fn ball_velocity_at(&self, time: f64) -> f64 {
         match &self.ball {
             Ball::Free => self.last.velocity,
-            Ball::Resting(_) => self.cylinder.velocity(time),
+            Ball::Resting(_) => self.cylinder.at(time).velocity,
             Ball::InContact(contact) => {
                 self.cylinder_velocity_at(time) - contact.state.side.sign() * contact.at(time).v
             }

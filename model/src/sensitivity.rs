@@ -61,17 +61,9 @@ impl Direction {
 /// What changes besides the force, if the parameters do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterChange {
-    /// Of `z_M`, m, and `z_M'`, m/s, at the start.
-    cylinder: [f64; 2],
-    drive: DriveChange,
-    /// Of the intensity of the phase noise, rad, and of its hold time, s.
-    intensity: f64,
-    hold: f64,
+    of: Parameters,
     half_travel: f64,
-    cylinder_mass: f64,
-    ball_mass: f64,
-    restitution: f64,
-    bias: f64,
+    drive: DriveChange,
     membrane: MembraneChange,
     pub shape: ShapeChange,
 }
@@ -172,15 +164,9 @@ impl Tangent {
         };
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         let change = ParameterChange {
-            cylinder: [d.cylinder_position, d.cylinder_velocity],
-            drive,
-            intensity: d.phase_noise,
-            hold: d.noise_hold,
+            of: *d,
             half_travel,
-            cylinder_mass: d.cylinder_mass,
-            ball_mass: d.ball_mass,
-            restitution: d.restitution,
-            bias: d.bias_voltage,
+            drive,
             membrane: MembraneChange::new(p, d),
             shape: ShapeChange::new(&shape, d.stiffness_exponent, d.restitution),
         };
@@ -225,7 +211,7 @@ impl Tangential<'_> {
         let elapsed = time - since;
         let by_force = [0.5 * push * elapsed * elapsed, push * elapsed];
         let Some(change) = &self.tangent.parameters else { return by_force };
-        let [position, velocity] = change.cylinder;
+        let [position, velocity] = [change.of.cylinder_position, change.of.cylinder_velocity];
         let by_drive = self.change_by_drive(time, change);
         [by_force[0] + position + velocity * elapsed + by_drive[0], by_force[1] + velocity + by_drive[1]]
     }

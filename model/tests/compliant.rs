@@ -83,8 +83,8 @@ fn under_a_wall_at_rest_deflection_rebound_and_duration_are_the_papers_for_10000
         prop_assert!((harvester.ball_velocity() / (-p.restitution * speed) - 1.0).abs() < 1e-8);
         let loading = loading_time(&p, speed);
         prop_assert!(((times[0] - begin) / loading - 1.0).abs() < 1e-8, "{} for {loading}", times[0] - begin);
-        let whole = loading * (1.0 + 1.0 / p.restitution);
-        prop_assert!(((times[1] - begin) / whole - 1.0).abs() < 1e-8, "{} for {whole}", times[1] - begin);
+        let duration = loading * (1.0 + 1.0 / p.restitution);
+        prop_assert!(((times[1] - begin) / duration - 1.0).abs() < 1e-8, "{} for {duration}", times[1] - begin);
         Ok(())
     });
     checked.unwrap();
@@ -173,7 +173,7 @@ proptest! {
 
     #[test]
     fn splitting_a_run_changes_no_bit(p in any_parameters(), cuts in prop::collection::vec(0.0..2.0, 0..40)) {
-        let mut whole = run(&p, 2.0);
+        let mut straight = run(&p, 2.0);
         let mut split = Harvester::new(&p, 0.0).unwrap();
         let mut cuts = cuts;
         cuts.sort_by(f64::total_cmp);
@@ -184,10 +184,10 @@ proptest! {
             split.set_voltages([2000.0; 2], [0.0; 2]).unwrap();
         }
         split.advance(2.0).unwrap();
-        for harvester in [&mut whole, &mut split] {
+        for harvester in [&mut straight, &mut split] {
             harvester.set_external_force(0.0, 0.0).unwrap(); // sensitivities are counted from here in both
         }
-        prop_assert_eq!(whole, split);
+        prop_assert_eq!(straight, split);
     }
 
     #[test]

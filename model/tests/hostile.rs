@@ -198,7 +198,8 @@ fn a_trillion_impacts_a_second_end_with_an_error_that_names_the_bound() {
         };
         let mut harvester = Harvester::new(&Parameters { restitution: 1.0, ..p }, 0.0).unwrap();
         let error = harvester.advance(1.0).unwrap_err();
-        assert!(matches!(error, ModelError::TooManyEvents { limit: 1_000_000, .. }), "{error}");
+        let text = error.to_string();
+        assert!(text.contains("more than 1000000 events") && text.contains("ball.travel = 0.00000000"), "{text}");
         assert!(harvester.totals().events() <= 1_000_001);
         assert!(harvester.advance(1.0).is_err(), "it would go on");
         assert_finite(&harvester, "after the error");
@@ -222,14 +223,6 @@ fn steps_of_nothing_change_nothing_and_odd_ones_are_refused() {
         assert_eq!(harvester.time(), time, "{kind}");
         harvester.advance(duration(&p)).unwrap();
         assert_balanced(&harvester, &p, kind);
-    }
-}
-
-#[test]
-fn starts_beyond_the_digits_of_time_are_refused_with_the_bound() {
-    for start in [1e9_f64.next_up(), -1e9_f64.next_up(), 1e308, f64::INFINITY, f64::NAN] {
-        let error = Harvester::new(&Parameters::default(), start).unwrap_err();
-        assert!(error.to_string().contains("is outside its bounds [-1000000000, 1000000000] s"), "{error}");
     }
 }
 

@@ -17,7 +17,7 @@ fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
         let target = harvester.next_impact().unwrap_or(until).min(harvester.time() + 0.05).min(until);
         let show = |shown: &Event| {
             let Event::Impact(impact) = shown else { return };
-            assert_eq!(impact.time, target, "not foreseen");
+            assert_eq!(impact.time, target, "not predicted");
             list.push(Impact { time: impact.time, speed: impact.speed });
         };
         harvester.advance_with(target, show).unwrap();
@@ -112,8 +112,8 @@ proptest! {
     ) {
         let noise_model = if wiener { NoiseModel::Wiener } else { NoiseModel::Held };
         let p = Parameters { phase_noise: noise, noise_hold: 1e-3, noise_model, ..p };
-        let mut whole = Harvester::new(&p, 0.0).unwrap();
-        whole.advance(4.0).unwrap();
+        let mut straight = Harvester::new(&p, 0.0).unwrap();
+        straight.advance(4.0).unwrap();
         let mut split = Harvester::new(&p, 0.0).unwrap();
         let mut cuts = cuts;
         cuts.sort_by(f64::total_cmp);
@@ -122,11 +122,11 @@ proptest! {
             split.set_external_force(0.0, 0.0).unwrap(); // what it is already
         }
         split.advance(4.0).unwrap();
-        for harvester in [&mut whole, &mut split] {
+        for harvester in [&mut straight, &mut split] {
             harvester.set_external_force(0.0, 0.0).unwrap(); // sensitivities are counted from here in both
         }
-        // Equal in every field, to the last bit, what is foreseen included.
-        prop_assert_eq!(whole, split);
+        // Equal in every field, to the last bit, what is predicted included.
+        prop_assert_eq!(straight, split);
     }
 
     #[test]
@@ -154,22 +154,6 @@ proptest! {
             harvester
         });
         prop_assert_eq!(&runs[0], &runs[1]);
-    }
-
-    #[test]
-    fn energy_of_the_ball_in_the_frame_of_a_cylinder_at_rest_never_grows(
-        velocity in 0.01..1.0, restitution in 0.0..=1.0,
-    ) {
-        let p = Parameters { amplitude: 0.0, ball_velocity: velocity, restitution, ..Parameters::default() };
-        let mut harvester = Harvester::new(&p, 0.0).unwrap();
-        let mut speed = velocity;
-        for k in 1..50 {
-            harvester.advance(0.1 * f64::from(k)).unwrap();
-            let now = harvester.ball_velocity().abs();
-            prop_assert!(now <= speed);
-            speed = now;
-        }
-        prop_assert_eq!(speed, (0..harvester.totals().impacts).fold(velocity, |v, _| v * restitution));
     }
 
     #[test]
@@ -253,7 +237,8 @@ fn times_and_forces_that_make_no_sense_are_errors() {
     assert!(harvester.set_external_force(0.0, f64::NAN).is_err());
     assert_eq!(harvester.time(), 1.0);
     let noisy = Parameters { phase_noise: 1.0, noise_hold: 1e-9, ..Parameters::default() };
-    for (p, start) in [(Parameters::default(), 1e15), (Parameters::default(), f64::NAN), (noisy, 5e8)] {
+    let beyond = [1e9_f64.next_up(), -1e9_f64.next_up(), 1e15, f64::INFINITY, f64::NAN];
+    for (p, start) in beyond.map(|start| (Parameters::default(), start)).into_iter().chain([(noisy, 5e8)]) {
         let error = Harvester::new(&p, start).unwrap_err().to_string();
         assert!(error.starts_with(&format!("start time = {start} s is outside")), "{error}");
     }
@@ -261,17 +246,7 @@ fn times_and_forces_that_make_no_sense_are_errors() {
 }
 
 #[test]
-fn every_parameter_out_of_bounds_is_named_with_value_and_bound() {
-    for quantity in Parameters::TABLE {
-        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, quantity.max * 1.01 + 1.0, quantity.min - 1.0] {
-            let mut p = Parameters::default();
-            (quantity.set)(&mut p, value);
-            let error = Harvester::new(&p, 0.0).unwrap_err();
-            let message = error.to_string();
-            assert!(message.contains(quantity.name) && message.contains(&value.to_string()), "{message}");
-            assert!(matches!(error, ModelError::Bounds { min, max, .. } if min == quantity.min && max == quantity.max));
-        }
-    }
+fn parameters_that_contradict_each_other_are_named() {
     let error = Harvester::new(&Parameters { ball_radius: 0.007, ..Parameters::default() }, 0.0).unwrap_err();
     assert_eq!(error.to_string(), "membrane.radius = 0.0063 m must be greater than ball.radius = 0.007 m");
     let error = Harvester::new(&Parameters { cylinder_length: 0.0, frame_width: 0.001, ..Parameters::default() }, 0.0);

@@ -42,9 +42,25 @@ fn assert_goes_on_alike(parameters: &Parameters, times: impl IntoIterator<Item =
     }
 }
 
+/// Parameters, the interval between the times to restore at, s, and their number.
+fn runs() -> Vec<(Parameters, f64, u32)> {
+    // With the noise of the paper in the middle of a block, too.
+    let held = [0.5, 1.0, 4.0].map(|phase_noise| (Parameters { phase_noise, ..fig14() }, 0.100_371, 8));
+    let mut runs = vec![
+        (fig14(), 0.0533, 60),
+        (noisy(NoiseModel::Held), 0.1234, 20),
+        (noisy(NoiseModel::Wiener), 0.1234, 20),
+        (Parameters { phase_noise: 0.1, ..resting() }, 0.037, 4),
+    ];
+    runs.extend(held);
+    runs
+}
+
 #[test]
-fn a_restored_harvester_goes_on_to_the_last_bit() {
-    assert_goes_on_alike(&fig14(), (0..60).map(|k| f64::from(k) * 0.0533));
+fn a_restored_harvester_goes_on_to_the_last_bit_and_sees_the_same_noise() {
+    for (parameters, interval, count) in runs() {
+        assert_goes_on_alike(&parameters, (0..count).map(|k| f64::from(k) * interval));
+    }
 }
 
 #[test]
@@ -57,23 +73,6 @@ fn a_restored_harvester_goes_on_in_the_middle_of_a_pulse_and_at_an_impact() {
     let pressed = run_to(&fig14(), middle);
     assert!(pressed.deflection(Side::Left).value.max(pressed.deflection(Side::Right).value) > 0.0);
     assert_goes_on_alike(&fig14(), [impact, middle, knot]);
-}
-
-#[test]
-fn a_restored_harvester_sees_the_same_noise() {
-    for model in [NoiseModel::Held, NoiseModel::Wiener] {
-        assert_goes_on_alike(&noisy(model), (0..20).map(|k| f64::from(k) * 0.1234));
-    }
-}
-
-#[test]
-fn a_restored_harvester_sees_the_noise_of_the_paper_in_the_middle_of_a_block() {
-    for phase_noise in [0.5, 1.0, 4.0] {
-        let parameters = Parameters { phase_noise, ..fig14() };
-        assert_goes_on_alike(&parameters, (0..8).map(|k| f64::from(k) * 0.100_371));
-        let resting = Parameters { phase_noise: 0.1, ..resting() };
-        assert_goes_on_alike(&resting, (1..4).map(|k| f64::from(k) * 0.037));
-    }
 }
 
 #[test]

@@ -68,7 +68,7 @@ impl Step {
         });
         let wall_velocity = at_nodes(&|j| {
             let time = from.time + elapsed[j];
-            law.cylinder.velocity(time) + law.recoil(time, x[j], v[j]).velocity
+            law.cylinder.at(time).velocity + law.recoil(time, x[j], v[j]).velocity
         });
         let largest = |values: &Values| values.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
         let forces = law.push_size(from.time) + (largest(&spring) + largest(&maxwell)) / law.mass();

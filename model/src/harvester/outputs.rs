@@ -36,7 +36,7 @@ impl Harvester {
 
     /// `z_M''`, m/s^2, Eq. (7).
     pub fn cylinder_acceleration(&self) -> f64 {
-        self.motion.cylinder.acceleration(self.time) + self.recoil_acceleration()
+        self.motion.cylinder.at(self.time).acceleration + self.recoil_acceleration()
     }
 
     /// What the contact adds to `z_M''`, m/s^2.

@@ -88,9 +88,9 @@ pub struct CylinderMotion {
     /// Sine and cosine of its angle at the start.
     sin_start: f64,
     cos_start: f64,
-    /// A / M over omega, m/s, and over omega^2, m.
+    /// A / M over omega, m/s, and over omega^2, m: the amplitude of the oscillation under the harmonic force alone.
     speed: f64,
-    swing: f64,
+    pub(super) swing: f64,
 }
 
 /// The cylinder at one time.
@@ -122,11 +122,6 @@ impl CylinderMotion {
         Self { start, position, velocity, drive, own_turns, sin_start, cos_start, speed, swing }
     }
 
-    /// Amplitude of the oscillation under the harmonic force alone, m.
-    pub(crate) fn swing(&self) -> f64 {
-        self.swing
-    }
-
     /// The angle of the harmonic force at `time`, s, in turns.
     #[inline]
     fn turns(&self, time: f64) -> f64 {
@@ -153,26 +148,6 @@ impl CylinderMotion {
             turns,
             sine,
         }
-    }
-
-    /// `z_M''`, m/s^2, at `time`, s: Eq. (7).
-    pub fn acceleration(&self, time: f64) -> f64 {
-        self.at(time).acceleration
-    }
-
-    /// `z_M'''`, m/s^3, at `time`, s.
-    pub fn jerk(&self, time: f64) -> f64 {
-        self.at(time).jerk
-    }
-
-    /// `z_M'`, m/s, at `time`, s: Eq. (7) integrated once.
-    pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).velocity
-    }
-
-    /// `z_M`, m, at `time`, s: Eq. (7) integrated twice.
-    pub fn position(&self, time: f64) -> f64 {
-        self.at(time).position
     }
 
     /// First-order changes of position, m, and velocity, m/s, at `time`, s, with the harmonic force; the values at the start
@@ -218,9 +193,9 @@ mod tests {
             let (t, h) = (0.4 + 0.06 * f64::from(k), 1e-4);
             let slope =
                 |f: &dyn Fn(f64) -> f64| (8.0 * (f(t + h) - f(t - h)) - (f(t + 2.0 * h) - f(t - 2.0 * h))) / (12.0 * h);
-            assert_relative_eq!(slope(&|t| motion.position(t)), motion.velocity(t), epsilon = 1e-10);
-            assert_relative_eq!(slope(&|t| motion.velocity(t)), motion.acceleration(t), epsilon = 1e-9);
-            assert_relative_eq!(slope(&|t| motion.acceleration(t)), motion.jerk(t), epsilon = 1e-8);
+            assert_relative_eq!(slope(&|t| motion.at(t).position), motion.at(t).velocity, epsilon = 1e-10);
+            assert_relative_eq!(slope(&|t| motion.at(t).velocity), motion.at(t).acceleration, epsilon = 1e-9);
+            assert_relative_eq!(slope(&|t| motion.at(t).acceleration), motion.at(t).jerk, epsilon = 1e-8);
         }
     }
 
@@ -229,7 +204,7 @@ mod tests {
         let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: 0.0 };
         let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive);
         let continued = motion.continued(1.3, drive);
-        assert_relative_eq!(motion.position(2.9), continued.position(2.9), max_relative = 1e-13);
-        assert_relative_eq!(motion.velocity(2.9), continued.velocity(2.9), max_relative = 1e-13);
+        assert_relative_eq!(motion.at(2.9).position, continued.at(2.9).position, max_relative = 1e-13);
+        assert_relative_eq!(motion.at(2.9).velocity, continued.at(2.9).velocity, max_relative = 1e-13);
     }
 }

@@ -62,7 +62,7 @@ pub struct Flight {
 impl Flight {
     /// Free flight from `start`, when dz and its rate are `dz`, m, and `rate`, m/s.
     pub fn new(cylinder: &CylinderMotion, start: &CylinderState, [dz, rate]: [f64; 2], half_travel: f64) -> Self {
-        let (drive, swing) = (&cylinder.drive, cylinder.swing());
+        let (drive, swing) = (&cylinder.drive, cylinder.swing);
         let CylinderState { time, turns, sine, .. } = *start;
         let external = drive.external + drive.external_rate * (time - cylinder.start);
         let external = [external / 2.0, drive.external_rate / 6.0];

@@ -8,7 +8,7 @@
 use core::f64::consts::TAU;
 
 use super::Motion;
-use super::cylinder::{CylinderMotion, Drive};
+use super::cylinder::{CylinderMotion, CylinderState, Drive};
 use super::events::{Prediction, Search};
 use super::flight::Flight;
 use crate::noise::Noise;
@@ -52,7 +52,7 @@ impl Motion {
         let end = noise.begin_of(sample);
         let is_resting = self.ball.support().is_some();
         let [dz, rate] = if is_resting { [flight.dz, 0.0] } else { flight.at(noise.rest_after(flight.start)) };
-        let (position, velocity) = (cylinder.position(end), cylinder.velocity(end));
+        let CylinderState { position, velocity, .. } = cylinder.at(end);
         HoldState { sample, position, velocity, dz, rate, external: self.drive_at(end).external }
     }
 

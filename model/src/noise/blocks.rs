@@ -213,8 +213,8 @@ mod tests {
                 let [velocity, position] =
                     [velocity + 2e-15 * amplitude * length, position + 2e-15 * amplitude * length * length];
                 let ([v, z], [next_v, next_z]) = (block.at(k, hold), block.at(k + 1, hold));
-                prop_assert!((next_v - v - motion.velocity(end)).abs() <= velocity, "velocity, {k}");
-                prop_assert!((next_z - z - hold * v - motion.position(end)).abs() <= position, "position, {k}");
+                prop_assert!((next_v - v - motion.at(end).velocity).abs() <= velocity, "velocity, {k}");
+                prop_assert!((next_z - z - hold * v - motion.at(end).position).abs() <= position, "position, {k}");
                 prop_assert!(z.abs().max(next_z.abs()) <= block.reach * (1.0 + 1e-14), "reach, {k}");
             }
             prop_assert_eq!(block.at(0, hold), [0.0, 0.0]);

@@ -15,7 +15,7 @@ impl Tangential<'_> {
             sample += 1;
             let next = CylinderMotion::new(end, 0.0, 0.0, Drive { phase: noise.phase(sample), ..motion.drive });
             // The end comes later by the change of the hold time in each interval before.
-            sum[1] += (motion.acceleration(end) - next.acceleration(end)) * sample as f64 * change.hold;
+            sum[1] += (motion.at(end).acceleration - next.at(end).acceleration) * sample as f64 * change.of.noise_hold;
             motion = next;
         }
         self.carried(sum, &motion, time, sample, change)
@@ -37,7 +37,7 @@ impl Tangential<'_> {
     /// Change of the harmonic force in hold interval `sample`.
     fn drive_change(&self, sample: u64, change: &ParameterChange) -> DriveChange {
         let xi = [sample, self.noise.sample].map(|sample| self.noise.xi(sample));
-        DriveChange { phase: change.drive.phase + (xi[0] - xi[1]) * change.intensity, ..change.drive }
+        DriveChange { phase: change.drive.phase + (xi[0] - xi[1]) * change.of.phase_noise, ..change.drive }
     }
 
     fn sample_of_release(&self) -> u64 {
@@ -54,7 +54,7 @@ impl Tangential<'_> {
         let Some(sample) = self.sample_of_release().checked_sub(1).filter(|_| self.is_jump(time)) else { return 0.0 };
         let CylinderMotion { start, drive, .. } = self.motion.predicted_cylinder(self.noise);
         let (phase, external) = (self.noise.phase(sample), drive.external + drive.external_rate * (time - start));
-        CylinderMotion::new(time, 0.0, 0.0, Drive { phase, external, ..drive }).acceleration(time)
+        CylinderMotion::new(time, 0.0, 0.0, Drive { phase, external, ..drive }).at(time).acceleration
     }
 
     /// Change of the release at `time`, s: the acceleration of the wall passes zero there, or jumps at the begin of a hold
@@ -62,9 +62,9 @@ impl Tangential<'_> {
     pub fn release_change(&self, time: f64) -> f64 {
         let (cylinder, sample) = (self.motion.predicted_cylinder(self.noise), self.sample_of_release());
         if self.is_jump(time) {
-            return self.tangent.of(|change| sample as f64 * change.hold);
+            return self.tangent.of(|change| sample as f64 * change.of.noise_hold);
         }
         let by_drive = self.tangent.of(|change| cylinder.acceleration_change(time, &self.drive_change(sample, change)));
-        bounded(-(self.tangent.push + by_drive) / cylinder.jerk(time))
+        bounded(-(self.tangent.push + by_drive) / cylinder.at(time).jerk)
     }
 }

@@ -86,7 +86,7 @@ impl Tangential<'_> {
 
     /// Changes of what an impact adds when its speed and the wall's velocity change by so much, m/s.
     fn impact_change(&self, hit: &Hit, speed_change: f64, wall_change: f64) -> LedgerChange {
-        let (r, dr) = (self.parameters.restitution, self.tangent.of(|change| change.restitution));
+        let (r, dr) = (self.parameters.restitution, self.tangent.of(|change| change.of.restitution));
         let mass = self.tangent.ball_mass(self.parameters.ball_mass);
         let (speed, wall) = ([hit.speed, speed_change], [hit.wall.velocity, wall_change]);
         let jump = hit.side.sign() * (1.0 + r);
@@ -101,7 +101,7 @@ impl Tangential<'_> {
 
 impl Tangent {
     fn rebound_change(&self, restitution: f64, speed: f64, speed_change: f64) -> f64 {
-        restitution * speed_change + self.of(|change| change.restitution) * speed
+        restitution * speed_change + self.of(|change| change.of.restitution) * speed
     }
 
     /// Carries the changes over an impact with this `excess`.
@@ -116,7 +116,7 @@ impl Tangent {
     /// The same for the endless rest of a chattering sequence behind an impact at relative `speed`.
     pub fn pass_tail(&mut self, p: &Parameters, membrane: &Membrane, speed: f64, excess: f64) {
         let restitution = p.restitution;
-        let by_restitution = self.of(|change| change.restitution);
+        let by_restitution = self.of(|change| change.of.restitution);
         let rebound_change = self.rebound_change(restitution, speed, self.changes.last_speed);
         let rebound = impact::rebound(restitution, speed);
         let change =
@@ -130,9 +130,10 @@ impl Tangent {
         self.changes.voltage_gain += impact::voltage_gain(bias, excess_change);
         self.changes.energy += impact::energy(bias, capacitance, excess_change);
         if let Some(change) = &self.parameters {
-            self.changes.voltage_gain += impact::voltage_gain(change.bias, excess);
-            self.changes.energy +=
-                (bias * change.bias * capacitance + 0.5 * bias * bias * change.membrane.rest_capacitance) * excess;
+            self.changes.voltage_gain += impact::voltage_gain(change.of.bias_voltage, excess);
+            self.changes.energy += (bias * change.of.bias_voltage * capacitance
+                + 0.5 * bias * bias * change.membrane.rest_capacitance)
+                * excess;
         }
     }
 }

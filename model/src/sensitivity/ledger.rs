@@ -16,7 +16,7 @@ pub(super) fn work([mass, heavier]: [f64; 2], [velocity, change]: [f64; 2], [wal
 impl Tangent {
     /// The ball's mass and its change.
     pub(super) fn ball_mass(&self, ball_mass: f64) -> [f64; 2] {
-        [ball_mass, self.of(|change| change.ball_mass)]
+        [ball_mass, self.of(|change| change.of.ball_mass)]
     }
 
     /// The wall begins to carry the ball at this velocity, m/s.
@@ -44,9 +44,9 @@ impl Tangential<'_> {
         let (p, tangent, motion) = (self.parameters, self.tangent, self.motion);
         let [[_, ball_change], [_, cylinder_change]] = [self.ball_change(time), self.cylinder_change(time)];
         let ball = kinetic(tangent.ball_mass(p.ball_mass), [motion.ball_velocity_at(time), ball_change]);
-        let mass = [p.cylinder_mass, tangent.of(|change| change.cylinder_mass)];
+        let mass = [p.cylinder_mass, tangent.of(|change| change.of.cylinder_mass)];
         let cylinder = kinetic(mass, [motion.cylinder_velocity_at(time), cylinder_change]);
-        let at_start = kinetic(mass, [p.cylinder_velocity, tangent.of(|change| change.cylinder[1])]);
+        let at_start = kinetic(mass, [p.cylinder_velocity, tangent.of(|change| change.of.cylinder_velocity)]);
         Energies {
             ball,
             cylinder,
