@@ -58,6 +58,7 @@ fn resident() -> u64 {
 /// Each cycle unpacks the archive, loads the library, instantiates, steps through an impact, frees and unloads.
 #[cfg(target_os = "linux")]
 #[test]
+#[ignore = "slow"]
 fn load_run_and_unload_again_and_again_leave_memory_flat() {
     let folder = tempfile::tempdir().unwrap();
     let path = harvester(folder.path());

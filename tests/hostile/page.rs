@@ -4,11 +4,11 @@ use videg_golden::Golden;
 
 use super::stage::{Input, Told};
 
-const GOLDEN: Golden = Golden::new("UPDATE_HOSTILE", "cargo test --test hostile");
+const GOLDEN: Golden = Golden::new("UPDATE_HOSTILE", "cargo test --test hostile -- --ignored");
 
 const HEAD: &str = "# Hostile inputs
 
-The tables list broken and hostile inputs with the message of videg. `UPDATE_HOSTILE=1 cargo test --test hostile` writes them. The test tries
+The tables list broken and hostile inputs with the message of videg. `UPDATE_HOSTILE=1 cargo test --test hostile -- --ignored` writes them. The test tries
 each input and fails if the result differs. For every input it checks that nothing is written outside the folder for results,
 that existing files do not change, that no temporary file stays, and that no command inside an input is executed.
 Messages are shown without folders, and long texts are cut (`[...]`). `fuzz/` tests random inputs of the same kinds. [Isolation](isolation.md)
