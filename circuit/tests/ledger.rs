@@ -174,8 +174,8 @@ fn a_start_below_the_supply_or_above_the_release_is_recorded() {
     ] {
         let circuit = Circuit::with_voltages(parameters, [10e-12; 2], start).unwrap();
         let ledger = circuit.ledger();
-        for j in 0..2 {
-            assert_relative_eq!(circuit.voltage()[j], voltage[j], max_relative = 1e-15);
+        for (found, expected) in circuit.voltage().into_iter().zip(voltage) {
+            assert_relative_eq!(found, expected, max_relative = 1e-15);
         }
         assert_relative_eq!(ledger.load, 10e-12 * load, max_relative = 1e-9);
         assert_relative_eq!(ledger.zener, 10e-12 * zener, max_relative = 1e-12);
