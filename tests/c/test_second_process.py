@@ -136,7 +136,7 @@ NO_STATES = {
     "with a flipped bit": (lambda own, _: flipped(own, len(own) // 2), "checksum"),
     "cut short": (lambda own, _: own[:-1], "bytes given"),
     "too long": (lambda own, _: own + b"\0", "bytes given"),
-    "empty": (lambda _, __: b"", "bytes wanted"),
+    "empty": (lambda _, __: b"", "bytes given"),
     "of the other FMU": (lambda _, other: other, "belongs to the FMU"),
 }
 
