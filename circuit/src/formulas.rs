@@ -2,7 +2,8 @@
 //!
 //! They hold for one membrane on a node of its own. With both membranes on one node (Fig. 8a) the idle one
 //! lies in parallel: pass `C2 + C2` for `c2` and `C3 + C2` for `c3`. Capacitances in F, voltages in V,
-//! energies in J, charges in C. Nothing is checked: they are for reports and tests.
+//! energies in J, charges in C. Nothing is checked: they are for reports and tests. Eqs. (12) and (13) stand in the model, too,
+//! of which the circuit knows nothing: the two can be compared.
 
 /// `W = 1/2 U_in^2 (C3 - C2)`, Eq. (13) of the paper (J). Half of what the supply gives in a cycle, and the
 /// change of the stored energy; not the net gain of a cycle.
