@@ -10,78 +10,37 @@ use super::raw::RawError;
 /// Error of the ngspice backend. Where ngspice said something, the message carries its own lines.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum NgspiceError {
     /// There is no such program.
     #[error(
         "ngspice not found: {looked}; install it (Debian, Ubuntu: apt install ngspice) or name it in VIDEG_NGSPICE"
     )]
-    Missing {
-        /// Where it was looked for.
-        looked: String,
-    },
+    Missing { looked: String },
     /// The program is there and cannot be started.
     #[error("cannot start {}: {cause}", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
+    Start { program: PathBuf, cause: std::io::Error },
     /// It took too long, and was ended.
     #[error("ngspice did not finish within its time limit of {limit} s{said}")]
-    TimeLimit {
-        /// The limit, s.
-        limit: f64,
-        /// What ngspice said.
-        said: Complaints,
-    },
+    TimeLimit { limit: f64, said: Complaints },
     /// It failed and admits it.
     #[error("ngspice failed ({status}){said}")]
-    Failed {
-        /// Exit status.
-        status: ExitStatus,
-        /// What ngspice said.
-        said: Complaints,
-    },
+    Failed { status: ExitStatus, said: Complaints },
     /// It claims success and has no, or half a, result.
     #[error("ngspice stopped at {reached} s, before the end of the run at {until} s{said}")]
-    Stopped {
-        /// Last time in its result, s; 0 if there is none.
-        reached: f64,
-        /// End of the run, s.
-        until: f64,
-        /// What ngspice said.
-        said: Complaints,
-    },
+    Stopped { reached: f64, until: f64, said: Complaints },
     /// Its result cannot be read.
     #[error("result of ngspice: {0}")]
     Raw(#[from] RawError),
     /// A value cannot be written into a netlist.
     #[error("{name} = {value}: {bound}")]
-    Value {
-        /// What the value is.
-        name: String,
-        /// The value.
-        value: String,
-        /// What is allowed.
-        bound: &'static str,
-    },
+    Value { name: String, value: String, bound: &'static str },
     /// A table of capacitances makes no sense.
     #[error("table of capacitances, row {row}: {reason}")]
-    Table {
-        /// Index of the row, from 0.
-        row: usize,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Table { row: usize, reason: String },
     /// A file could not be written or read.
     #[error("{}: {cause}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
+    File { path: PathBuf, cause: std::io::Error },
     /// The shared library, or the process that runs it, does not go on.
     #[error(transparent)]
     Live(#[from] super::live::LiveError),

@@ -9,28 +9,17 @@ use thiserror::Error;
 /// Why a raw file cannot be read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum RawError {
     /// The header is not one.
     #[error("header of the raw file: {0}")]
     Header(String),
     /// The file ends within its points.
     #[error("the raw file ends at point {point} of {points}")]
-    Truncated {
-        /// Point in which it ends, from 0.
-        point: u64,
-        /// Points announced.
-        points: u64,
-    },
+    Truncated { point: u64, points: u64 },
     /// A number is NaN or infinite.
     #[error("{variable} = {value} at point {point} of the raw file")]
-    NotFinite {
-        /// Name of the variable.
-        variable: String,
-        /// Its value.
-        value: f64,
-        /// The point, from 0.
-        point: u64,
-    },
+    NotFinite { variable: String, value: f64, point: u64 },
     /// A variable that should be there is not.
     #[error("the raw file has no variable {0}")]
     NoVariable(&'static str),

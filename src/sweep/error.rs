@@ -10,6 +10,7 @@ use fmu_import::FmiError;
 
 /// Why a sweep could not be run, resumed or merged. Each message names the thing, its value and the bound.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum SweepError {
     /// The case, a setting or a time.
     #[error(transparent)]
@@ -19,59 +20,25 @@ pub enum SweepError {
     Fmi(#[from] FmiError),
     /// An option, or the key of the sweep file of the same name, makes no sense.
     #[error("{}: {reason}", place(origin, option, value))]
-    Option {
-        /// Where it was said.
-        origin: Origin,
-        /// Name of the option.
-        option: &'static str,
-        /// The value given.
-        value: String,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Option { origin: Origin, option: &'static str, value: String, reason: String },
     /// The file system refused.
     #[error("cannot {action} {}: {cause}", path.display())]
-    File {
-        /// The action that failed.
-        action: &'static str,
-        /// On which file.
-        path: PathBuf,
-        /// The error of the system.
-        cause: io::Error,
-    },
+    File { action: &'static str, path: PathBuf, cause: io::Error },
     /// The sweep ended before it was complete.
     #[error(
         "{cause}; the runs before number {next} are kept in {}, and the same command without --fresh goes on from there",
         path.display()
     )]
-    Ended {
-        /// Where the results are.
-        path: PathBuf,
-        /// The first run that is not among them.
-        next: u64,
-        /// Why it ended.
-        cause: Box<SweepError>,
-    },
+    Ended { path: PathBuf, next: u64, cause: Box<SweepError> },
     /// A file does not hold what it should.
     #[error("{}: {reason}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        reason: String,
-    },
+    Content { path: PathBuf, reason: String },
     /// Another process writes the same file.
     #[error("{} is being written by another process: wait for it, or choose another --output", path.display())]
-    Locked {
-        /// The file.
-        path: PathBuf,
-    },
+    Locked { path: PathBuf },
     /// Shards that do not make a complete sweep.
     #[error("cannot merge: {reason}")]
-    Merge {
-        /// The reason.
-        reason: String,
-    },
+    Merge { reason: String },
 }
 
 /// The place of an `option` and its `value` in the words of the user.

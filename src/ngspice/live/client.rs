@@ -20,40 +20,20 @@ const KEPT_STDERR: usize = 4096;
 
 /// Why ngspice does not go on.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum LiveError {
     /// The worker cannot be started.
     #[error("cannot start {} {WORKER_VERB}: {cause}", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// What the system said.
-        cause: io::Error,
-    },
+    Start { program: PathBuf, cause: io::Error },
     /// ngspice, or the library itself, is at fault; in its words.
     #[error("{0}")]
     Failure(String),
     /// The worker died.
     #[error("the process of ngspice ended between {from} s and {to} s ({how}){said}")]
-    Died {
-        /// Last communication point reached, s.
-        from: f64,
-        /// The one that it was to reach, s.
-        to: f64,
-        /// Its exit status.
-        how: String,
-        /// Its last words on stderr, with a separator, or nothing.
-        said: String,
-    },
+    Died { from: f64, to: f64, how: String, said: String },
     /// The worker does not answer.
     #[error("ngspice did not get from {from} s to {to} s within {} s", limit.as_secs_f64())]
-    TimeLimit {
-        /// Last communication point reached, s.
-        from: f64,
-        /// The one that it was to reach, s.
-        to: f64,
-        /// Time that it had.
-        limit: Duration,
-    },
+    TimeLimit { from: f64, to: f64, limit: Duration },
 }
 
 /// A running worker.

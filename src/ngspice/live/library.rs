@@ -21,26 +21,17 @@ const NAMES: &[&str] = if cfg!(windows) {
 
 /// Why the library cannot be used.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum LibraryError {
     /// It is not there, or the system cannot load it.
     #[error(
         "cannot load the shared library of ngspice ({names}): {cause}; install it (Debian, Ubuntu: apt install \
          libngspice0) or name it in {LIBRARY_VARIABLE}"
     )]
-    Missing {
-        /// The names that were tried.
-        names: String,
-        /// What the system said of the last.
-        cause: String,
-    },
+    Missing { names: String, cause: String },
     /// It is another library.
     #[error("{path} is not the shared library of ngspice: it does not export {symbol}")]
-    Symbol {
-        /// The library.
-        path: String,
-        /// What is missing.
-        symbol: &'static str,
-    },
+    Symbol { path: String, symbol: &'static str },
     /// A text for ngspice has a zero byte.
     #[error("a line for ngspice: {0}")]
     ZeroByte(#[from] NulError),
