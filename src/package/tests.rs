@@ -1,10 +1,10 @@
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use tempfile::TempDir;
 
 use super::{Contents, FMUS, Options, PackageError, Platform, build_all, documentation, locate};
-use fmu_import::{Archive, Fmu};
+use fmu_import::Archive;
 
 const DESCRIPTION: &str = include_str!("../../fmu/import/src/testdata/good.xml");
 
@@ -113,14 +113,6 @@ fn the_source_tree_is_found_and_lists_the_same_packages() {
         assert!(manifest.contains(&format!("name = \"{}\"", fmu.package)), "{manifest}");
         assert!(manifest.contains(&format!("name = \"{}\"", fmu.identifier)), "{manifest}");
     }
-}
-
-#[test]
-fn an_archive_without_this_platform_is_not_loaded() {
-    let tree = tree();
-    let path = tree.path().join("Toy.fmu");
-    Contents::new("Toy", &tree.path().join("Toy.xml")).unwrap().entries.write(&path).unwrap();
-    assert!(Fmu::open(PathBuf::from(&path)).unwrap_err().to_string().contains("no binary for this platform"));
 }
 
 #[test]

@@ -1,14 +1,13 @@
 //! Instances through the library: what is told of an FMU that falls, hangs, takes too much or answers nonsense.
 
 use std::path::PathBuf;
-use std::process::Command;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use fmu_import::{Bounds, FmiError, Fmu, Instance, Isolation, Logging, Status};
 use tempfile::TempDir;
 
-use super::toy;
+use crate::toy;
 
 fn isolation() -> Isolation {
     let bounds = Bounds { time: Some(Duration::from_secs(20)), memory: Some(1 << 30) };
@@ -65,24 +64,19 @@ fn a_crash_names_fmu_call_time_signal_and_what_was_logged() {
 }
 
 #[test]
-fn an_exit_is_told_with_its_code() {
-    let text = end_in_step(&["STEP=exit(0);"]);
-    assert!(text.contains("ended its process (exit status: 0"), "{text}");
-}
-
-#[test]
-fn a_lower_bound_of_the_user_on_memory_stands() {
-    let step = "STEP=struct { unsigned long current, most; } bound; getrlimit(9, &bound); \
-                LOG(3, \"%s\", bound.most == 900000UL * 1024 ? \"as the user said\" : \"raised\"); abort();";
-    let (_folder, path) = archive(&[step]);
-    let check = format!(
-        "ulimit -v 900000; exec {} fmu check {} --memory-limit 2048",
-        env!("CARGO_BIN_EXE_videg"),
-        path.display()
-    );
-    let output = Command::new("sh").args(["-c", &check]).output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(stderr.contains("the FMU had logged: as the user said"), "{stderr}");
+fn whatever_ends_the_process_of_an_fmu_in_a_step_is_told() {
+    for (step, told) in [
+        ("exit(0);", "ended its process (exit status: 0"),
+        ("for (;;) memset(malloc(1 << 20), 1, 1 << 20);", "(signal: 11 (SIGSEGV); memory limit 1024 MiB)"),
+        ("for (int i = 0; i < 64; ++i) close(i); pause();", "closed the pipes of its process, which was ended"),
+        (
+            "for (int i = 3; i < 64; ++i) write(i, \"\\xff\\xff\\xff\\xff garbage\", 12); pause();",
+            "(what it sent: a message of 4294967295 bytes is announced, allowed are",
+        ),
+    ] {
+        let text = end_in_step(&[&format!("STEP={step}")]);
+        assert!(text.contains(told), "{text}");
+    }
 }
 
 #[test]
@@ -104,12 +98,6 @@ fn a_call_without_end_is_ended_at_the_time_limit() {
     let error = initialised(&fmu).do_step(0.0, 1.0).unwrap_err().to_string();
     assert!(error.contains("fmi2DoStep of 'toy' at t = 0 s took longer than the time limit of 3 s"), "{error}");
     assert!(error.contains("the FMU had logged: again"), "{error}");
-}
-
-#[test]
-fn memory_is_bounded() {
-    let text = end_in_step(&["STEP=for (;;) memset(malloc(1 << 20), 1, 1 << 20);"]);
-    assert!(text.contains("(signal: 11 (SIGSEGV); memory limit 1024 MiB)"), "{text}");
 }
 
 #[test]
@@ -140,19 +128,6 @@ fn what_the_fmu_prints_closes_and_returns_disturbs_no_message() {
     assert_eq!(instance.do_step(0.0, 1.0).unwrap_err().status(), Some(Status::Unknown(77)));
     assert_eq!(instance.do_step(0.0, 1.0).unwrap_err().status(), Some(Status::Unknown(77)));
     instance.free().unwrap();
-}
-
-#[test]
-fn closing_every_pipe_is_told() {
-    let text = end_in_step(&["STEP=for (int i = 0; i < 64; ++i) close(i); pause();"]);
-    assert!(text.contains("closed the pipes of its process, which was ended"), "{text}");
-}
-
-#[test]
-fn messages_on_the_pipe_that_are_none_are_told() {
-    let write = "STEP=for (int i = 3; i < 64; ++i) write(i, \"\\xff\\xff\\xff\\xff garbage\", 12); pause();";
-    let text = end_in_step(&[write]);
-    assert!(text.contains("(what it sent: a message of 4294967295 bytes is announced, allowed are"), "{text}");
 }
 
 #[test]

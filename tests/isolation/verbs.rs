@@ -5,8 +5,9 @@ use std::process::{Command, Output};
 
 use videg::package::{Options, build_all};
 
-use super::toy;
-use super::waiting::wait_for;
+use crate::command::{self, stderr as said};
+use crate::waiting::wait_for;
+use crate::{has_ended, toy};
 
 #[test]
 fn nothing_is_left_behind() {
@@ -18,8 +19,7 @@ fn nothing_is_left_behind() {
         "toy.fmu",
         &["STEP=FILE *f = fopen(\"left.txt\", \"w\"); fclose(f); chmod(\".\", 0); abort();"],
     );
-    let output = Command::new(env!("CARGO_BIN_EXE_videg"))
-        .args(["fmu", "check"])
+    let output = command::videg(&["fmu", "check"])
         .arg(&path)
         .env("TMPDIR", &temporary)
         .current_dir(folder.path())
@@ -39,24 +39,24 @@ fn a_worker_whose_host_is_killed_ends() {
         mark.display()
     );
     let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
-    let mut host = Command::new(env!("CARGO_BIN_EXE_videg")).args(["fmu", "check"]).arg(&path).spawn().unwrap();
+    let mut host = command::videg(&["fmu", "check"]).arg(&path).spawn().unwrap();
     let pid = wait_for(|| std::fs::read_to_string(&mark).ok().filter(|text| !text.is_empty()));
     host.kill().unwrap();
     host.wait().unwrap();
-    let process = PathBuf::from("/proc").join(&pid);
-    let is_gone = || std::fs::read_to_string(process.join("stat")).map_or(true, |stat| stat.contains(") Z "));
-    wait_for(|| is_gone().then_some(()));
+    wait_for(|| has_ended(&pid).then_some(()));
 }
 
 #[test]
-#[cfg(target_os = "linux")]
-fn the_memory_limit_told_is_the_one_in_force() {
+fn a_lower_limit_of_the_user_on_memory_stands_and_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    toy::fmu(folder.path(), "toy.fmu", &["STEP=abort();"]);
+    let step = "STEP=struct { unsigned long current, most; } bound; getrlimit(9, &bound); \
+                LOG(3, \"%s\", bound.most == 3145728UL * 1024 ? \"as the user said\" : \"raised\"); abort();";
+    toy::fmu(folder.path(), "toy.fmu", &[step]);
     let line = format!("ulimit -v 3145728 && exec {} fmu check toy.fmu", env!("CARGO_BIN_EXE_videg"));
     let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
-    let stderr = String::from_utf8(output.stderr).unwrap();
+    let stderr = said(&output);
     assert!(stderr.contains("(signal: 6 (SIGABRT); memory limit 3072 MiB)"), "{stderr}");
+    assert!(stderr.contains("the FMU had logged: as the user said"), "{stderr}");
 }
 
 /// The workers of a process.
@@ -71,12 +71,8 @@ fn workers(host: u32) -> Vec<String> {
 #[test]
 fn a_co_simulation_whose_worker_is_killed_keeps_the_series_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
-    let host = Command::new(env!("CARGO_BIN_EXE_videg"))
-        .args(["cosim", "--isolate", "--until", "300", "--output", "out"])
-        .current_dir(folder.path())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut host = command::videg(&["cosim", "--isolate", "--until", "300", "--output", "out"]);
+    let host = host.current_dir(folder.path()).stderr(std::process::Stdio::piped()).spawn().unwrap();
     let part = folder.path().join("out/timeseries.csv.part");
     wait_for(|| std::fs::metadata(&part).ok().filter(|file| file.len() > 10_000));
     for worker in workers(host.id()) {
@@ -91,7 +87,7 @@ fn a_co_simulation_whose_worker_is_killed_keeps_the_series_up_to_there() {
 }
 
 fn videg(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_videg")).args(arguments).current_dir(folder).output().unwrap()
+    command::videg(arguments).current_dir(folder).output().unwrap()
 }
 
 #[test]
@@ -173,10 +169,6 @@ fn only_fmus_of_this_project_run_in_this_process_unasked() {
     );
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
 #[test]
 fn a_limit_that_binds_nothing_is_refused_or_where_the_fmu_is_named_warned_of() {
     let folder = tempfile::tempdir().unwrap();
@@ -193,8 +185,7 @@ fn a_limit_that_binds_nothing_is_refused_or_where_the_fmu_is_named_warned_of() {
             assert!(output.status.code() == Some(2) && said(&output).contains(&expected), "{output:?}");
         }
     }
-    let ours =
-        build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap().swap_remove(0);
+    let ours = harvester(folder.path());
     let check = |more: &[&str]| videg(folder.path(), &[&["fmu", "check", ours.to_str().unwrap()], more].concat());
     let output = check(&["--time-limit", "5"]);
     let expected = format!("videg: warning: --time-limit does not bind {}: it is one of videg's", ours.display());

@@ -23,7 +23,7 @@ fn assert_survives(host: &Host, status: fmi2Status, function: &str, hook: &str) 
 }
 
 /// Every function that acts on an instance, in a state in which it is legal; those without an instance to act on
-/// cannot fail but `fmi2Instantiate` (below). `tests/exports.rs` of the root package sees that the libraries export
+/// cannot fail but `fmi2Instantiate` (below). `tests/fmus` of the root package sees that the libraries export
 /// no other functions.
 #[test]
 fn a_panic_behind_any_function_is_an_error_of_that_call_and_the_host_lives_on() {

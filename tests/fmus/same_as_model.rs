@@ -1,22 +1,16 @@
 //! The packaged FMUs give what the Rust packages behind them give: the harvester to the last bit, the circuit to
 //! rounding.
 
-#![allow(clippy::unwrap_used)]
-
-use fmu_import::{Fmu, Logging};
 use std::sync::{Arc, Mutex};
+
+use fmu_import::Logging;
 use videg::cosim::{CircuitSlave, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
-use videg::package::{Options, build_all};
 use videg::scenario::{Request, Scenario};
 
 use videg_circuit::Settings;
 use videg_model::{Case, Harvester, Membrane, Parameters, Side};
 
-fn fmus() -> [Fmu; 2] {
-    let folder = tempfile::tempdir().unwrap();
-    let paths = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap();
-    [0, 1].map(|index| Fmu::open(&paths[index]).unwrap())
-}
+use super::{fmus, initialised};
 
 fn scenario(case: &str, until: f64) -> Scenario {
     Request { case: Some(case.to_owned()), until: Some(until), ..Request::default() }.resolve().unwrap()
@@ -83,14 +77,10 @@ fn every_impact_is_logged_with_rests_and_with_noise() {
         let sink = Arc::clone(&lines);
         let logging =
             Logging { enabled: true, ..Logging::to(move |record| sink.lock().unwrap().push(record.message.clone())) };
-        let mut instance = fmu.instantiate("logged", logging).unwrap();
-        for setting in scenario(case, 5.0).settings {
-            instance.set_by_name(&setting.name, &setting.value).unwrap();
-        }
-        instance.set_by_name("excitation.phaseNoise", noise).unwrap();
-        instance.setup_experiment(0.0, None, None).unwrap();
-        instance.enter_initialization_mode().unwrap();
-        instance.exit_initialization_mode().unwrap();
+        let settings = scenario(case, 5.0).settings;
+        let settings = settings.iter().map(|setting| (&*setting.name, &*setting.value));
+        let settings: Vec<_> = settings.chain([("excitation.phaseNoise", noise)]).collect();
+        let mut instance = initialised(&fmu, logging, &settings);
         (0..5).for_each(|k| instance.do_step(f64::from(k), 1.0).unwrap());
         let impacts = instance.get_by_name("impact.count").unwrap().to_string();
         let logged = lines.lock().unwrap().iter().filter(|line| line.starts_with("impact ")).count();

@@ -1,8 +1,6 @@
 //! `modelDescription/README.md` is the table that the model descriptions give: symbol of the paper, variable, unit,
 //! equation.
 
-#![allow(clippy::unwrap_used)] // a broken description is a failed test
-
 use std::fmt::Write as _;
 
 use fmu_import::{Causality, Kind, ModelDescription, Variable};

@@ -4,6 +4,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[cfg(unix)]
+mod live;
+
 use std::fmt::Debug;
 
 use fmu_import::Fmu;

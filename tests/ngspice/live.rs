@@ -1,7 +1,5 @@
 //! ngspice's shared library in its worker process, and what happens when the worker or the library fails. `videg crosscheck`
 //! compares its energies with those of the embedded solver.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)] // Helpers outside of #[test] functions fail a test, too.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,35 +1,22 @@
 //! What reaches a terminal, and how the tool ends where nobody reads what it says.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
-#![cfg(unix)]
 
 use std::fs;
 use std::io::PipeWriter;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
+
+use crate::command::{self, stderr as said, videg};
 
 /// A sweep of two short runs into `folder`: of the first, or of both, the ball does not fit.
 fn sweep(folder: &Path, radii: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(["sweep", "--until", "2", "--vary", &format!("membrane.initialRadius={radii}")]);
-    command.arg("--output").arg(folder);
-    command
+    command::sweep(folder, &["--vary", &format!("membrane.initialRadius={radii}")])
 }
 
 const BOTH: &str = "0.001,0.0011";
 
-fn videg(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(arguments);
-    command
-}
-
 /// A pipe whose reader has gone.
 fn gone() -> PipeWriter {
     std::io::pipe().unwrap().1
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 #[test]

@@ -1,21 +1,12 @@
 //! Paths that are not UTF-8, and what lies there without being a file.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt as _;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-#[path = "hostile/toy.rs"]
-mod toy;
-
-fn videg(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.current_dir(folder);
-    command
-}
+use crate::command::videg;
+use crate::toy;
 
 /// Runs a command, which must end by itself.
 fn ended(command: &mut Command) -> Output {
@@ -38,7 +29,7 @@ fn an_isolated_fmu_may_lie_and_be_unpacked_where_paths_are_not_utf_8() {
     std::fs::create_dir(&temporary).unwrap();
     let fmu = folder.path().join(OsStr::from_bytes(b"k\xff.fmu"));
     std::fs::rename(toy::fmu(folder.path(), "toy.fmu", &[]), &fmu).unwrap();
-    let output = ended(videg(folder.path()).args(["fmu", "check"]).arg(&fmu).env("TMPDIR", &temporary));
+    let output = ended(videg(&["fmu", "check"]).arg(&fmu).env("TMPDIR", &temporary));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }
@@ -61,7 +52,7 @@ fn pipes_that_nobody_writes_are_refused_and_not_waited_for() {
         (&["sweep", "pipe", "--output", "out"], "pipe"),
         (&["sweep", "merge", "shard", "--output", "out"], "shard/sweep.json"),
     ] {
-        let output = ended(videg(folder.path()).args(arguments));
+        let output = ended(videg(arguments).current_dir(folder.path()));
         let told = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
         assert!(told.ends_with(&format!("{named}: it is a pipe, not a regular file\n")), "{arguments:?}: {told}");

@@ -1,30 +1,24 @@
 //! A source tree that cannot be written: verbs run all the same, with FMUs in the user's folder of caches.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
 use fmu_import::Archive;
 use tempfile::TempDir;
+
+use crate::command::{done, stderr as said, videg};
 
 const NAMES: [&str; 2] = ["VibroImpactHarvester", "HarvestingCircuit"];
 
 /// FMUs as they are packaged here.
 static PACKAGED: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    let output = command.args(["fmu", "build", "--output"]).arg(folder.path()).output().unwrap();
-    assert!(output.status.success(), "{}", said(&output));
+    done(videg(&["fmu", "build", "--output"]).arg(folder.path()));
     folder
 });
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 /// What of a source tree a program needs that was built in it, and a folder to work in.
 struct Tree {
@@ -90,12 +84,6 @@ impl Tree {
     }
 }
 
-fn done(mut command: Command) -> String {
-    let output = command.output().unwrap();
-    assert!(output.status.success(), "{command:?}: {}", said(&output));
-    said(&output)
-}
-
 #[test]
 fn where_there_is_no_room_for_fmus_verbs_take_them_from_a_cache_and_say_so_once() {
     let tree = Tree::new().without_room_for_fmus();
@@ -105,7 +93,7 @@ fn where_there_is_no_room_for_fmus_verbs_take_them_from_a_cache_and_say_so_once(
         &["sweep", "--vary", "membrane.restitution=0.5,0.6", "--record", "ball.position", "--until", "1"],
         &["ssp", "--output", "out"],
     ] {
-        let said = done(tree.videg(arguments));
+        let said = said(&done(&mut tree.videg(arguments)));
         let cached = tree.cached();
         let folder = cached.first().unwrap().to_string_lossy().into_owned();
         let lines: Vec<_> = said.lines().filter(|line| line.contains("the FMUs are in")).collect();
@@ -133,7 +121,7 @@ fn first_runs_at_once_share_one_cache_and_a_changed_program_has_its_own() {
     // A byte more at the end of a library is another program; the loader does not mind.
     let library = tree.path("tree/target/release/libVibroImpactHarvester.so");
     fs::write(&library, [&fs::read(&library).unwrap()[..], b"\0"].concat()).unwrap();
-    let said = done(tree.videg(&["simulate", "--until", "1"]));
+    let said = said(&done(&mut tree.videg(&["simulate", "--until", "1"])));
     let after = tree.cached();
     let new: Vec<_> = after.difference(&before).collect();
     assert!(new.len() == 1 && said.contains(&*new[0].to_string_lossy()), "{said}");

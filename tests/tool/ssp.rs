@@ -1,22 +1,22 @@
 //! `videg ssp`: what is in the package, and what is refused. Tools that run it are tested in `tests/fmpy/test_ssp.py`.
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use std::io::Read as _;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use serde_json::Value;
 
-fn ssp(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(["ssp", "--json", "--output"]).arg(folder).args(arguments).output().unwrap()
+use crate::command::{json, refused, videg};
+
+fn ssp(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = videg(&["ssp", "--output"]);
+    command.arg(folder).args(arguments);
+    command
 }
 
 /// What a successful run prints.
 fn packaged(folder: &Path, arguments: &[&str]) -> Value {
-    let output = ssp(folder, arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    json(&mut ssp(folder, arguments))
 }
 
 fn entry(folder: &Path, name: &str) -> String {
@@ -120,10 +120,8 @@ fn what_cannot_run_is_not_packaged() {
         (&["--case", "fig8"], "--case fig8"),
     ] {
         let folder = tempfile::tempdir().unwrap();
-        let output = ssp(folder.path(), arguments);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!((output.status.code(), error.lines().count()), (Some(2), 1), "{arguments:?}: {error}");
-        assert!(error.contains(expected), "{error}");
+        let (code, message) = refused(&mut ssp(folder.path(), arguments));
+        assert!(code == Some(2) && message.contains(expected), "{arguments:?}: {message}");
         assert!(!folder.path().join("Harvester.ssp").exists());
     }
 }

@@ -1,25 +1,13 @@
 //! Signals: the program ends its children, removes its temporary folders, and says by its exit code which signal it was.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
 
-#[path = "support/signals.rs"]
-mod signals;
-#[path = "hostile/toy.rs"]
-mod toy;
-#[path = "support/waiting.rs"]
-mod waiting;
-
-use waiting::wait_for;
-
-fn has_ended(process: &str) -> bool {
-    let stat = std::fs::read_to_string(Path::new("/proc").join(process).join("stat"));
-    stat.map_or(true, |stat| stat.contains(") Z "))
-}
+use crate::command::videg;
+use crate::waiting::wait_for;
+use crate::{has_ended, signals, toy};
 
 /// The exit code of `program`, which has `signal` sent to it when the file at `mark` has the number of a child; that child is
 /// gone then, and so is what was in the folder of temporary files, if anything `is_unpacked`.
@@ -59,9 +47,8 @@ fn a_signal_leaves_neither_the_worker_of_an_fmu_nor_its_folder() {
         let (folder, mark, temporary) = folders();
         let step = pausing("STEP", &mark);
         let path = toy::fmu(folder.path(), "toy.fmu", &[&step]);
-        let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
-        program.args(["fmu", "check"]).arg(path);
-        assert_eq!(interrupted(&mut program, signal, &mark, &temporary, true), Some(code));
+        let program = &mut videg(&["fmu", "check"]);
+        assert_eq!(interrupted(program.arg(path), signal, &mark, &temporary, true), Some(code));
     }
 }
 
@@ -71,8 +58,8 @@ fn a_signal_before_the_first_run_of_a_sweep_leaves_nothing() {
     let (folder, mark, temporary) = folders();
     let load = pausing("LOADING", &mark);
     let path = toy::fmu(folder.path(), "toy.fmu", &[&load]);
-    let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
-    program.args(["sweep", "--samples", "2", "--until", "1", "--fmu"]).arg(path);
+    let mut program = videg(&["sweep", "--samples", "2", "--until", "1", "--fmu"]);
+    program.arg(path);
     program.arg("--output").arg(folder.path().join("out"));
     assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, true), Some(143));
     assert!(!folder.path().join("out").exists());
@@ -82,8 +69,8 @@ fn a_signal_before_the_first_run_of_a_sweep_leaves_nothing() {
 fn a_signal_leaves_no_cargo_that_goes_on_building() {
     let (folder, mark, temporary) = folders();
     let cargo = script(folder.path(), "cargo", &mark);
-    let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
-    program.args(["fmu", "build", "--output"]).arg(folder.path().join("out"));
+    let mut program = videg(&["fmu", "build", "--output"]);
+    program.arg(folder.path().join("out"));
     program.env("CARGO", cargo).env_remove("VIDEG_NO_BUILD");
     assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, false), Some(143));
 }
@@ -101,8 +88,8 @@ fn script(folder: &Path, name: &str, mark: &Path) -> PathBuf {
 fn a_signal_leaves_neither_ngspice_nor_its_folder() {
     let (folder, mark, temporary) = folders();
     let ngspice = script(folder.path(), "ngspice", &mark);
-    let mut program = Command::new(env!("CARGO_BIN_EXE_videg"));
-    program.args(["crosscheck", "--until", "0.05", "--output"]).arg(folder.path().join("out"));
+    let mut program = videg(&["crosscheck", "--until", "0.05", "--output"]);
+    program.arg(folder.path().join("out"));
     program.env("VIDEG_NGSPICE", &ngspice);
     assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, true), Some(143));
 }
