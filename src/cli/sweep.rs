@@ -131,7 +131,7 @@ fn verdict(runs: u64, failed: u64) -> Exit {
 fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
-    let design = arguments.what.design.or(file.design).unwrap_or_default();
+    let design = arguments.what.sampling.design.or(file.sampling.design).unwrap_or_default();
     let fmu = arguments.fmu.as_deref().map(|path| arguments.isolation.open(path)).transpose()?;
     if fmu.is_none() {
         arguments.isolation.check_own()?;

@@ -9,7 +9,7 @@ use super::options::{Window, parse_window};
 use super::output;
 use crate::cosim::CircuitRequest;
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
-use crate::sweep::{Design, Request, SweepFile, Times, Vary};
+use crate::sweep::{Request, Sampling, SweepFile, Times, Vary};
 use fmu_import::{Bounds, ModelDescription};
 
 /// Options that describe a sweep. An option wins over the same key of the file.
@@ -28,24 +28,8 @@ pub struct What {
     /// from for equal ratios; name=a,b,c for any type; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     vary: Vec<String>,
-    /// How points are chosen [default: grid]
-    #[arg(long, value_enum, value_name = "DESIGN")]
-    pub design: Option<Design>,
-    /// Number of points of lhs and random; a grid has as many as it has
-    #[arg(long, value_name = "N")]
-    points: Option<u64>,
-    /// Runs of each point, each with other noise [default: 1]
-    #[arg(long, value_name = "N")]
-    samples: Option<u64>,
-    /// Seed of the design, and of the noise of the first run; each further run has the next [default: 1]
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// Give sample i the same seed in all points (common random numbers)
-    #[arg(long)]
-    common_seeds: bool,
-    /// The variable that takes the seed [default: excitation.seed]
-    #[arg(long, value_name = "VARIABLE")]
-    seed_variable: Option<String>,
+    #[command(flatten)]
+    pub sampling: Sampling,
     /// End of a run, s [default: 100]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     until: Option<f64>,
@@ -77,7 +61,7 @@ impl What {
         anyhow::ensure!(is_harvester || !has_case, "{}: {model} is not the harvester, of which the cases are", place());
         let in_file = self.in_file(&file);
         let step = self.step.or(file.case.step);
-        let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
+        let SweepFile { case, sampling, record, vary } = file;
         let name = case.name.clone();
         let scenario = self.scenario(case, description, is_harvester)?;
         let step =
@@ -91,12 +75,7 @@ impl What {
             times: Times { until: scenario.until, step, window: scenario.window },
             name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
             vary: [vary, asked].concat(),
-            design: self.design.or(design).unwrap_or_default(),
-            points: self.points.or(points),
-            samples: self.samples.or(samples).unwrap_or(1),
-            seed: self.seed.or(seed).unwrap_or(1),
-            common_seeds: self.common_seeds || common_seeds.unwrap_or(false),
-            seed_variable: self.seed_variable.clone().or(seed_variable),
+            sampling: self.sampling.clone().or(sampling),
             record: if self.record.is_empty() { record } else { self.record.clone() },
             in_file,
         })
@@ -105,11 +84,12 @@ impl What {
     /// Keys of the file that no option overrides, with the path.
     fn in_file(&self, file: &SweepFile) -> Vec<(&'static str, PathBuf)> {
         let Some(path) = &file.case.path else { return Vec::new() };
+        let (own, said) = (&self.sampling, &file.sampling);
         let keys = [
-            ("design", self.design.is_none() && file.design.is_some()),
-            ("points", self.points.is_none() && file.points.is_some()),
-            ("samples", self.samples.is_none() && file.samples.is_some()),
-            ("seed-variable", self.seed_variable.is_none() && file.seed_variable.is_some()),
+            ("design", own.design.is_none() && said.design.is_some()),
+            ("points", own.points.is_none() && said.points.is_some()),
+            ("samples", own.samples.is_none() && said.samples.is_some()),
+            ("seed-variable", own.seed_variable.is_none() && said.seed_variable.is_some()),
             ("record", self.record.is_empty() && !file.record.is_empty()),
         ];
         keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| (key, path.clone())).collect()

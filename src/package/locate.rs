@@ -20,12 +20,12 @@ pub(super) fn workspace() -> Option<PathBuf> {
     let compiled = Path::new(env!("CARGO_MANIFEST_DIR"));
     around_program()
         .or_else(|| is_workspace(compiled).then(|| compiled.to_path_buf()))
-        .or_else(|| std::env::current_dir().ok().and_then(|here| around(&here)))
+        .or_else(|| around(&std::env::current_dir().ok()?))
 }
 
 /// The source tree that holds the running program, if one does.
 pub(super) fn around_program() -> Option<PathBuf> {
-    std::env::current_exe().ok().and_then(|program| around(&program))
+    around(&std::env::current_exe().ok()?)
 }
 
 fn around(path: &Path) -> Option<PathBuf> {

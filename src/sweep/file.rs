@@ -25,7 +25,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Table;
 
-use super::{Design, Vary};
+use super::{Sampling, Vary};
 use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_file, toml_error, with_plain_ends};
 
 /// Contents of a sweep file.
@@ -33,40 +33,22 @@ use crate::scenario::{CaseFile, Origin, ScenarioError, check_characters, read_fi
 pub struct SweepFile {
     /// The part that a case file has, too.
     pub case: CaseFile,
-    /// How points are chosen.
-    pub design: Option<Design>,
-    /// Number of points.
-    pub points: Option<u64>,
-    /// Runs of each point.
-    pub samples: Option<u64>,
-    /// Seed of design and samples.
-    pub seed: Option<u64>,
-    /// Sample i has the same seed in all points.
-    pub common_seeds: Option<bool>,
-    /// The variable that takes the seed.
-    pub seed_variable: Option<String>,
+    /// Points and samples.
+    pub sampling: Sampling,
     /// Variables to record at the end of each run.
     pub record: Vec<String>,
     /// Variables to vary.
     pub vary: Vec<Vary>,
 }
 
-/// The keys that a case file does not have.
+/// The keys that a case file does not have, but for those of [`Sampling`].
 #[derive(Deserialize)]
 struct Layout {
-    design: Option<Design>,
-    points: Option<u64>,
-    samples: Option<u64>,
-    seed: Option<u64>,
-    common_seeds: Option<bool>,
-    seed_variable: Option<String>,
     #[serde(default)]
     record: Vec<String>,
     #[serde(default)]
     vary: Table,
 }
-
-const KEYS: [&str; 8] = ["design", "points", "samples", "seed", "common_seeds", "seed_variable", "record", "vary"];
 
 impl SweepFile {
     /// Reads the file at `path`. The sweep is called after it unless it says otherwise.
@@ -88,26 +70,27 @@ impl SweepFile {
         let said = |error: toml::de::Error| toml_error(&error);
         let table: Table = toml::from_str(&with_plain_ends(text)).map_err(said)?;
         check_characters(&table)?;
-        let (own, case): (Table, Table) = table.into_iter().partition(|(key, _)| KEYS.contains(&key.as_str()));
-        let Layout { design, points, samples, seed, common_seeds, seed_variable, record, vary } =
-            own.try_into().map_err(said)?;
-        Ok(Self {
-            case: CaseFile::from_table(case)?,
-            design,
-            points,
-            samples,
-            seed,
-            common_seeds,
-            seed_variable,
-            record,
-            vary: Vary::all_of(&vary)?,
-        })
+        let with = |keys: &'static [&str]| move |(key, _): &(String, toml::Value)| keys.contains(&key.as_str());
+        // Not by `flatten` of serde, whose errors do not name the key.
+        let (sampling, rest): (Table, Table) = table.into_iter().partition(with(&[
+            "design",
+            "points",
+            "samples",
+            "seed",
+            "common_seeds",
+            "seed_variable",
+        ]));
+        let (own, case): (Table, Table) = rest.into_iter().partition(with(&["record", "vary"]));
+        let Layout { record, vary } = own.try_into().map_err(said)?;
+        let sampling = sampling.try_into().map_err(said)?;
+        Ok(Self { case: CaseFile::from_table(case)?, sampling, record, vary: Vary::all_of(&vary)? })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweep::Design;
 
     #[test]
     fn the_example_above_is_read() {
@@ -115,15 +98,13 @@ mod tests {
         let example: Vec<_> = source.lines().map_while(|line| line.strip_prefix("//!")).collect();
         let text = example.join("\n");
         let file = SweepFile::parse(text.split("```toml").nth(1).unwrap().split("```").next().unwrap()).unwrap();
-        assert_eq!(
-            (file.design, file.points, file.samples, file.seed),
-            (Some(Design::Lhs), Some(1000), Some(20), Some(7))
-        );
+        let Sampling { design, points, samples, seed, common_seeds, seed_variable } = file.sampling;
+        assert_eq!((design, points, samples, seed), (Some(Design::Lhs), Some(1000), Some(20), Some(7)));
+        assert_eq!((common_seeds, seed_variable.as_deref()), (true, Some("excitation.seed")));
         assert_eq!((file.case.until, file.record), (Some(60.0), vec!["cylinder.position".to_owned()]));
         let options =
             ["membrane.restitution=0.2:0.9", "membrane.stiffness=log:1e4:1e6", "initial.outsideGap=project,free"];
         assert_eq!(file.vary, options.map(|text| Vary::parse(text).unwrap()));
-        assert_eq!((file.common_seeds, file.seed_variable.as_deref()), (Some(true), Some("excitation.seed")));
         assert_eq!(file.case.settings.len(), 1);
     }
 

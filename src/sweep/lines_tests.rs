@@ -10,7 +10,7 @@ use super::folder::RESULTS;
 use super::lines::LONGEST;
 use super::plan::Results;
 use super::record::{Found, Record};
-use super::{Design, Request, Sweep, SweepError, Times, Vary, merge};
+use super::{Request, Sampling, Sweep, SweepError, Times, Vary, merge};
 use fmu_import::{ModelDescription, Value};
 
 /// An FMU with a text, an enumeration, and as many outputs as asked for with names of as many letters.
@@ -51,12 +51,7 @@ fn sweep(description: &ModelDescription, values: &[&str]) -> Result<Sweep, Sweep
         settings: Vec::new(),
         times: Times { until: 1.0, step: None, window: [0.0, 1.0] },
         vary,
-        design: Design::Grid,
-        points: None,
-        samples: 1,
-        seed: 1,
-        common_seeds: false,
-        seed_variable: None,
+        sampling: Sampling::default(),
         record: names.filter(|name| is_recorded(name)).collect(),
         in_file: Vec::new(),
     })

@@ -8,7 +8,6 @@
 
 mod axis;
 mod column;
-mod design;
 mod differences;
 mod document;
 mod engine;
@@ -25,6 +24,7 @@ mod points;
 mod random;
 mod record;
 mod run;
+mod sampling;
 mod seeds;
 mod shard;
 mod sums;
@@ -34,13 +34,13 @@ mod unfinished;
 mod vary;
 
 pub use column::{Column, Type};
-pub use design::Design;
 pub use engine::{BuiltIn, Engine};
 pub use error::SweepError;
 pub use file::SweepFile;
 pub use merge::merge;
 pub use plan::{Request, Sweep};
 pub use run::{Options, Report, run};
+pub use sampling::{Design, Sampling};
 pub use seeds::SEED_VARIABLE;
 pub use shard::Shard;
 pub use times::Times;

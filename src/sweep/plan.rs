@@ -8,9 +8,9 @@ use super::column::{self, Column, Type};
 use super::document::Document;
 use super::lines::LONGEST;
 use super::points::{MAX_RUNS, Points};
-use super::seeds::{self, Asked, Seeds};
+use super::seeds::{self, Seeds};
 use super::times::Times;
-use super::{Design, SweepError, Vary};
+use super::{Sampling, SweepError, Vary};
 use crate::cosim::Averages;
 use crate::scenario::{Origin, Setting};
 use fmu_import::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
@@ -34,18 +34,8 @@ pub struct Request<'a> {
     pub times: Times,
     /// Variables that are not; the last of a name wins.
     pub vary: Vec<Vary>,
-    /// How points are chosen.
-    pub design: Design,
-    /// How many points a design that draws has.
-    pub points: Option<u64>,
-    /// Runs of each point.
-    pub samples: u64,
-    /// Seed of the design and of the first run.
-    pub seed: u64,
-    /// Sample i has the same seed in all points.
-    pub common_seeds: bool,
-    /// The variable that takes the seed, if it is not the harvester's.
-    pub seed_variable: Option<String>,
+    /// Points and samples.
+    pub sampling: Sampling,
     /// Variables to record at the end of each run.
     pub record: Vec<String>,
     /// Options that come from a file, with its path.
@@ -111,13 +101,16 @@ impl Sweep {
     }
 
     fn resolve(request: &Request<'_>) -> Result<Self, SweepError> {
-        let Request { description, design, seed, .. } = *request;
+        let Request { description, ref sampling, .. } = *request;
+        let (design, samples, seed) = (sampling.design(), sampling.samples(), sampling.seed());
         let vary = last_of_each(&request.vary, |vary| &vary.name);
         let settings = settings(request, &vary)?;
         let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
-        let points = Points::new(design, axes, request.points)?;
-        let seeds = seeds(request, &settings, &vary)?;
-        let runs = count_runs(&points, request.samples, seeds.as_ref())?;
+        let points = Points::new(design, axes, sampling.points)?;
+        let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
+        let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
+        let seeds = Seeds::new(description, sampling, &given)?;
+        let runs = count_runs(&points, samples, seeds.as_ref())?;
         let record = request.record.iter().map(|name| {
             let found = description.variable(name).cloned();
             found.map_err(|error| SweepError::option("record", name, error.to_string()))
@@ -142,16 +135,15 @@ impl Sweep {
             design,
             vary: &vary,
             points: points.count(),
-            samples: request.samples,
+            samples,
             runs,
             seed,
-            common_seeds: request.common_seeds,
+            common_seeds: sampling.common_seeds,
             seed_variable: seeds.as_ref().map(|seeds| seeds.variable.name.as_str()),
             columns: &columns,
             sha256: None,
         };
-        let (document, samples) = (document.sealed(), request.samples);
-        let (name, times) = (request.name.clone(), request.times);
+        let (document, name, times) = (document.sealed(), request.name.clone(), request.times);
         Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
     }
 
@@ -251,20 +243,6 @@ fn settings(request: &Request<'_>, vary: &[Vary]) -> Result<Vec<(Variable, Value
     let settings = last_of_each(&request.settings, |setting| &setting.name);
     let is_varied = |setting: &&Setting| vary.iter().any(|vary| vary.name == setting.name);
     settings.iter().filter(|setting| !is_varied(setting)).map(|setting| typed(request.description, setting)).collect()
-}
-
-/// The seeds, if the samples have them and not the user.
-fn seeds(request: &Request<'_>, settings: &[(Variable, Value)], vary: &[Vary]) -> Result<Option<Seeds>, SweepError> {
-    let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
-    let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
-    let asked = Asked {
-        samples: request.samples,
-        seed: request.seed,
-        common: request.common_seeds,
-        variable: request.seed_variable.as_deref(),
-        given: &given,
-    };
-    Seeds::new(request.description, &asked)
 }
 
 fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {

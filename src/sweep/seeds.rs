@@ -1,6 +1,6 @@
 //! Seeds of the samples: other noise in each run, the same on any core, shard or machine.
 
-use super::SweepError;
+use super::{Sampling, SweepError};
 use fmu_import::{Kind, ModelDescription, Value, Variable};
 
 /// The variable that takes the seed of the harvester's phase noise, and its intensity.
@@ -22,24 +22,20 @@ pub(super) struct Seeds {
     pub common: bool,
 }
 
-/// Options that concern seeds.
-pub(super) struct Asked<'a> {
-    pub samples: u64,
-    pub seed: u64,
-    pub common: bool,
-    pub variable: Option<&'a str>,
-    /// Variables that have a value of the user's, and that value if it is the same in all runs.
-    pub given: &'a [(&'a str, Option<&'a Value>)],
-}
-
 impl Seeds {
-    /// Seeds, if there are several samples, if the variable is named, or if there is noise whose seed nobody set.
-    pub fn new(description: &ModelDescription, asked: &Asked<'_>) -> Result<Option<Self>, SweepError> {
-        let name = asked.variable.unwrap_or(SEED_VARIABLE);
-        let given = asked.given.iter().find(|(given, _)| *given == name);
-        let noise = asked.given.iter().rfind(|(given, _)| *given == NOISE);
+    /// Seeds, if there are several samples, if the variable is named, or if there is noise whose seed nobody set. `given`
+    /// are the variables that have a value of the user's, and that value if it is the same in all runs.
+    pub fn new(
+        description: &ModelDescription,
+        sampling: &Sampling,
+        given: &[(&str, Option<&Value>)],
+    ) -> Result<Option<Self>, SweepError> {
+        let (asked, samples) = (sampling.seed_variable.as_deref(), sampling.samples());
+        let name = asked.unwrap_or(SEED_VARIABLE);
+        let noise = given.iter().rfind(|(given, _)| *given == NOISE);
         let is_noisy = noise.is_some_and(|(_, value)| *value != Some(&Value::Real(0.0)));
-        let must = asked.samples > 1 || asked.variable.is_some();
+        let must = samples > 1 || asked.is_some();
+        let given = given.iter().find(|(given, _)| *given == name);
         if !must && (given.is_some() || !is_noisy) {
             return Ok(None);
         }
@@ -54,13 +50,13 @@ impl Seeds {
                 let reason = format!("a seed is an Integer that can be set; this is a {}", variable.kind.name());
                 return Err(SweepError::option("seed-variable", name, reason));
             }
-            Err(_) if asked.variable.is_none() => {
+            Err(_) if asked.is_none() => {
                 let reason = format!("{} has no {name}; name its seed by --seed-variable", description.model_name);
-                return Err(SweepError::option("samples", asked.samples.to_string(), reason));
+                return Err(SweepError::option("samples", samples.to_string(), reason));
             }
             Err(error) => return Err(SweepError::option("seed-variable", name, error.to_string())),
         };
-        Ok(Some(Self { variable, first: asked.seed, samples: asked.samples, common: asked.common }))
+        Ok(Some(Self { variable, first: sampling.seed(), samples, common: sampling.common_seeds }))
     }
 
     /// Seed of sample `sample` of point `point`: the first one and the number of the run, or of the sample if they are
@@ -77,17 +73,16 @@ impl Seeds {
 mod tests {
     use super::*;
 
-    fn asked<'a>(samples: u64, variable: Option<&'a str>, given: &'a [(&'a str, Option<&'a Value>)]) -> Asked<'a> {
-        Asked { samples, seed: 7, common: false, variable, given }
-    }
-
-    fn seeds(asked: &Asked<'_>) -> Result<Option<Seeds>, String> {
-        Seeds::new(&crate::sweep::harvester_description().unwrap(), asked).map_err(|error| error.to_string())
+    fn seeds(samples: u64, variable: Option<&str>, given: &[(&str, Option<&Value>)]) -> Result<Option<Seeds>, String> {
+        let seed_variable = variable.map(str::to_owned);
+        let sampling = Sampling { samples: Some(samples), seed: Some(7), seed_variable, ..Sampling::default() };
+        let description = crate::sweep::harvester_description().unwrap();
+        Seeds::new(&description, &sampling, given).map_err(|error| error.to_string())
     }
 
     #[test]
     fn every_run_has_a_seed_of_its_own_and_common_ones_repeat_in_each_point() {
-        let mut own = seeds(&asked(3, None, &[])).unwrap().unwrap();
+        let mut own = seeds(3, None, &[]).unwrap().unwrap();
         let all = |seeds: &Seeds| -> Vec<i32> {
             (0..4).flat_map(|point| [0, 1, 2].map(|sample| seeds.of(point, sample))).collect()
         };
@@ -109,11 +104,11 @@ mod tests {
             (1, &[(NOISE, None)], true),
             (1, &[(NOISE, Some(&half)), (SEED_VARIABLE, None)], false),
         ] {
-            assert_eq!(seeds(&asked(samples, None, given)).unwrap().is_some(), expected, "{samples} {given:?}");
+            assert_eq!(seeds(samples, None, given).unwrap().is_some(), expected, "{samples} {given:?}");
         }
-        let message = seeds(&asked(2, None, &[(SEED_VARIABLE, None)])).err().unwrap();
+        let message = seeds(2, None, &[(SEED_VARIABLE, None)]).err().unwrap();
         assert!(message.starts_with("--vary excitation.seed: the samples give it a value of their own"), "{message}");
-        let message = seeds(&asked(1, Some("ball.mass"), &[])).err().unwrap();
+        let message = seeds(1, Some("ball.mass"), &[]).err().unwrap();
         assert!(message.starts_with("--seed-variable ball.mass: a seed is an Integer"), "{message}");
     }
 }

@@ -40,9 +40,7 @@ pub enum LibraryError {
 /// One value of the data that ngspice sends at each accepted time point.
 #[repr(C)]
 pub struct VectorValue {
-    /// Name of the vector.
     pub name: *const c_char,
-    /// Its value.
     pub real: f64,
     imaginary: f64,
     is_scale: bool,
@@ -52,10 +50,8 @@ pub struct VectorValue {
 /// All values at an accepted time point.
 #[repr(C)]
 pub struct VectorValues {
-    /// Number of vectors.
     pub count: c_int,
     index: c_int,
-    /// The vectors.
     pub values: *const *const VectorValue,
 }
 
@@ -75,17 +71,11 @@ pub type GetSync = unsafe extern "C" fn(f64, *mut f64, f64, c_int, c_int, c_int,
 /// The functions that ngspice calls back.
 #[derive(Clone, Copy)]
 pub struct Callbacks {
-    /// Text.
     pub text: SendChar,
-    /// End of the process.
     pub exit: ControlledExit,
-    /// Begin of the analysis.
     pub begin: SendInitData,
-    /// Accepted time points.
     pub data: SendData,
-    /// External sources.
     pub voltage: GetVoltage,
-    /// Time step.
     pub sync: GetSync,
 }
 

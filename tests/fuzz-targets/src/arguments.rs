@@ -1,7 +1,7 @@
 //! What stands behind `--set`, `--vary` and `--shard`, a line each: read, applied, and put together to a sweep.
 
 use videg::scenario::Setting;
-use videg::sweep::{Design, Shard, SweepFile, Vary};
+use videg::sweep::{Design, Sampling, Shard, SweepFile, Vary};
 
 use crate::{Target, sweeps};
 
@@ -22,7 +22,8 @@ fn check(bytes: &[u8]) -> bool {
     }
     let designs = [Design::Grid, Design::Lhs, Design::Random].map(|design| {
         let points = (design != Design::Grid).then_some(5);
-        let file = SweepFile { design: Some(design), points, vary: vary.clone(), ..SweepFile::default() };
+        let sampling = Sampling { design: Some(design), points, ..Sampling::default() };
+        let file = SweepFile { sampling, vary: vary.clone(), ..SweepFile::default() };
         sweeps::resolve(file, settings.clone()).is_ok_and(|sweep| {
             sweeps::check(&sweep);
             true

@@ -25,7 +25,7 @@ pub(crate) fn apply(setting: &Setting) {
 
 /// The sweep of the harvester that a file asks for.
 pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, SweepError> {
-    let SweepFile { case, design, points, samples, seed, common_seeds, seed_variable, record, vary } = file;
+    let SweepFile { case, sampling, record, vary } = file;
     let (name, step) = (case.name.clone().unwrap_or_default(), case.step);
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
     let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
@@ -37,12 +37,7 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
         settings: scenario.settings.into_iter().filter(is_own).collect(),
         times: Times { until: scenario.until, step, window: scenario.window },
         vary,
-        design: design.unwrap_or_default(),
-        points,
-        samples: samples.unwrap_or(1),
-        seed: seed.unwrap_or(1),
-        common_seeds: common_seeds.unwrap_or(false),
-        seed_variable,
+        sampling,
         record,
         in_file: Vec::new(),
     })
