@@ -111,99 +111,109 @@ pub struct fmi2CallbackFunctions {
     pub componentEnvironment: fmi2ComponentEnvironment,
 }
 
-macro_rules! signatures {
-    ($($(#[$doc:meta])* $name:ident = ($($arg:ty),* $(,)?) $(-> $ret:ty)?;)*) => {
-        $($(#[$doc])* pub type $name = unsafe extern "C" fn($($arg),*) $(-> $ret)?;)*
+/// Hands all functions of FMI 2.0 to a macro, each with the name of its type and its arguments, whose types the caller has in
+/// scope: `functions!([callback] tokens)` is
+/// `callback! { tokens; create { ... } other { ... } common { ... } exchange { ... } }`. Those in `common`, of both
+/// interfaces or co-simulation, and in `exchange`, of model exchange, take a component first and return a status.
+#[macro_export]
+macro_rules! functions {
+    ([$($callback:tt)*] $($tokens:tt)*) => {
+        $($callback)*! {
+            $($tokens)*;
+            create {
+                fmi2Instantiate fmi2InstantiateTYPE(
+                    instanceName: fmi2String, fmuType: fmi2Type, fmuGUID: fmi2String, fmuResourceLocation: fmi2String,
+                    functions: *const fmi2CallbackFunctions, visible: fmi2Boolean, loggingOn: fmi2Boolean
+                ) -> fmi2Component;
+            }
+            other {
+                fmi2GetTypesPlatform fmi2GetTypesPlatformTYPE() -> fmi2String;
+                fmi2GetVersion fmi2GetVersionTYPE() -> fmi2String;
+                fmi2FreeInstance fmi2FreeInstanceTYPE(c: fmi2Component);
+            }
+            common {
+                fmi2SetDebugLogging fmi2SetDebugLoggingTYPE(
+                    loggingOn: fmi2Boolean, nCategories: usize, categories: *const fmi2String
+                );
+                fmi2SetupExperiment fmi2SetupExperimentTYPE(
+                    toleranceDefined: fmi2Boolean, tolerance: fmi2Real, startTime: fmi2Real,
+                    stopTimeDefined: fmi2Boolean, stopTime: fmi2Real
+                );
+                fmi2EnterInitializationMode fmi2EnterInitializationModeTYPE();
+                fmi2ExitInitializationMode fmi2ExitInitializationModeTYPE();
+                fmi2Terminate fmi2TerminateTYPE();
+                fmi2Reset fmi2ResetTYPE();
+                fmi2GetReal fmi2GetRealTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2Real);
+                fmi2GetInteger fmi2GetIntegerTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2Integer);
+                fmi2GetBoolean fmi2GetBooleanTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2Boolean);
+                fmi2GetString fmi2GetStringTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2String);
+                fmi2SetReal fmi2SetRealTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Real);
+                fmi2SetInteger fmi2SetIntegerTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Integer);
+                fmi2SetBoolean fmi2SetBooleanTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Boolean);
+                fmi2SetString fmi2SetStringTYPE(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2String);
+                fmi2GetFMUstate fmi2GetFMUstateTYPE(FMUstate: *mut fmi2FMUstate);
+                fmi2SetFMUstate fmi2SetFMUstateTYPE(FMUstate: fmi2FMUstate);
+                fmi2FreeFMUstate fmi2FreeFMUstateTYPE(FMUstate: *mut fmi2FMUstate);
+                fmi2SerializedFMUstateSize fmi2SerializedFMUstateSizeTYPE(FMUstate: fmi2FMUstate, size: *mut usize);
+                fmi2SerializeFMUstate fmi2SerializeFMUstateTYPE(
+                    FMUstate: fmi2FMUstate, serializedState: *mut fmi2Byte, size: usize
+                );
+                fmi2DeSerializeFMUstate fmi2DeSerializeFMUstateTYPE(
+                    serializedState: *const fmi2Byte, size: usize, FMUstate: *mut fmi2FMUstate
+                );
+                fmi2GetDirectionalDerivative fmi2GetDirectionalDerivativeTYPE(
+                    vUnknown_ref: *const fmi2ValueReference, nUnknown: usize, vKnown_ref: *const fmi2ValueReference,
+                    nKnown: usize, dvKnown: *const fmi2Real, dvUnknown: *mut fmi2Real
+                );
+                fmi2SetRealInputDerivatives fmi2SetRealInputDerivativesTYPE(
+                    vr: *const fmi2ValueReference, nvr: usize, order: *const fmi2Integer, value: *const fmi2Real
+                );
+                fmi2GetRealOutputDerivatives fmi2GetRealOutputDerivativesTYPE(
+                    vr: *const fmi2ValueReference, nvr: usize, order: *const fmi2Integer, value: *mut fmi2Real
+                );
+                fmi2DoStep fmi2DoStepTYPE(
+                    currentCommunicationPoint: fmi2Real, communicationStepSize: fmi2Real,
+                    noSetFMUStatePriorToCurrentPoint: fmi2Boolean
+                );
+                fmi2CancelStep fmi2CancelStepTYPE();
+                fmi2GetStatus fmi2GetStatusTYPE(s: fmi2StatusKind, value: *mut fmi2Status);
+                fmi2GetRealStatus fmi2GetRealStatusTYPE(s: fmi2StatusKind, value: *mut fmi2Real);
+                fmi2GetIntegerStatus fmi2GetIntegerStatusTYPE(s: fmi2StatusKind, value: *mut fmi2Integer);
+                fmi2GetBooleanStatus fmi2GetBooleanStatusTYPE(s: fmi2StatusKind, value: *mut fmi2Boolean);
+                fmi2GetStringStatus fmi2GetStringStatusTYPE(s: fmi2StatusKind, value: *mut fmi2String);
+            }
+            exchange {
+                fmi2EnterEventMode fmi2EnterEventModeTYPE();
+                fmi2NewDiscreteStates fmi2NewDiscreteStatesTYPE(eventInfo: *mut fmi2EventInfo);
+                fmi2EnterContinuousTimeMode fmi2EnterContinuousTimeModeTYPE();
+                fmi2CompletedIntegratorStep fmi2CompletedIntegratorStepTYPE(
+                    noSetFMUStatePriorToCurrentPoint: fmi2Boolean, enterEventMode: *mut fmi2Boolean,
+                    terminateSimulation: *mut fmi2Boolean
+                );
+                fmi2SetTime fmi2SetTimeTYPE(time: fmi2Real);
+                fmi2SetContinuousStates fmi2SetContinuousStatesTYPE(x: *const fmi2Real, nx: usize);
+                fmi2GetDerivatives fmi2GetDerivativesTYPE(derivatives: *mut fmi2Real, nx: usize);
+                fmi2GetEventIndicators fmi2GetEventIndicatorsTYPE(eventIndicators: *mut fmi2Real, ni: usize);
+                fmi2GetContinuousStates fmi2GetContinuousStatesTYPE(x: *mut fmi2Real, nx: usize);
+                fmi2GetNominalsOfContinuousStates fmi2GetNominalsOfContinuousStatesTYPE(
+                    x_nominal: *mut fmi2Real, nx: usize
+                );
+            }
+        }
     };
 }
 
-signatures! {
-    /// `fmi2GetTypesPlatform`
-    fmi2GetTypesPlatformTYPE = () -> *const c_char;
-    /// `fmi2GetVersion`
-    fmi2GetVersionTYPE = () -> *const c_char;
-    /// `fmi2SetDebugLogging(c, loggingOn, nCategories, categories)`
-    fmi2SetDebugLoggingTYPE = (fmi2Component, fmi2Boolean, usize, *const fmi2String) -> fmi2Status;
-    /// `fmi2Instantiate(instanceName, fmuType, fmuGUID, fmuResourceLocation, functions, visible, loggingOn)`
-    fmi2InstantiateTYPE = (fmi2String, fmi2Type, fmi2String, fmi2String, *const fmi2CallbackFunctions, fmi2Boolean, fmi2Boolean) -> fmi2Component;
-    /// `fmi2FreeInstance(c)`
-    fmi2FreeInstanceTYPE = (fmi2Component);
-    /// `fmi2SetupExperiment(c, toleranceDefined, tolerance, startTime, stopTimeDefined, stopTime)`
-    fmi2SetupExperimentTYPE = (fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real) -> fmi2Status;
-    /// `fmi2EnterInitializationMode(c)`
-    fmi2EnterInitializationModeTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2ExitInitializationMode(c)`
-    fmi2ExitInitializationModeTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2Terminate(c)`
-    fmi2TerminateTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2Reset(c)`
-    fmi2ResetTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2GetReal(c, vr, nvr, value)`
-    fmi2GetRealTYPE = (fmi2Component, *const fmi2ValueReference, usize, *mut fmi2Real) -> fmi2Status;
-    /// `fmi2GetInteger(c, vr, nvr, value)`
-    fmi2GetIntegerTYPE = (fmi2Component, *const fmi2ValueReference, usize, *mut fmi2Integer) -> fmi2Status;
-    /// `fmi2GetBoolean(c, vr, nvr, value)`
-    fmi2GetBooleanTYPE = (fmi2Component, *const fmi2ValueReference, usize, *mut fmi2Boolean) -> fmi2Status;
-    /// `fmi2GetString(c, vr, nvr, value)`
-    fmi2GetStringTYPE = (fmi2Component, *const fmi2ValueReference, usize, *mut fmi2String) -> fmi2Status;
-    /// `fmi2SetReal(c, vr, nvr, value)`
-    fmi2SetRealTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2Real) -> fmi2Status;
-    /// `fmi2SetInteger(c, vr, nvr, value)`
-    fmi2SetIntegerTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2Integer) -> fmi2Status;
-    /// `fmi2SetBoolean(c, vr, nvr, value)`
-    fmi2SetBooleanTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2Boolean) -> fmi2Status;
-    /// `fmi2SetString(c, vr, nvr, value)`
-    fmi2SetStringTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2String) -> fmi2Status;
-    /// `fmi2GetFMUstate(c, FMUstate)`
-    fmi2GetFMUstateTYPE = (fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
-    /// `fmi2SetFMUstate(c, FMUstate)`
-    fmi2SetFMUstateTYPE = (fmi2Component, fmi2FMUstate) -> fmi2Status;
-    /// `fmi2FreeFMUstate(c, FMUstate)`
-    fmi2FreeFMUstateTYPE = (fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
-    /// `fmi2SerializedFMUstateSize(c, FMUstate, size)`
-    fmi2SerializedFMUstateSizeTYPE = (fmi2Component, fmi2FMUstate, *mut usize) -> fmi2Status;
-    /// `fmi2SerializeFMUstate(c, FMUstate, serializedState, size)`
-    fmi2SerializeFMUstateTYPE = (fmi2Component, fmi2FMUstate, *mut fmi2Byte, usize) -> fmi2Status;
-    /// `fmi2DeSerializeFMUstate(c, serializedState, size, FMUstate)`
-    fmi2DeSerializeFMUstateTYPE = (fmi2Component, *const fmi2Byte, usize, *mut fmi2FMUstate) -> fmi2Status;
-    /// `fmi2GetDirectionalDerivative(c, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown)`
-    fmi2GetDirectionalDerivativeTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2ValueReference, usize, *const fmi2Real, *mut fmi2Real) -> fmi2Status;
-    /// `fmi2SetRealInputDerivatives(c, vr, nvr, order, value)`
-    fmi2SetRealInputDerivativesTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2Integer, *const fmi2Real) -> fmi2Status;
-    /// `fmi2GetRealOutputDerivatives(c, vr, nvr, order, value)`
-    fmi2GetRealOutputDerivativesTYPE = (fmi2Component, *const fmi2ValueReference, usize, *const fmi2Integer, *mut fmi2Real) -> fmi2Status;
-    /// `fmi2DoStep(c, currentCommunicationPoint, communicationStepSize, noSetFMUStatePriorToCurrentPoint)`
-    fmi2DoStepTYPE = (fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) -> fmi2Status;
-    /// `fmi2CancelStep(c)`
-    fmi2CancelStepTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2GetStatus(c, s, value)`
-    fmi2GetStatusTYPE = (fmi2Component, fmi2StatusKind, *mut fmi2Status) -> fmi2Status;
-    /// `fmi2GetRealStatus(c, s, value)`
-    fmi2GetRealStatusTYPE = (fmi2Component, fmi2StatusKind, *mut fmi2Real) -> fmi2Status;
-    /// `fmi2GetIntegerStatus(c, s, value)`
-    fmi2GetIntegerStatusTYPE = (fmi2Component, fmi2StatusKind, *mut fmi2Integer) -> fmi2Status;
-    /// `fmi2GetBooleanStatus(c, s, value)`
-    fmi2GetBooleanStatusTYPE = (fmi2Component, fmi2StatusKind, *mut fmi2Boolean) -> fmi2Status;
-    /// `fmi2GetStringStatus(c, s, value)`
-    fmi2GetStringStatusTYPE = (fmi2Component, fmi2StatusKind, *mut fmi2String) -> fmi2Status;
-    /// `fmi2EnterEventMode(c)` (model exchange)
-    fmi2EnterEventModeTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2NewDiscreteStates(c, eventInfo)` (model exchange)
-    fmi2NewDiscreteStatesTYPE = (fmi2Component, *mut fmi2EventInfo) -> fmi2Status;
-    /// `fmi2EnterContinuousTimeMode(c)` (model exchange)
-    fmi2EnterContinuousTimeModeTYPE = (fmi2Component) -> fmi2Status;
-    /// `fmi2CompletedIntegratorStep(c, noSetFMUStatePriorToCurrentPoint, enterEventMode, terminateSimulation)` (model exchange)
-    fmi2CompletedIntegratorStepTYPE = (fmi2Component, fmi2Boolean, *mut fmi2Boolean, *mut fmi2Boolean) -> fmi2Status;
-    /// `fmi2SetTime(c, time)` (model exchange)
-    fmi2SetTimeTYPE = (fmi2Component, fmi2Real) -> fmi2Status;
-    /// `fmi2SetContinuousStates(c, x, nx)` (model exchange)
-    fmi2SetContinuousStatesTYPE = (fmi2Component, *const fmi2Real, usize) -> fmi2Status;
-    /// `fmi2GetDerivatives(c, derivatives, nx)` (model exchange)
-    fmi2GetDerivativesTYPE = (fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
-    /// `fmi2GetEventIndicators(c, eventIndicators, ni)` (model exchange)
-    fmi2GetEventIndicatorsTYPE = (fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
-    /// `fmi2GetContinuousStates(c, x, nx)` (model exchange)
-    fmi2GetContinuousStatesTYPE = (fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
-    /// `fmi2GetNominalsOfContinuousStates(c, x_nominal, nx)` (model exchange)
-    fmi2GetNominalsOfContinuousStatesTYPE = (fmi2Component, *mut fmi2Real, usize) -> fmi2Status;
+macro_rules! types {
+    (; create { $($create:tt)* } other { $($other:tt)* } common { $($common:tt)* } exchange { $($exchange:tt)* }) => {
+        types! { $($create)* $($other)* }
+        types! { @status $($common)* $($exchange)* }
+    };
+    (@status $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)*) => {
+        types! { $($name $signature(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status;)* }
+    };
+    ($($name:ident $signature:ident($($argument:ident: $kind:ty),*) $(-> $ret:ty)?;)*) => {$(
+        #[doc = concat!("`", stringify!($name), "`")]
+        pub type $signature = unsafe extern "C" fn($($argument: $kind),*) $(-> $ret)?;
+    )*};
 }
+functions!([types]);

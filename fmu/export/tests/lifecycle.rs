@@ -8,7 +8,7 @@ use common::*;
 use core::ffi::CStr;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
-use fmu_export::ffi::{Fmu, instantiate, state};
+use fmu_export::ffi::{self, Fmu};
 use fmu_export::{Guid, Logger, ModelInfo, Slave, SlaveError, Variable};
 
 #[test]
@@ -253,7 +253,7 @@ fn bare<const MIN: i32>(kind: fmi2Type, log: &mut Log) -> fmi2Component {
     let fmu = if MIN == 0 { &FMU } else { &Fmu::new() };
     let functions = &raw const functions;
     unsafe {
-        instantiate::instantiate::<Bare<MIN>>(fmu, name.as_ptr(), kind, guid.as_ptr(), null(), functions, 0, fmi2True)
+        ffi::fmi2Instantiate::<Bare<MIN>>(fmu, name.as_ptr(), kind, guid.as_ptr(), null(), functions, 0, fmi2True)
     }
 }
 
@@ -270,10 +270,10 @@ fn a_slave_that_cannot_be_serialised_says_so() {
     let component = bare::<0>(fmi2CoSimulation, &mut log);
     let (mut fmu_state, mut size) = (null_mut(), 0);
     unsafe {
-        assert_eq!(state::get_fmu_state::<Bare<0>>(component, &raw mut fmu_state), fmi2OK);
-        let status = state::serialized_fmu_state_size::<Bare<0>>(component, fmu_state, &raw mut size);
+        assert_eq!(ffi::fmi2GetFMUstate::<Bare<0>>(component, &raw mut fmu_state), fmi2OK);
+        let status = ffi::fmi2SerializedFMUstateSize::<Bare<0>>(component, fmu_state, &raw mut size);
         assert_eq!(status, fmi2Error);
-        instantiate::free_instance::<Bare<0>>(component);
+        ffi::fmi2FreeInstance::<Bare<0>>(component);
     }
     let message = &log.lines[0].message;
     assert_eq!(message, "fmi2SerializedFMUstateSize: not supported by this FMU: serialised FMU states");

@@ -4,7 +4,11 @@ use fmu_export::abi;
 use libloading::Library;
 
 macro_rules! functions {
-    ($($name:ident: $signature:ident,)* ; $($exchange:ident: $exchange_signature:ident,)*) => {
+    (; create { $($create:tt)* } other { $($other:tt)* } common { $($common:tt)* } exchange { $($exchange:tt)* }) => {
+        functions! { $($create)* $($other)* $($common)* @ $($exchange)* }
+    };
+    ($($name:ident $signature:ident $arguments:tt $(-> $ret:ty)?;)* @
+     $($exchange:ident $exchange_signature:ident $exchange_arguments:tt;)*) => {
         /// The functions of both interfaces.
         #[derive(Clone, Copy)]
         #[allow(non_snake_case, missing_docs)] // names of the standard
@@ -46,96 +50,58 @@ macro_rules! functions {
                 })
             }
         }
+    };
+}
+abi::functions!([functions]);
 
-        /// The functions of the FMU that is linked into this program, with model exchange, under their own names.
-        #[macro_export]
-        macro_rules! linked_names {
-            () => {
-                mod symbols {
-                    unsafe extern "C" { $(pub fn $name();)* $(pub fn $exchange();)* }
-                }
-                // SAFETY: `export_fmu!` has checked the signatures.
-                $(pub static $name: $crate::abi::$signature = unsafe {
-                    ::core::mem::transmute::<unsafe extern "C" fn(), $crate::abi::$signature>(symbols::$name)
-                };)*
-                // SAFETY: as above.
-                $(pub static $exchange: $crate::abi::$exchange_signature = unsafe {
-                    ::core::mem::transmute::<unsafe extern "C" fn(), $crate::abi::$exchange_signature>(symbols::$exchange)
-                };)*
-            };
-        }
+/// Declares the functions of the FMU that is linked into this program.
+#[macro_export]
+macro_rules! linked_names {
+    () => {
+        #[allow(unused_imports)] // where the types are in scope
+        use $crate::abi::*;
 
-        /// The functions of the FMU that is linked into this program; `linked_functions!(model_exchange)` if it has those.
-        #[macro_export]
-        macro_rules! linked_functions {
-            () => { $crate::linked_functions!(@ None) };
-            (model_exchange) => {{
-                unsafe extern "C" { $(fn $exchange();)* }
-                $crate::linked_functions!(@ Some($crate::Exchange {
-                    // SAFETY: `export_fmu!` has checked the signature.
-                    $($exchange: unsafe {
-                        ::core::mem::transmute::<*const (), $crate::abi::$exchange_signature>($exchange as *const ())
-                    },)*
-                }))
-            }};
-            (@ $of_exchange:expr) => {{
-                unsafe extern "C" { $(fn $name();)* }
-                $crate::Functions {
-                    // SAFETY: `export_fmu!` has checked the signature.
-                    $($name: unsafe {
-                        ::core::mem::transmute::<*const (), $crate::abi::$signature>($name as *const ())
-                    },)*
-                    exchange: $of_exchange,
-                }
-            }};
-        }
+        $crate::abi::functions!([$crate::__linked] names);
     };
 }
 
-functions! {
-    fmi2GetTypesPlatform: fmi2GetTypesPlatformTYPE,
-    fmi2GetVersion: fmi2GetVersionTYPE,
-    fmi2SetDebugLogging: fmi2SetDebugLoggingTYPE,
-    fmi2Instantiate: fmi2InstantiateTYPE,
-    fmi2FreeInstance: fmi2FreeInstanceTYPE,
-    fmi2SetupExperiment: fmi2SetupExperimentTYPE,
-    fmi2EnterInitializationMode: fmi2EnterInitializationModeTYPE,
-    fmi2ExitInitializationMode: fmi2ExitInitializationModeTYPE,
-    fmi2Terminate: fmi2TerminateTYPE,
-    fmi2Reset: fmi2ResetTYPE,
-    fmi2GetReal: fmi2GetRealTYPE,
-    fmi2GetInteger: fmi2GetIntegerTYPE,
-    fmi2GetBoolean: fmi2GetBooleanTYPE,
-    fmi2GetString: fmi2GetStringTYPE,
-    fmi2SetReal: fmi2SetRealTYPE,
-    fmi2SetInteger: fmi2SetIntegerTYPE,
-    fmi2SetBoolean: fmi2SetBooleanTYPE,
-    fmi2SetString: fmi2SetStringTYPE,
-    fmi2GetFMUstate: fmi2GetFMUstateTYPE,
-    fmi2SetFMUstate: fmi2SetFMUstateTYPE,
-    fmi2FreeFMUstate: fmi2FreeFMUstateTYPE,
-    fmi2SerializedFMUstateSize: fmi2SerializedFMUstateSizeTYPE,
-    fmi2SerializeFMUstate: fmi2SerializeFMUstateTYPE,
-    fmi2DeSerializeFMUstate: fmi2DeSerializeFMUstateTYPE,
-    fmi2GetDirectionalDerivative: fmi2GetDirectionalDerivativeTYPE,
-    fmi2SetRealInputDerivatives: fmi2SetRealInputDerivativesTYPE,
-    fmi2GetRealOutputDerivatives: fmi2GetRealOutputDerivativesTYPE,
-    fmi2DoStep: fmi2DoStepTYPE,
-    fmi2CancelStep: fmi2CancelStepTYPE,
-    fmi2GetStatus: fmi2GetStatusTYPE,
-    fmi2GetRealStatus: fmi2GetRealStatusTYPE,
-    fmi2GetIntegerStatus: fmi2GetIntegerStatusTYPE,
-    fmi2GetBooleanStatus: fmi2GetBooleanStatusTYPE,
-    fmi2GetStringStatus: fmi2GetStringStatusTYPE,
-    ;
-    fmi2EnterEventMode: fmi2EnterEventModeTYPE,
-    fmi2NewDiscreteStates: fmi2NewDiscreteStatesTYPE,
-    fmi2EnterContinuousTimeMode: fmi2EnterContinuousTimeModeTYPE,
-    fmi2CompletedIntegratorStep: fmi2CompletedIntegratorStepTYPE,
-    fmi2SetTime: fmi2SetTimeTYPE,
-    fmi2SetContinuousStates: fmi2SetContinuousStatesTYPE,
-    fmi2GetDerivatives: fmi2GetDerivativesTYPE,
-    fmi2GetEventIndicators: fmi2GetEventIndicatorsTYPE,
-    fmi2GetContinuousStates: fmi2GetContinuousStatesTYPE,
-    fmi2GetNominalsOfContinuousStates: fmi2GetNominalsOfContinuousStatesTYPE,
+/// The functions of the FMU that is linked into this program; `linked_functions!(model_exchange)` if it has those.
+#[macro_export]
+macro_rules! linked_functions {
+    ($($model_exchange:ident)?) => {{
+        $crate::linked_names!();
+        $crate::abi::functions!([$crate::__linked] values $($model_exchange)?)
+    }};
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __linked {
+    (names;
+        create { $($create:ident $create_type:ident($($part:ident: $part_type:ty),*) -> $component:ty;)* }
+        other { $($other:ident $other_type:ident($($c:ident: $c_type:ty)?) $(-> $ret:ty)?;)* }
+        common { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
+        exchange { $($exchange:ident $exchange_type:ident($($place:ident: $place_type:ty),*);)* }
+    ) => {
+        #[allow(dead_code)]
+        unsafe extern "C" {
+            $(pub fn $create($($part: $part_type),*) -> $component;)*
+            $(pub fn $other($($c: $c_type)?) $(-> $ret)?;)*
+            $(pub fn $name(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status;)*
+            $(pub fn $exchange(c: fmi2Component $(, $place: $place_type)*) -> fmi2Status;)*
+        }
+    };
+    (values $($model_exchange:ident)?;
+        create { $($create:ident $create_type:ident $parts:tt -> $component:ty;)* }
+        other { $($other:ident $other_type:ident $others:tt $(-> $ret:ty)?;)* }
+        common { $($name:ident $signature:ident $arguments:tt;)* }
+        exchange { $($exchange:ident $exchange_type:ident $places:tt;)* }
+    ) => {
+        $crate::Functions {
+            $($create,)* $($other,)* $($name,)*
+            exchange: $crate::__linked!(@ [$($model_exchange)?] $($exchange)*),
+        }
+    };
+    (@ [] $($exchange:ident)*) => { None };
+    (@ [model_exchange] $($exchange:ident)*) => { Some($crate::Exchange { $($exchange,)* }) };
 }

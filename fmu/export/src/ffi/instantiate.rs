@@ -1,4 +1,4 @@
-//! `fmi2Instantiate` and `fmi2FreeInstance`.
+//! The functions without a component that is live, or without a status.
 
 use super::{Fmu, Handle, text};
 use crate::instance::Instance;
@@ -24,7 +24,7 @@ struct Request<'a> {
 
 /// `fmi2Instantiate`. A failure is logged even with `logging_on` false, since the standard promises the reason.
 #[allow(clippy::too_many_arguments)] // The arguments of the C function, and the FMU.
-pub unsafe fn instantiate<S: Slave>(
+pub unsafe fn fmi2Instantiate<S: Slave>(
     fmu: &Fmu,
     instance_name: fmi2String,
     kind: fmi2Type,
@@ -93,7 +93,7 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
 
 /// `fmi2FreeInstance`. NULL is ignored; so is an instance that is in a call, which leaks rather than vanish under
 /// the feet of that call.
-pub unsafe fn free_instance<S: Slave>(component: fmi2Component) {
+pub unsafe fn fmi2FreeInstance<S: Slave>(component: fmi2Component) {
     let handle = component.cast::<Handle<S>>();
     if handle.is_null() || !handle.is_aligned() {
         return;
@@ -105,4 +105,14 @@ pub unsafe fn free_instance<S: Slave>(component: fmi2Component) {
     // SAFETY: by contract it came from `Box::into_raw` in `instantiate` and was not freed; `busy` keeps others out.
     let handle = unsafe { Box::from_raw(handle) };
     guard((), || handle.instance.into_inner().free());
+}
+
+/// `fmi2GetTypesPlatform`
+pub const unsafe fn fmi2GetTypesPlatform<S: Slave>() -> fmi2String {
+    c"default".as_ptr()
+}
+
+/// `fmi2GetVersion`
+pub const unsafe fn fmi2GetVersion<S: Slave>() -> fmi2String {
+    c"2.0".as_ptr()
 }

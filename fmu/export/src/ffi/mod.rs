@@ -1,7 +1,7 @@
 //! The bodies of the C functions, generic over the slave. [`export_fmu!`](crate::export_fmu) gives each its
 //! exported symbol; nobody else needs this module.
 //!
-//! Every body has the same shape: pointers become slices, the guard checks the component and the state, and one
+//! Every body has the same shape: the guard checks the component and the state, pointers become slices, and one
 //! function of the instance does the work in safe Rust.
 //!
 //! # Panics and silence
@@ -12,15 +12,16 @@
 //!
 //! # Safety
 //! All functions here have the contract of their C namesake: a component is NULL or comes from
-//! [`instantiate`](instantiate::instantiate) with the same `S` and was not freed, and no other thread calls a function of
+//! [`fmi2Instantiate`] with the same `S` and was not freed, and no other thread calls a function of
 //! it meanwhile; an array is NULL or holds as many values as the call says; a string is NULL or zero-terminated.
 #![allow(clippy::missing_safety_doc)] // The contract is the same for all and stands above.
+#![allow(non_snake_case)] // names of the standard
 
-pub mod co_simulation;
-pub mod common;
-pub mod instantiate;
-pub mod model_exchange;
-pub mod state;
+mod functions;
+mod instantiate;
+
+pub use functions::*;
+pub use instantiate::*;
 
 use crate::call_state::Function;
 use crate::check::{TableError, check_fmu};
@@ -31,8 +32,9 @@ use crate::slave::Slave;
 use core::cell::UnsafeCell;
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
+use core::ptr::without_provenance_mut;
 use core::sync::atomic::{AtomicBool, Ordering};
-use fmu_abi::{fmi2Component, fmi2Error, fmi2Status};
+use fmu_abi::{fmi2Component, fmi2Error, fmi2FMUstate, fmi2Status};
 use std::sync::OnceLock;
 
 /// What is worked out once per FMU and process: the GUID, once the table is known to be sound. It takes no memory that an
@@ -125,21 +127,40 @@ unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &'static str) 
     Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
 }
 
-/// An array to be filled. The importer need not have initialised it.
-unsafe fn array_out<'a, T>(pointer: *mut T, count: usize, argument: &'static str) -> Call<&'a mut [MaybeUninit<T>]> {
-    if count == 0 {
-        return Ok(&mut []);
-    }
-    check_array(pointer, count, argument)?;
-    // SAFETY: checked above; by contract there is room for `count` values, and no one else looks at them now.
-    Ok(unsafe { core::slice::from_raw_parts_mut(pointer.cast(), count) })
+/// Writes into an array to be filled, which the importer need not have initialised: takes the position and the value.
+unsafe fn array_out<'a, T: 'a>(
+    pointer: *mut T,
+    count: usize,
+    argument: &'static str,
+) -> Call<impl FnMut(usize, T) + use<'a, T>> {
+    let places: &'a mut [MaybeUninit<T>] = if count == 0 {
+        &mut []
+    } else {
+        check_array(pointer, count, argument)?;
+        // SAFETY: checked above; by contract there is room for `count` values, and no one else looks at them now.
+        unsafe { core::slice::from_raw_parts_mut(pointer.cast(), count) }
+    };
+    Ok(move |k: usize, value| {
+        places[k].write(value);
+    })
 }
 
-/// A single value to be filled.
-unsafe fn out<'a, T>(pointer: *mut T, argument: &'static str) -> Call<&'a mut MaybeUninit<T>> {
+/// Writes a single value.
+unsafe fn give<T>(pointer: *mut T, argument: &'static str, value: impl FnOnce() -> Call<T>) -> Call {
     check_array(pointer, 1, argument)?;
+    let value = value()?;
     // SAFETY: checked above; by contract there is room for one value.
-    Ok(unsafe { &mut *pointer.cast() })
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Replaces the token of an FMU state by what `call` makes of it; 0 is NULL.
+unsafe fn replace(state: *mut fmi2FMUstate, call: impl FnOnce(usize) -> Call<usize>) -> Call {
+    check_array(state, 1, "FMUstate")?;
+    // SAFETY: checked above; the importer initialised it, to NULL or to a token.
+    let state = unsafe { &mut *state };
+    *state = without_provenance_mut(call(state.addr())?);
+    Ok(())
 }
 
 /// A string argument, or why it is none.

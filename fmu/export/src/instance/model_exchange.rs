@@ -93,7 +93,8 @@ impl<S: Slave> Instance<S> {
         if states.is_empty() {
             return self.set::<AsReal, _>(references, values, |value| value);
         }
-        let mut all = self.continuous_states(states_and_derivatives(S::variables()).count())?;
+        let mut all = vec![0.0; states_and_derivatives(S::variables()).count()];
+        self.get_continuous_states(all.len(), |k, value| all[k] = value)?;
         for (index, value) in states {
             all[index] = value;
         }
@@ -112,37 +113,40 @@ impl<S: Slave> Instance<S> {
     }
 
     /// `fmi2GetContinuousStates`
-    pub(crate) fn continuous_states(&mut self, count: usize) -> Call<Vec<f64>> {
-        self.values("nx", count, |(state, _), model| real(state, model))
+    pub(crate) fn get_continuous_states(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
+        self.put_all(count, |(state, _), model| real(state, model), put)
     }
 
     /// `fmi2GetDerivatives`
-    pub(crate) fn derivatives(&mut self, count: usize) -> Call<Vec<f64>> {
-        self.values("nx", count, |(_, derivative), model| real(derivative, model))
+    pub(crate) fn derivatives(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
+        self.put_all(count, |(_, derivative), model| real(derivative, model), put)
     }
 
     /// `fmi2GetNominalsOfContinuousStates`
-    pub(crate) fn nominals(&mut self, count: usize) -> Call<Vec<f64>> {
+    pub(crate) fn nominals(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
         let nominal = |variable: &Variable<S>| if let Kind::Real(s) = variable.kind() { s.nominal } else { None };
-        self.values("nx", count, |(state, _), _| nominal(state).unwrap_or(1.0))
+        self.put_all(count, |(state, _), _| nominal(state).unwrap_or(1.0), put)
     }
 
     /// `fmi2GetEventIndicators`
-    pub(crate) fn event_indicators(&mut self, count: usize) -> Call<Vec<f64>> {
+    pub(crate) fn event_indicators(&mut self, count: usize, mut put: impl FnMut(usize, f64)) -> Call {
         check_count("ni", count, S::INFO.model_exchange.unwrap_or(0))?;
         self.update()?;
-        Ok(self.core.model.event_indicators())
+        self.core.model.event_indicators().into_iter().take(count).enumerate().for_each(|(k, value)| put(k, value));
+        Ok(())
     }
 
-    fn values(
+    /// Something of each continuous state and its derivative.
+    fn put_all(
         &mut self,
-        argument: &'static str,
         count: usize,
         value: impl Fn((&Variable<S>, &Variable<S>), &S) -> f64,
-    ) -> Call<Vec<f64>> {
-        check_count(argument, count, states_and_derivatives(S::variables()).count())?;
+        mut put: impl FnMut(usize, f64),
+    ) -> Call {
+        check_count("nx", count, states_and_derivatives(S::variables()).count())?;
         self.update()?;
-        let pairs = states_and_derivatives(S::variables());
-        Ok(pairs.map(|pair| value(pair, &self.core.model)).collect())
+        let pairs = states_and_derivatives(S::variables()).enumerate();
+        pairs.for_each(|(k, pair)| put(k, value(pair, &self.core.model)));
+        Ok(())
     }
 }
