@@ -18,13 +18,3 @@ fn no_variable_takes_what_is_no_number_but_infinity_where_it_has_a_meaning() {
 fn no_argument_takes_what_is_no_number() {
     hostile::arguments(&fmu()).unwrap();
 }
-
-#[test]
-fn value_references_beyond_the_table_are_refused() {
-    hostile::references(&fmu()).unwrap();
-}
-
-#[test]
-fn odd_resource_locations_and_missing_callbacks_do_no_harm() {
-    hostile::instantiation(&fmu()).unwrap();
-}

@@ -21,16 +21,6 @@ fn no_argument_takes_what_is_no_number() {
     hostile::arguments(&fmu()).unwrap();
 }
 
-#[test]
-fn value_references_beyond_the_table_are_refused() {
-    hostile::references(&fmu()).unwrap();
-}
-
-#[test]
-fn odd_resource_locations_and_missing_callbacks_do_no_harm() {
-    hostile::instantiation(&fmu()).unwrap();
-}
-
 /// Each of them would take minutes and more.
 #[test]
 fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {

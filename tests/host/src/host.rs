@@ -4,7 +4,7 @@
 #![allow(clippy::missing_panics_doc, clippy::missing_errors_doc, clippy::not_unsafe_ptr_arg_deref)]
 
 use crate::{Functions, Line, Log};
-use core::ffi::{CStr, c_char};
+use core::ffi::CStr;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::{
     fmi2Boolean, fmi2Byte, fmi2CoSimulation, fmi2Component, fmi2EventInfo, fmi2FMUstate, fmi2False, fmi2OK, fmi2Status,
@@ -38,9 +38,16 @@ pub fn ok(status: fmi2Status) {
 }
 
 macro_rules! values {
-    ($($get:ident $c_get:ident $set:ident $c_set:ident $kind:ty, $start:expr;)*) => {$(
-        /// The value of one variable; where the call fails, what was there before.
-        pub fn $get(&self, reference: u32) -> (fmi2Status, $kind) {
+    ($($get:ident $try_get:ident $c_get:ident $set:ident $c_set:ident $kind:ty, $start:expr;)*) => {$(
+        /// The value of one variable.
+        pub fn $get(&self, reference: u32) -> $kind {
+            let (status, value) = self.$try_get(reference);
+            ok(status);
+            value
+        }
+
+        /// The same with the status; where the call fails, what was there before.
+        pub fn $try_get(&self, reference: u32) -> (fmi2Status, $kind) {
             let mut value: $kind = $start;
             // SAFETY: one reference, one value.
             let status = unsafe { (self.functions.$c_get)(self.component, &raw const reference, 1, &raw mut value) };
@@ -109,39 +116,16 @@ impl Host {
     }
 
     values! {
-        try_real fmi2GetReal set_real fmi2SetReal f64, UNTOUCHED;
-        try_integer fmi2GetInteger set_integer fmi2SetInteger i32, -77;
-        try_boolean fmi2GetBoolean set_boolean fmi2SetBoolean fmi2Boolean, -77;
-        try_string fmi2GetString set_pointer fmi2SetString fmi2String, null();
-    }
-
-    /// A Real.
-    pub fn real(&self, reference: u32) -> f64 {
-        let (status, value) = self.try_real(reference);
-        ok(status);
-        value
-    }
-
-    /// An Integer.
-    pub fn integer(&self, reference: u32) -> i32 {
-        let (status, value) = self.try_integer(reference);
-        ok(status);
-        value
-    }
-
-    /// A Boolean.
-    pub fn boolean(&self, reference: u32) -> fmi2Boolean {
-        let (status, value) = self.try_boolean(reference);
-        ok(status);
-        value
+        real try_real fmi2GetReal set_real fmi2SetReal f64, UNTOUCHED;
+        integer try_integer fmi2GetInteger set_integer fmi2SetInteger i32, -77;
+        boolean try_boolean fmi2GetBoolean set_boolean fmi2SetBoolean fmi2Boolean, -77;
+        pointer try_pointer fmi2GetString set_pointer fmi2SetString fmi2String, null();
     }
 
     /// A String.
     pub fn string(&self, reference: u32) -> String {
-        let (status, value) = self.try_string(reference);
-        ok(status);
         // SAFETY: the FMU gave a zero-terminated text that lives until the next call.
-        unsafe { owned(value) }
+        unsafe { CStr::from_ptr(self.pointer(reference)) }.to_string_lossy().into_owned()
     }
 
     /// Sets a String.
@@ -174,7 +158,7 @@ impl Host {
         unsafe { (self.functions.fmi2SetupExperiment)(self.component, fmi2False, f64::NAN, start, defined, stop) }
     }
 
-    /// The whole initialisation mode.
+    /// Through initialization mode.
     pub fn initialize(&self) -> fmi2Status {
         match self.enter_initialization() {
             fmi2OK => self.exit_initialization(),
@@ -332,10 +316,4 @@ impl Host {
     fn exchange(&self) -> &crate::Exchange {
         self.functions.exchange.as_ref().expect("model exchange")
     }
-}
-
-/// A copy of a text of the FMU.
-unsafe fn owned(text: *const c_char) -> String {
-    // SAFETY: by contract it is zero-terminated.
-    unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned()
 }
