@@ -91,7 +91,7 @@ fn a_seed_that_is_not_finite_is_blamed_on_itself() {
 }
 
 #[test]
-fn null_arrays_and_panics_are_errors() {
+fn null_arrays_are_errors() {
     let host = Host::initialized();
     let (vr, mut value) = (INTEGRAL, 0.0);
     let status = unsafe {
@@ -104,8 +104,4 @@ fn null_arrays_and_panics_are_errors() {
         unsafe { fmi2GetDirectionalDerivative(host.component, &raw const vr, 1, null(), 0, null(), null_mut()) };
     assert_eq!(status, fmi2Error);
     assert!(host.error().contains("argument dvUnknown is NULL"));
-    let host = Host::initializing();
-    host.trouble("panic derivative");
-    let error = derivative(&host, &[DOUBLED], &[GAIN], &[1.0]).expect_err("a panic");
-    assert!(error.contains("panic in derivative"), "{error}");
 }

@@ -31,7 +31,7 @@ fn a_bad_argument_of_instantiate_gives_null_and_the_reason_even_with_logging_off
     ];
     for (name, kind, guid, reason) in cases {
         let mut log = Log::default();
-        let functions = callbacks(&mut log);
+        let functions = Log::callbacks(&raw mut log);
         assert!(common::instantiate(name, kind, guid, None, &raw const functions, false).is_null());
         let message = &log.lines[0].message;
         assert!(message.starts_with("fmi2Instantiate: ") && message.contains(reason), "{message}");
@@ -71,7 +71,7 @@ fn any_resource_location_is_accepted_an_odd_one_with_a_warning() {
     ];
     for (location, warnings) in cases {
         let mut log = Log::default();
-        let functions = callbacks(&mut log);
+        let functions = Log::callbacks(&raw mut log);
         let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), location, &raw const functions, true);
         assert!(!c.is_null(), "{location:?}");
         assert_eq!(log.lines.len(), warnings, "{location:?}");
@@ -112,13 +112,11 @@ fn reset_leads_back_to_a_fresh_instance() {
     let host = Host::new();
     assert_eq!(host.set_real(GAIN, 4.0), fmi2OK);
     assert_eq!(host.set_string(LABEL, "other"), fmi2OK);
-    assert_eq!(host.setup(3.0, Some(4.0)), fmi2OK);
-    assert_eq!(host.initialize(), fmi2OK);
+    host.start(3.0, Some(4.0));
     assert_eq!(host.step(3.0, 1.0), fmi2OK);
     assert_eq!(host.terminate(), fmi2OK);
     assert_eq!(host.reset(), fmi2OK);
-    assert_eq!(host.setup(0.0, None), fmi2OK);
-    assert_eq!(host.initialize(), fmi2OK);
+    host.start(0.0, None);
     assert_eq!((host.real(GAIN), host.real(INTEGRAL), host.integer(COUNT)), (2.0, 0.0, 0));
     assert_eq!(host.string(LABEL), "toy");
     assert_eq!(host.step(0.0, 10.0), fmi2OK, "the old stop time is forgotten");
@@ -249,7 +247,7 @@ impl<const MIN: i32> Slave for Bare<MIN> {
 fn bare<const MIN: i32>(kind: fmi2Type, log: &mut Log) -> fmi2Component {
     static FMU: Fmu = Fmu::new();
     let (name, guid) = (c"bare", c(&Guid::of::<Bare<MIN>>().to_string()));
-    let functions = callbacks(log);
+    let functions = Log::callbacks(log);
     let fmu = if MIN == 0 { &FMU } else { &Fmu::new() };
     let functions = &raw const functions;
     unsafe {

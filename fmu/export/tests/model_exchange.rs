@@ -96,8 +96,7 @@ fn what_is_read_after_the_end_is_of_the_last_time_and_inputs() {
 #[test]
 fn an_integrator_may_look_beyond_the_stop_time() {
     let host = Host::of_kind(fmi2ModelExchange);
-    assert_eq!(host.setup(0.0, Some(1.0)), fmi2OK);
-    assert_eq!(host.initialize(), fmi2OK);
+    host.start(0.0, Some(1.0));
     assert_eq!(host.enter_continuous_time_mode(), fmi2OK);
     assert_eq!(place(&host, 1.5, 0.5), fmi2OK);
 }

@@ -68,9 +68,7 @@ fn a_clock_in_single_precision_does_not_disturb() {
 fn a_communication_point_off_by_a_good_part_of_a_step_is_refused() {
     for size in [1e-6, 1e-3, 0.01, 10.0] {
         for part in [-0.5, -0.11, 0.11, 0.5, 1.0] {
-            let host = Host::new();
-            assert_eq!(host.setup(100.0, None), fmi2OK);
-            assert_eq!(host.initialize(), fmi2OK);
+            let host = Host::started(100.0, None);
             assert_eq!(host.step(100.0, size), fmi2OK);
             assert_eq!(host.step(100.0 + (1.0 + part) * size, size), fmi2Error, "{part} of {size} s");
             assert!(host.error().contains("currentCommunicationPoint = "));
@@ -81,9 +79,7 @@ fn a_communication_point_off_by_a_good_part_of_a_step_is_refused() {
 #[test]
 fn a_step_size_that_is_no_step_is_refused() {
     for h in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
-        let host = Host::new();
-        assert_eq!(host.setup(1.0, None), fmi2OK);
-        assert_eq!(host.initialize(), fmi2OK);
+        let host = Host::started(1.0, None);
         assert_eq!(host.step(1.0, h), fmi2Error, "{h}");
         assert!(host.error().contains("communicationStepSize = "), "{h}");
     }
@@ -94,9 +90,7 @@ fn a_step_size_that_is_no_step_is_refused() {
 
 #[test]
 fn the_stop_time_is_kept_to_within_the_tolerance() {
-    let host = Host::new();
-    assert_eq!(host.setup(0.0, Some(0.3)), fmi2OK);
-    assert_eq!(host.initialize(), fmi2OK);
+    let host = Host::started(0.0, Some(0.3));
     for i in 0..3 {
         assert_eq!(host.step(f64::from(i) * 0.1, 0.1), fmi2OK, "0.2 + 0.1 is above 0.3 by rounding");
     }

@@ -15,11 +15,6 @@ use toy::Toy;
 
 fmu_host::linked_names!();
 
-/// Callbacks that write to `log`.
-pub fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
-    Log::callbacks(log)
-}
-
 pub fn guid() -> String {
     Guid::of::<Toy>().to_string()
 }
@@ -83,11 +78,21 @@ impl Host {
         host
     }
 
+    /// From state `instantiated` through initialization mode.
+    pub fn start(&self, start: f64, stop: Option<f64>) {
+        assert_eq!((self.setup(start, stop), self.initialize()), (fmi2OK, fmi2OK));
+    }
+
+    /// In state `stepComplete`, at this time.
+    pub fn started(start: f64, stop: Option<f64>) -> Self {
+        let host = Self::new();
+        host.start(start, stop);
+        host
+    }
+
     /// In state `stepComplete`, at 0 s.
     pub fn initialized() -> Self {
-        let host = Self::initializing();
-        assert_eq!(host.exit_initialization(), fmi2OK);
-        host
+        Self::started(0.0, None)
     }
 
     /// Model exchange, in state `eventMode`, at 0 s.
