@@ -6,7 +6,6 @@ mod common;
 use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
 use common::*;
 use core::ptr::{null, null_mut};
-use fmu_export::abi::*;
 
 fn derivative(host: &Host, unknowns: &[u32], knowns: &[u32], seeds: &[f64]) -> Result<Vec<f64>, String> {
     host.directional_derivative(unknowns, knowns, seeds).map_err(|_| host.error())
@@ -97,11 +96,9 @@ fn null_arrays_are_errors() {
     let status = unsafe {
         fmi2GetDirectionalDerivative(host.component, &raw const vr, 1, &raw const vr, 1, null(), &raw mut value)
     };
-    assert_eq!(status, fmi2Error);
-    assert!(host.error().contains("argument dvKnown is NULL"));
+    host.refused(status, "argument dvKnown is NULL");
     let host = Host::initialized();
     let status =
         unsafe { fmi2GetDirectionalDerivative(host.component, &raw const vr, 1, null(), 0, null(), null_mut()) };
-    assert_eq!(status, fmi2Error);
-    assert!(host.error().contains("argument dvUnknown is NULL"));
+    host.refused(status, "argument dvUnknown is NULL");
 }

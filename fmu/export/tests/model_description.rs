@@ -38,24 +38,6 @@ fn the_guid_is_a_uuid_in_braces() {
 }
 
 #[test]
-fn elements_come_in_the_order_of_the_schema() {
-    let text = text();
-    let order = [
-        "<CoSimulation",
-        "<UnitDefinitions",
-        "<TypeDefinitions",
-        "<LogCategories",
-        "<DefaultExperiment",
-        "<ModelVariables",
-        "<ModelStructure",
-        "<Outputs",
-        "<InitialUnknowns",
-    ];
-    let positions: Vec<_> = order.map(|element| text.find(element).expect(element)).to_vec();
-    assert!(positions.is_sorted(), "{positions:?}");
-}
-
-#[test]
 fn start_and_initial_stand_exactly_where_they_must() {
     let text = text();
     let rows: Vec<_> = text.split("<ScalarVariable ").skip(1).collect();

@@ -91,8 +91,7 @@ fn a_panic_in_clone_is_an_error() {
     let status = host.step(0.0, 1.0);
     PANIC_IN_CLONE.set(false);
     assert_survives(&host, status, "fmi2DoStep", "clone");
-    assert_eq!(host.restore(saved), fmi2Error, "there is no copy");
-    assert!(host.error().contains("is no FMU state of this instance"));
+    host.refused(host.restore(saved), "is no FMU state of this instance");
 
     let host = Host::initialized();
     host.save();
@@ -140,8 +139,7 @@ fn a_panic_in_clone_while_a_call_fails_leaves_the_error_state() {
     let status = host.try_real(COUNT_OF_VARIABLES).0;
     PANIC_IN_CLONE.set(false);
     assert_eq!(status, fmi2Error);
-    assert_eq!(host.step(0.0, 1.0), fmi2Error, "the error state");
-    assert!(host.error().contains("in state error"), "{}", host.error());
+    host.refused(host.step(0.0, 1.0), "in state error");
 }
 
 /// A host at 3 s with a state at 1 s that has its own memory, and memory for a copy that is dropped when more comes.

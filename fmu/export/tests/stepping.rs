@@ -22,9 +22,7 @@ fn steps_advance_the_model() {
 fn a_wrong_communication_point_is_an_error_that_names_both_times() {
     let host = Host::initialized();
     assert_eq!(host.step(0.0, 0.5), fmi2OK);
-    assert_eq!(host.step(0.75, 0.5), fmi2Error);
-    let message = host.error();
-    assert!(message.contains("currentCommunicationPoint = 0.75 s, but the slave is at 0.5 s"), "{message}");
+    host.refused(host.step(0.75, 0.5), "currentCommunicationPoint = 0.75 s, but the slave is at 0.5 s");
 }
 
 #[test]
@@ -70,8 +68,7 @@ fn a_communication_point_off_by_a_good_part_of_a_step_is_refused() {
         for part in [-0.5, -0.11, 0.11, 0.5, 1.0] {
             let host = Host::started(100.0, None);
             assert_eq!(host.step(100.0, size), fmi2OK);
-            assert_eq!(host.step(100.0 + (1.0 + part) * size, size), fmi2Error, "{part} of {size} s");
-            assert!(host.error().contains("currentCommunicationPoint = "));
+            host.refused(host.step(100.0 + (1.0 + part) * size, size), "currentCommunicationPoint = ");
         }
     }
 }
@@ -80,12 +77,10 @@ fn a_communication_point_off_by_a_good_part_of_a_step_is_refused() {
 fn a_step_size_that_is_no_step_is_refused() {
     for h in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
         let host = Host::started(1.0, None);
-        assert_eq!(host.step(1.0, h), fmi2Error, "{h}");
-        assert!(host.error().contains("communicationStepSize = "), "{h}");
+        host.refused(host.step(1.0, h), "communicationStepSize = ");
     }
     let host = Host::initialized();
-    assert_eq!(host.step(f64::NAN, 1.0), fmi2Error);
-    assert!(host.error().contains("currentCommunicationPoint = NaN"));
+    host.refused(host.step(f64::NAN, 1.0), "currentCommunicationPoint = NaN");
 }
 
 #[test]
@@ -94,9 +89,7 @@ fn the_stop_time_is_kept_to_within_the_tolerance() {
     for i in 0..3 {
         assert_eq!(host.step(f64::from(i) * 0.1, 0.1), fmi2OK, "0.2 + 0.1 is above 0.3 by rounding");
     }
-    assert_eq!(host.step(0.3, 0.1), fmi2Error);
-    let message = host.error();
-    assert!(message.contains("the step from 0.3 s to 0.4 s ends behind the stop time 0.3 s"), "{message}");
+    host.refused(host.step(0.3, 0.1), "the step from 0.3 s to 0.4 s ends behind the stop time 0.3 s");
 }
 
 #[test]
@@ -116,14 +109,6 @@ fn a_discarded_step_tells_how_far_it_got() {
     assert_eq!(host.restore(saved), fmi2OK);
     assert_eq!(host.step(1.0, 0.5), fmi2OK, "a smaller step after going back");
     assert_eq!(host.real_status(fmi2LastSuccessfulTime), (fmi2OK, 1.5));
-}
-
-#[test]
-fn after_a_discarded_step_another_needs_a_restored_state() {
-    let host = Host::initialized();
-    host.trouble("discard step");
-    assert_eq!(host.step(0.0, 1.0), fmi2Discard);
-    assert_eq!(host.step(0.0, 0.5), fmi2Error);
 }
 
 #[test]
@@ -164,8 +149,10 @@ fn a_status_that_is_not_there_is_discarded_and_nothing_else_happens() {
         assert_eq!(fmi2GetStringStatus(c, fmi2PendingStatus, &raw mut text), fmi2Discard);
     }
     assert_eq!(host.step(0.0, 1.0), fmi2OK);
-    assert_eq!(unsafe { fmi2GetRealStatus(c, fmi2LastSuccessfulTime, null_mut()) }, fmi2Error);
-    assert_eq!(host.error(), "fmi2GetRealStatus: argument value is NULL");
+    host.refused(
+        unsafe { fmi2GetRealStatus(c, fmi2LastSuccessfulTime, null_mut()) },
+        "fmi2GetRealStatus: argument value is NULL",
+    );
 }
 
 #[test]
@@ -189,9 +176,7 @@ fn derivatives_that_do_not_exist_are_refused() {
     ];
     for (reference, order, value, reason) in cases {
         let host = Host::initialized();
-        assert_eq!(host.set_derivative(reference, order, value), fmi2Error);
-        let message = host.error();
-        assert!(message.contains(reason), "{message}");
+        host.refused(host.set_derivative(reference, order, value), reason);
     }
     for (reference, order) in [(INTEGRAL, 0), (INTEGRAL, 2), (INPUT, 1), (COUNT, 1), (99, 1)] {
         assert_eq!(Host::initialized().output_derivative(reference, order).0, fmi2Error);

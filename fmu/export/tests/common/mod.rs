@@ -116,6 +116,14 @@ impl Host {
         line.message
     }
 
+    /// A call was refused, and the last message says why.
+    #[track_caller]
+    pub fn refused(&self, status: fmi2Status, reason: &str) {
+        assert_eq!(status, fmi2Error, "{reason}");
+        let message = self.error();
+        assert!(message.contains(reason), "{message}");
+    }
+
     /// Arms one of the failures of the toy.
     pub fn trouble(&self, what: &str) {
         fmu_host::ok(self.set_string(toy::TROUBLE, what));
