@@ -7,34 +7,37 @@ use fmu_abi::{fmi2Boolean, fmi2False};
 use super::description::{Kind, Variable};
 use super::error::{FmiError, Result, ValueError};
 use super::instance::Instance;
+use super::request::{Request, Results};
 use super::value::Value;
-
-/// Getters and setters of numbers: the lengths must agree, nothing is allocated.
-macro_rules! numbers {
-    ($($type:literal: $get:ident, $set:ident, $value:ty;)*) => { $(
-        #[doc = concat!("Reads ", $type, ". Does not allocate.")]
-        #[inline]
-        pub fn $get(&self, references: &[u32], values: &mut [$value]) -> Result<()> {
-            let name = concat!("fmi2Get", $type);
-            self.core().same_length(name, references.len(), values.len(), "values")?;
-            self.core().call(name, |slave| slave.$get(references, values))
-        }
-
-        #[doc = concat!("Writes ", $type, ". Does not allocate.")]
-        #[inline]
-        pub fn $set(&mut self, references: &[u32], values: &[$value]) -> Result<()> {
-            let name = concat!("fmi2Set", $type);
-            self.core().same_length(name, references.len(), values.len(), "values")?;
-            self.core().call(name, |slave| slave.$set(references, values))
-        }
-    )* };
-}
 
 #[allow(clippy::missing_errors_doc, reason = "the documentation of the type says when a call fails")]
 impl Instance {
-    numbers! {
-        "Real": get_real, set_real, f64;
-        "Integer": get_integer, set_integer, i32;
+    /// Reads Reals. Does not allocate.
+    #[inline]
+    pub fn get_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
+        self.core().same_length("fmi2GetReal", references.len(), values.len(), "values")?;
+        self.core().call(&Request::GetReal { references: references.into() }, Results::Reals(values))
+    }
+
+    /// Writes Reals. Does not allocate.
+    #[inline]
+    pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
+        self.core().same_length("fmi2SetReal", references.len(), values.len(), "values")?;
+        self.core().done(&Request::SetReal { references: references.into(), values: values.into() })
+    }
+
+    /// Reads Integers. Does not allocate.
+    #[inline]
+    pub fn get_integer(&self, references: &[u32], values: &mut [i32]) -> Result<()> {
+        self.core().same_length("fmi2GetInteger", references.len(), values.len(), "values")?;
+        self.core().call(&Request::GetInteger { references: references.into() }, Results::Integers(values))
+    }
+
+    /// Writes Integers. Does not allocate.
+    #[inline]
+    pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
+        self.core().same_length("fmi2SetInteger", references.len(), values.len(), "values")?;
+        self.core().done(&Request::SetInteger { references: references.into(), values: values.into() })
     }
 
     /// Gives inputs derivatives of the orders (1, 2, ...), for the FMU to extrapolate.
@@ -42,7 +45,8 @@ impl Instance {
         let name = "fmi2SetRealInputDerivatives";
         self.core().same_length(name, references.len(), orders.len(), "orders")?;
         self.core().same_length(name, references.len(), values.len(), "values")?;
-        self.core().call(name, |slave| slave.set_input_derivatives(references, orders, values))
+        let (references, orders, values) = (references.into(), orders.into(), values.into());
+        self.core().done(&Request::SetInputDerivatives { references, orders, values })
     }
 
     /// Reads derivatives of the orders (1, 2, ...) of outputs.
@@ -50,31 +54,30 @@ impl Instance {
         let name = "fmi2GetRealOutputDerivatives";
         self.core().same_length(name, references.len(), orders.len(), "orders")?;
         self.core().same_length(name, references.len(), values.len(), "values")?;
-        self.core().call(name, |slave| slave.get_output_derivatives(references, orders, values))
+        let request = Request::GetOutputDerivatives { references: references.into(), orders: orders.into() };
+        self.core().call(&request, Results::Reals(values))
     }
 
     /// Reads Booleans.
     pub fn get_boolean(&self, references: &[u32], values: &mut [bool]) -> Result<()> {
-        let name = "fmi2GetBoolean";
-        self.core().same_length(name, references.len(), values.len(), "values")?;
+        self.core().same_length("fmi2GetBoolean", references.len(), values.len(), "values")?;
         let mut numbers = vec![fmi2False; values.len()];
-        self.core().call(name, |slave| slave.get_boolean(references, &mut numbers))?;
+        self.core().call(&Request::GetBoolean { references: references.into() }, Results::Integers(&mut numbers))?;
         values.iter_mut().zip(numbers).for_each(|(value, number)| *value = number != fmi2False);
         Ok(())
     }
 
     /// Writes Booleans.
     pub fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
-        let name = "fmi2SetBoolean";
-        self.core().same_length(name, references.len(), values.len(), "values")?;
+        self.core().same_length("fmi2SetBoolean", references.len(), values.len(), "values")?;
         let numbers: Vec<_> = values.iter().map(|&value| fmi2Boolean::from(value)).collect();
-        self.core().call(name, |slave| slave.set_boolean(references, &numbers))
+        self.core().done(&Request::SetBoolean { references: references.into(), values: numbers.into() })
     }
 
     /// Reads Strings.
     pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
         let mut texts = vec![CString::default(); references.len()];
-        self.core().call("fmi2GetString", |slave| slave.get_string(references, &mut texts))?;
+        self.core().call(&Request::GetString { references: references.into() }, Results::Texts(&mut texts))?;
         Ok(texts.iter().map(|text| text.to_string_lossy().into_owned()).collect())
     }
 
@@ -83,12 +86,11 @@ impl Instance {
     /// # Errors
     /// When the slices differ in length, a text holds a zero byte, or the call fails.
     pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
-        let name = "fmi2SetString";
-        self.core().same_length(name, references.len(), values.len(), "values")?;
+        self.core().same_length("fmi2SetString", references.len(), values.len(), "values")?;
         let owned =
             |text: &&str| CString::new(*text).map_err(|_| FmiError::Text { what: "value", text: (*text).to_owned() });
         let texts = values.iter().map(owned).collect::<Result<Vec<_>>>()?;
-        self.core().call(name, |slave| slave.set_string(references, &texts))
+        self.core().done(&Request::SetString { references: references.into(), values: texts.into() })
     }
 
     /// Computes the change of `unknowns` for the change `seed` of `knowns`: `result = d unknowns / d knowns * seed`.
@@ -107,7 +109,8 @@ impl Instance {
         self.core().require(name, supported, "providesDirectionalDerivative")?;
         self.core().same_length(name, knowns.len(), seed.len(), "seeds")?;
         self.core().same_length(name, unknowns.len(), result.len(), "results")?;
-        self.core().call(name, |slave| slave.directional_derivative(unknowns, knowns, seed, result))
+        let (unknowns, knowns, seed) = (unknowns.into(), knowns.into(), seed.into());
+        self.core().call(&Request::DirectionalDerivative { unknowns, knowns, seed }, Results::Reals(result))
     }
 
     /// Sets the variable of this name from text, as a user types it: numbers, `true` or `false`, text, or the name of

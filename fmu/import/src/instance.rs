@@ -1,18 +1,19 @@
 //! An instance of an FMU: life cycle and stepping. Its variables are in `access`, its states in `state`.
 
-use std::ffi::CStr;
+use std::ffi::CString;
 use std::fmt;
 use std::mem::ManuallyDrop;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use fmu_abi::{fmi2False, fmi2Fatal, fmi2LastSuccessfulTime, fmi2Status, fmi2Terminated};
+use fmu_abi::{fmi2False, fmi2Fatal, fmi2Status};
 
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
 use super::loaded::{Code, Loaded, c_string};
 use super::logging::{Environment, LogRecord, Logging};
-use super::slave::{Arguments, Component, Loss, Plain, Slave, is_done};
+use super::request::{Request, Results};
+use super::slave::{Arguments, Component, Loss, Slave, is_done};
 
 /// A co-simulation slave. Freed on drop, unless the FMU has reported a fatal error.
 ///
@@ -26,7 +27,7 @@ pub struct Instance {
 /// The slave and all that must outlive it. Saved states hold it as well.
 pub(super) struct Core {
     loaded: Arc<Loaded>,
-    slave: ManuallyDrop<Box<dyn Slave>>,
+    slave: ManuallyDrop<Slave>,
     name: String,
     environment: Arc<Environment>,
 }
@@ -38,24 +39,30 @@ impl Core {
 
     /// Calls a function of the FMU and turns its status into a result.
     #[inline]
-    pub(super) fn call(&self, function: &'static str, call: impl FnOnce(&dyn Slave) -> fmi2Status) -> Result<()> {
+    pub(super) fn call(&self, request: &Request<'_>, results: Results<'_>) -> Result<()> {
         if self.loaded.is_dead() {
-            return Err(self.dead(function));
+            return Err(self.dead(request.function()));
         }
         let before = self.environment.count();
-        let status = call(&**self.slave);
-        if is_done(status) { Ok(()) } else { Err(self.failed(function, status, before)) }
+        let status = self.slave.call(request, results);
+        if is_done(status) { Ok(()) } else { Err(self.failed(request.function(), status, before)) }
+    }
+
+    /// Calls a function that gives nothing but its status.
+    #[inline]
+    pub(super) fn done(&self, request: &Request<'_>) -> Result<()> {
+        self.call(request, Results::None)
     }
 
     /// Asks for warnings and errors alone, in the categories that FMI 2.0 reserves for them, so that errors can say
     /// why. An FMU that declares no such category or refuses stays silent.
     fn ask_for_complaints(&self) {
-        const RESERVED: [&CStr; 4] = [c"logStatusWarning", c"logStatusDiscard", c"logStatusError", c"logStatusFatal"];
+        const RESERVED: [&str; 4] = ["logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal"];
         let declared = &self.loaded.description.log_categories;
-        let is_declared = |name: &&CStr| declared.iter().any(|it| it.as_bytes() == name.to_bytes());
-        let wanted: Vec<_> = RESERVED.into_iter().filter(is_declared).collect();
-        if !wanted.is_empty() {
-            let _ = self.call("fmi2SetDebugLogging", |slave| slave.set_debug_logging(true, &wanted));
+        let wanted = RESERVED.into_iter().filter(|name| declared.iter().any(|it| it == name));
+        let categories: Vec<_> = wanted.filter_map(|name| CString::new(name).ok()).collect();
+        if !categories.is_empty() {
+            let _ = self.done(&Request::SetDebugLogging { on: true, categories: categories.into() });
         }
     }
 
@@ -125,8 +132,9 @@ impl Instance {
         let (guid, resources) = (&loaded.guid, &loaded.resources);
         let arguments = Arguments { name: &c_name, guid, resources, debug: logging.enabled };
         let slave = match &loaded.code {
-            Code::Here { functions, .. } => Component::new(functions, &arguments, &environment)
-                .map(|component| Box::new(component) as Box<dyn Slave>),
+            Code::Here { functions, .. } => {
+                Component::new(functions, &arguments, &environment).map(|component| Slave::Here(Box::new(component)))
+            }
             Code::Isolated(pool) => pool.instantiate(&arguments, &environment)?,
         };
         let Some(slave) = slave else {
@@ -170,26 +178,22 @@ impl Instance {
 
     /// Switches debug messages on or off, for all log categories.
     pub fn set_debug_logging(&mut self, on: bool) -> Result<()> {
-        self.core.call("fmi2SetDebugLogging", |slave| slave.set_debug_logging(on, &[]))
+        self.core.done(&Request::SetDebugLogging { on, categories: [].as_slice().into() })
     }
 
     /// Announces the times of the experiment, in seconds, and the relative tolerance.
     pub fn setup_experiment(&mut self, start: f64, stop: Option<f64>, tolerance: Option<f64>) -> Result<()> {
-        self.core.call("fmi2SetupExperiment", |slave| slave.setup_experiment(tolerance, start, stop))
-    }
-
-    fn plain(&mut self, function: Plain) -> Result<()> {
-        self.core.call(function.name(), |slave| slave.plain(function))
+        self.core.done(&Request::SetupExperiment { tolerance, start, stop })
     }
 
     /// Begins the initialization.
     pub fn enter_initialization_mode(&mut self) -> Result<()> {
-        self.plain(Plain::EnterInitializationMode)
+        self.core.done(&Request::EnterInitializationMode)
     }
 
     /// Ends the initialization; stepping may begin.
     pub fn exit_initialization_mode(&mut self) -> Result<()> {
-        self.plain(Plain::ExitInitializationMode)
+        self.core.done(&Request::ExitInitializationMode)
     }
 
     /// Goes from `time` to `time + step`, in seconds.
@@ -198,7 +202,7 @@ impl Instance {
     /// When the step is discarded or fails. After a discarded one, see [`Instance::last_successful_time`].
     #[inline]
     pub fn do_step(&mut self, time: f64, step: f64) -> Result<()> {
-        self.core.call("fmi2DoStep", |slave| slave.do_step(time, step))
+        self.core.done(&Request::DoStep { time, step })
     }
 
     /// Time up to which a discarded step was carried out, s.
@@ -206,9 +210,9 @@ impl Instance {
     /// # Errors
     /// When the FMU does not know.
     pub fn last_successful_time(&self) -> Result<f64> {
-        let mut time = 0.0;
-        self.core.call("fmi2GetRealStatus", |slave| slave.real_status(fmi2LastSuccessfulTime, &mut time))?;
-        Ok(time)
+        let mut time = [0.0];
+        self.core.call(&Request::LastSuccessfulTime, Results::Reals(&mut time))?;
+        Ok(time[0])
     }
 
     /// Whether a discarded step means that the slave wants the simulation to end.
@@ -216,19 +220,19 @@ impl Instance {
     /// # Errors
     /// When the FMU does not know.
     pub fn wants_to_terminate(&self) -> Result<bool> {
-        let mut terminated = fmi2False;
-        self.core.call("fmi2GetBooleanStatus", |slave| slave.boolean_status(fmi2Terminated, &mut terminated))?;
-        Ok(terminated != fmi2False)
+        let mut terminated = [fmi2False];
+        self.core.call(&Request::Terminated, Results::Integers(&mut terminated))?;
+        Ok(terminated[0] != fmi2False)
     }
 
     /// Ends the simulation. Values can still be read.
     pub fn terminate(&mut self) -> Result<()> {
-        self.plain(Plain::Terminate)
+        self.core.done(&Request::Terminate)
     }
 
     /// Goes back to where [`super::Fmu::instantiate`] left it.
     pub fn reset(&mut self) -> Result<()> {
-        self.plain(Plain::Reset)
+        self.core.done(&Request::Reset)
     }
 }
 

@@ -35,6 +35,7 @@ pub mod isolated;
 mod library;
 mod loaded;
 mod logging;
+mod request;
 mod slave;
 mod state;
 mod suggest;

@@ -1,19 +1,18 @@
 //! Saved states of an instance.
 
 use std::fmt;
-use std::ptr;
 use std::rc::Rc;
-
-use fmu_abi::fmi2FMUstate;
 
 use super::error::{FmiError, Result};
 use super::instance::{Core, Instance};
 use super::isolated::LONGEST_STATE;
+use super::request::{Request, Results};
 
 /// A saved state, freed on drop. It keeps its instance alive, since only that can free it.
 pub struct FmuState {
     core: Rc<Core>,
-    state: fmi2FMUstate,
+    /// 0 for none.
+    state: u64,
 }
 
 impl fmt::Debug for FmuState {
@@ -24,11 +23,11 @@ impl fmt::Debug for FmuState {
 
 impl Drop for FmuState {
     fn drop(&mut self) {
-        if self.state.is_null() {
+        if self.state == 0 {
             return;
         }
         // Where the FMU has died, `call` does nothing. A state that cannot be freed is no reason to stop.
-        let _ = self.core.call("fmi2FreeFMUstate", |slave| slave.free_state(&mut self.state));
+        let _ = self.core.done(&Request::FreeState { state: self.state });
     }
 }
 
@@ -38,7 +37,7 @@ impl Instance {
     /// # Errors
     /// When the FMU does not declare `canGetAndSetFMUstate`, or the call fails.
     pub fn save_state(&self) -> Result<FmuState> {
-        let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
+        let mut state = FmuState { core: Rc::clone(self.core()), state: 0 };
         self.save_state_into(&mut state)?;
         Ok(state)
     }
@@ -51,7 +50,7 @@ impl Instance {
         let name = "fmi2GetFMUstate";
         self.require_state(name)?;
         self.require_own(name, state)?;
-        self.core().call(name, |slave| slave.get_state(&mut state.state))
+        self.core().call(&Request::GetState { state: state.state }, Results::Number(&mut state.state))
     }
 
     /// Goes back to a saved state.
@@ -62,7 +61,7 @@ impl Instance {
         let name = "fmi2SetFMUstate";
         self.require_state(name)?;
         self.require_own(name, state)?;
-        self.core().call(name, |slave| slave.set_state(state.state))
+        self.core().done(&Request::SetState { state: state.state })
     }
 
     /// Turns a saved state into bytes.
@@ -75,10 +74,9 @@ impl Instance {
         self.require_serialization(name)?;
         self.require_own(name, state)?;
         let mut size = 0;
-        self.core().call("fmi2SerializedFMUstateSize", |slave| slave.state_size(state.state, &mut size))?;
-        self.check_size(name, size)?;
-        let mut bytes = vec![0; size];
-        self.core().call(name, |slave| slave.serialize_state(state.state, &mut bytes))?;
+        self.core().call(&Request::StateSize { state: state.state }, Results::Number(&mut size))?;
+        let mut bytes = vec![0; self.checked_size(name, size)?];
+        self.core().call(&Request::SerializeState { state: state.state, size }, Results::Bytes(&mut bytes))?;
         Ok(bytes)
     }
 
@@ -89,9 +87,9 @@ impl Instance {
     pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let name = "fmi2DeSerializeFMUstate";
         self.require_serialization(name)?;
-        self.check_size(name, bytes.len())?;
-        let mut state = FmuState { core: Rc::clone(self.core()), state: ptr::null_mut() };
-        self.core().call(name, |slave| slave.deserialize_state(bytes, &mut state.state))?;
+        self.checked_size(name, bytes.len() as u64)?;
+        let mut state = FmuState { core: Rc::clone(self.core()), state: 0 };
+        self.core().call(&Request::DeserializeState { bytes: bytes.into() }, Results::Number(&mut state.state))?;
         Ok(state)
     }
 
@@ -105,9 +103,10 @@ impl Instance {
         self.core().require(function, supported, "canSerializeFMUstate")
     }
 
-    fn check_size(&self, function: &'static str, found: usize) -> Result<()> {
+    fn checked_size(&self, function: &'static str, size: u64) -> Result<usize> {
+        let found = usize::try_from(size).unwrap_or(usize::MAX);
         let (instance, allowed) = (self.name().to_owned(), LONGEST_STATE);
-        if found <= allowed { Ok(()) } else { Err(FmiError::StateSize { function, instance, found, allowed }) }
+        if found <= allowed { Ok(found) } else { Err(FmiError::StateSize { function, instance, found, allowed }) }
     }
 
     fn require_own(&self, function: &'static str, state: &FmuState) -> Result<()> {

@@ -60,14 +60,10 @@ impl Pool {
     }
 
     /// Makes an instance in a worker of its own; none if the FMU refuses.
-    pub fn instantiate(
-        &self,
-        arguments: &Arguments<'_>,
-        environment: &Arc<Environment>,
-    ) -> Result<Option<Box<dyn Slave>>> {
+    pub fn instantiate(&self, arguments: &Arguments<'_>, environment: &Arc<Environment>) -> Result<Option<Slave>> {
         let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
         let process = spare.map_or_else(|| self.start(), Ok)?;
         let remote = Remote::new(process, (&self.path, self.isolation.bounds), arguments, environment);
-        Ok(remote.map_err(FmiError::Isolated)?.map(|remote| Box::new(remote) as Box<dyn Slave>))
+        Ok(remote.map_err(FmiError::Isolated)?.map(|remote| Slave::Isolated(Box::new(remote))))
     }
 }

@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 use super::bounds::WORKER_VERB;
 use super::ending::How;
 use super::pipes::{Heard, Pipes};
-use super::protocol::{Given, Opening, Reply, Request, SPARE, build, frame, unframe};
+use super::protocol::{Given, Opening, Reply, SPARE, build, frame, longest_answer, unframe};
 use crate::logging::LogRecord;
+use crate::request::Request;
 use videg_system::processes::ProcessGroup;
 
 /// Polling interval for the end of a silent worker: a child of it may hold its pipes open.
@@ -63,13 +64,13 @@ impl Process {
     /// records on the way. After an error the worker is gone.
     pub fn call(
         &mut self,
-        request: &Request,
+        request: &Request<'_>,
         limit: Option<Duration>,
         log: impl FnMut(LogRecord),
     ) -> Result<(i32, Given), How> {
         self.calls += 1;
         let framed = frame(&(self.calls, request));
-        match self.ask(framed, request.longest_answer(), &mut Deadline::after(limit), log)? {
+        match self.ask(framed, longest_answer(request), &mut Deadline::after(limit), log)? {
             Reply::Done { call, status, given } if call == self.calls => Ok((status, given)),
             Reply::Done { call, .. } => {
                 Err(self.end(How::Garbled(format!("the answer to call {call} in answer to call {}", self.calls))))

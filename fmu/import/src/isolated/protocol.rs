@@ -6,7 +6,7 @@ use std::io::{self, Read, Write};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::logging::LogRecord;
-use crate::slave::Plain;
+use crate::request::{Request, Results};
 
 /// Largest serialised state that is passed on, bytes.
 pub(crate) const LONGEST_STATE: usize = 256 << 20;
@@ -22,7 +22,7 @@ const HEAD: usize = 4;
 /// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
 pub(super) fn build() -> String {
     let sources =
-        [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs"), include_bytes!("../slave.rs")];
+        [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs"), include_bytes!("../request.rs")];
     // FNV-1a
     let hash = sources
         .concat()
@@ -45,54 +45,21 @@ pub(super) struct Opening {
 }
 
 /// Each further message to the worker: a request and the number of the call, from 1 on.
-pub(super) type Call = (u64, Request);
+pub(super) type Call = (u64, Request<'static>);
 
-/// What is asked for. States go by numbers from 1 on; 0 is none.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) enum Request {
-    Instantiate { name: CString, guid: CString, resources: CString, debug: bool },
-    Free,
-    Unload, // the library
-    SetDebugLogging { on: bool, categories: Vec<CString> },
-    SetupExperiment { tolerance: Option<f64>, start: f64, stop: Option<f64> },
-    Plain(Plain),
-    DoStep { time: f64, step: f64 },
-    GetReal { references: Vec<u32> },
-    GetInteger { references: Vec<u32> },
-    GetBoolean { references: Vec<u32> },
-    GetString { references: Vec<u32> },
-    SetReal { references: Vec<u32>, values: Vec<f64> },
-    SetInteger { references: Vec<u32>, values: Vec<i32> },
-    SetBoolean { references: Vec<u32>, values: Vec<i32> },
-    SetString { references: Vec<u32>, values: Vec<CString> },
-    SetInputDerivatives { references: Vec<u32>, orders: Vec<i32>, values: Vec<f64> },
-    GetOutputDerivatives { references: Vec<u32>, orders: Vec<i32> },
-    DirectionalDerivative { unknowns: Vec<u32>, knowns: Vec<u32>, seed: Vec<f64> },
-    GetState { state: u64 },
-    SetState { state: u64 },
-    FreeState { state: u64 },
-    StateSize { state: u64 },
-    SerializeState { state: u64, size: u64 },
-    DeserializeState { bytes: Vec<u8> },
-    RealStatus { kind: i32 },
-    BooleanStatus { kind: i32 },
-}
-
-impl Request {
-    /// Longest answer, bytes.
-    pub fn longest_answer(&self) -> usize {
-        let values = match self {
-            Self::GetReal { references }
-            | Self::GetInteger { references }
-            | Self::GetBoolean { references }
-            | Self::GetOutputDerivatives { references, .. } => 8 * references.len(),
-            Self::DirectionalDerivative { unknowns, .. } => 8 * unknowns.len(),
-            Self::GetString { .. } => LONGEST_TEXTS,
-            Self::SerializeState { size, .. } => usize::try_from(*size).unwrap_or(LONGEST_STATE),
-            _ => 0,
-        };
-        values.saturating_add(SPARE).min(LONGEST)
-    }
+/// Longest answer to a request, bytes.
+pub(super) fn longest_answer(request: &Request<'_>) -> usize {
+    let values = match request {
+        Request::GetReal { references }
+        | Request::GetInteger { references }
+        | Request::GetBoolean { references }
+        | Request::GetOutputDerivatives { references, .. } => 8 * references.len(),
+        Request::DirectionalDerivative { unknowns, .. } => 8 * unknowns.len(),
+        Request::GetString { .. } => LONGEST_TEXTS,
+        Request::SerializeState { size, .. } => usize::try_from(*size).unwrap_or(LONGEST_STATE),
+        _ => 0,
+    };
+    values.saturating_add(SPARE).min(LONGEST)
 }
 
 /// Each message from the worker.
@@ -145,25 +112,31 @@ impl Given {
         Self::Texts(texts.into_iter().flat_map(CString::into_bytes_with_nul).collect())
     }
 
-    pub fn into_reals(self) -> Option<Vec<f64>> {
-        if let Self::Reals(values) = self { Some(values) } else { None }
-    }
-
-    pub fn into_integers(self) -> Option<Vec<i32>> {
-        let Self::Integers(values) = self else { return None };
-        Some(values.into_iter().map(i32::from_le_bytes).collect())
-    }
-
-    pub fn into_bytes(self) -> Option<Vec<u8>> {
-        if let Self::Bytes(bytes) = self { Some(bytes) } else { None }
-    }
-
-    /// The texts, if there are `count` and none is cut: memory is taken for as many as were asked for.
-    pub fn into_texts(self, count: usize) -> Option<Vec<CString>> {
-        let Self::Texts(bytes) = self else { return None };
-        let texts = || bytes.split_inclusive(|&byte| byte == 0).map(|text| CStr::from_bytes_with_nul(text).ok());
-        let is_whole = texts().count() == count && texts().all(|text| text.is_some());
-        is_whole.then(|| texts().flatten().map(CStr::to_owned).collect())
+    /// Puts the values into `results`; whether they are of its kind, and as many.
+    pub fn put(self, results: Results<'_>) -> bool {
+        fn fill<T>(into: &mut [T], values: impl ExactSizeIterator<Item = T>) -> bool {
+            let fits = values.len() == into.len();
+            into.iter_mut().zip(values).for_each(|(place, value)| *place = value);
+            fits
+        }
+        match (results, self) {
+            (Results::None, _) => true,
+            (Results::Reals(into), Self::Reals(values)) => fill(into, values.into_iter()),
+            (Results::Integers(into), Self::Integers(values)) => fill(into, values.into_iter().map(i32::from_le_bytes)),
+            (Results::Bytes(into), Self::Bytes(bytes)) => fill(into, bytes.into_iter()),
+            (Results::Texts(into), Self::Texts(bytes)) => {
+                // Memory is taken for as many as were asked for, if none is cut.
+                let texts = || bytes.split_inclusive(|&byte| byte == 0).map(CStr::from_bytes_with_nul);
+                let fits = texts().count() == into.len() && texts().all(|text| text.is_ok());
+                into.iter_mut().zip(texts().flatten()).for_each(|(place, text)| text.clone_into(place));
+                fits
+            }
+            (Results::Number(into), Self::Number(number)) => {
+                *into = number;
+                true
+            }
+            _ => false,
+        }
     }
 }
 
@@ -255,15 +228,15 @@ mod tests {
 
     #[test]
     fn an_answer_may_be_as_long_as_its_call_lets_it() {
-        let references = vec![0; 1000];
+        let references = [0_u32; 1000];
         let reals = Given::Reals(vec![f64::MIN_POSITIVE; 1000]);
         let integers = || Given::integers(vec![i32::MIN; 1000]);
         let answer = |given| frame(&Reply::Done { call: u64::MAX, status: i32::MIN, given }).unwrap();
-        let is_taken = |mut bytes, request: Request| {
-            unframe::<Reply>(&mut bytes, request.longest_answer()).is_ok_and(|reply| reply.is_some())
+        let is_taken = |mut bytes, request: Request<'_>| {
+            unframe::<Reply>(&mut bytes, longest_answer(&request)).is_ok_and(|reply| reply.is_some())
         };
-        assert!(is_taken(answer(reals), Request::GetReal { references: references.clone() }));
-        assert!(is_taken(answer(integers()), Request::GetBoolean { references }));
+        assert!(is_taken(answer(reals), Request::GetReal { references: references[..].into() }));
+        assert!(is_taken(answer(integers()), Request::GetBoolean { references: references[..].into() }));
         let state = |size| answer(Given::Bytes(vec![0xff; size]));
         assert!(is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 20 }));
         assert!(!is_taken(state(1 << 20), Request::SerializeState { state: 1, size: 1 << 10 }));
@@ -284,12 +257,21 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_are_cut_or_of_another_number_are_none() {
+    fn values_of_another_kind_or_number_and_cut_texts_are_none() {
         let texts = vec![c"one".to_owned(), CString::default(), c"three".to_owned()];
-        assert_eq!(Given::texts(texts.clone()).into_texts(3), Some(texts.clone()));
-        assert_eq!(Given::texts(texts).into_texts(2), None);
-        assert_eq!(Given::texts(Vec::new()).into_texts(0), Some(Vec::new()));
-        assert_eq!(Given::Texts(b"one\0tw".to_vec()).into_texts(2), None);
+        let mut found = vec![CString::default(); 3];
+        assert!(Given::texts(texts.clone()).put(Results::Texts(&mut found)));
+        assert_eq!(found, texts);
+        assert!(Given::texts(Vec::new()).put(Results::Texts(&mut [])));
+        for (given, results) in [
+            (Given::texts(texts), Results::Texts(&mut found[..2])),
+            (Given::Texts(b"one\0tw".to_vec()), Results::Texts(&mut [CString::default(), CString::default()])),
+            (Given::Reals(vec![1.0]), Results::Reals(&mut [0.0; 2])),
+            (Given::Reals(vec![1.0]), Results::Integers(&mut [0])),
+            (Given::Nothing, Results::Number(&mut 0)),
+        ] {
+            assert!(!given.put(results));
+        }
     }
 
     #[cfg(unix)]

@@ -2,15 +2,15 @@
 
 use std::collections::HashMap;
 use std::ffi::CString;
-use std::ptr;
 use std::sync::Arc;
 
-use fmu_abi::{fmi2Error, fmi2FMUstate, fmi2False, fmi2OK, fmi2Status};
+use fmu_abi::{fmi2Error, fmi2OK, fmi2Status};
 
-use super::protocol::{Given, LONGEST_STATE, Request};
+use super::protocol::{Given, LONGEST_STATE};
 use crate::library::Functions;
 use crate::logging::Environment;
-use crate::slave::{Arguments, Component, Slave as _, is_done};
+use crate::request::{Request, Results};
+use crate::slave::{Arguments, Component, is_done};
 
 /// The result of a call: its status, and what else it gave.
 type Answer = (fmi2Status, Given);
@@ -22,7 +22,8 @@ pub(super) struct Session {
     functions: Functions,
     environment: Arc<Environment>,
     component: Option<Component>,
-    states: HashMap<u64, fmi2FMUstate>,
+    /// Addresses of states by their numbers.
+    states: HashMap<u64, u64>,
     last_state: u64,
 }
 
@@ -32,102 +33,69 @@ impl Session {
     }
 
     /// Carries out a call. Without an instance, and with a state that there is not, it is an error.
-    pub fn answer(&mut self, request: Request) -> Answer {
-        if let Request::Instantiate { name, guid, resources, debug } = &request {
-            let arguments = Arguments { name, guid, resources, debug: *debug };
-            self.component = Component::new(&self.functions, &arguments, &self.environment);
-            return (fmi2OK, Given::Number(self.component.is_some().into()));
-        }
-        let Some(component) = &self.component else { return ERROR };
-        let plain = |status| (status, Given::Nothing);
-        match request {
+    pub fn answer(&mut self, mut request: Request<'_>) -> Answer {
+        match &request {
+            Request::Instantiate { name, guid, resources, debug } => {
+                let arguments = Arguments { name, guid, resources, debug: *debug };
+                self.component = Component::new(&self.functions, &arguments, &self.environment);
+                return (fmi2OK, Given::Number(self.component.is_some().into()));
+            }
             Request::Free => {
                 self.component = None;
-                plain(fmi2OK)
+                return (fmi2OK, Given::Nothing);
             }
-            Request::Plain(function) => plain(component.plain(function)),
-            Request::SetDebugLogging { on, categories } => {
-                plain(component.set_debug_logging(on, &categories.iter().map(CString::as_c_str).collect::<Vec<_>>()))
-            }
-            Request::SetupExperiment { tolerance, start, stop } => {
-                plain(component.setup_experiment(tolerance, start, stop))
-            }
-            Request::DoStep { time, step } => plain(component.do_step(time, step)),
-            Request::SetReal { references, values } => plain(component.set_real(&references, &values)),
-            Request::SetInteger { references, values } => plain(component.set_integer(&references, &values)),
-            Request::SetBoolean { references, values } => plain(component.set_boolean(&references, &values)),
-            Request::SetString { references, values } => plain(component.set_string(&references, &values)),
-            Request::SetInputDerivatives { references, orders, values } => {
-                plain(component.set_input_derivatives(&references, &orders, &values))
-            }
-            Request::GetReal { references } => {
-                given(vec![0.0; references.len()], Given::Reals, |to| component.get_real(&references, to))
-            }
-            Request::GetInteger { references } => {
-                given(vec![0; references.len()], Given::integers, |to| component.get_integer(&references, to))
-            }
-            Request::GetBoolean { references } => {
-                given(vec![0; references.len()], Given::integers, |to| component.get_boolean(&references, to))
-            }
-            Request::GetString { references } => {
-                given(vec![CString::default(); references.len()], Given::texts, |to| {
-                    component.get_string(&references, to)
-                })
-            }
-            Request::GetOutputDerivatives { references, orders } => {
-                given(vec![0.0; references.len()], Given::Reals, |to| {
-                    component.get_output_derivatives(&references, &orders, to)
-                })
-            }
-            Request::DirectionalDerivative { unknowns, knowns, seed } => {
-                given(vec![0.0; unknowns.len()], Given::Reals, |to| {
-                    component.directional_derivative(&unknowns, &knowns, &seed, to)
-                })
-            }
-            Request::RealStatus { kind } => {
-                given(0.0, |it| Given::Reals(vec![it]), |to| component.real_status(kind, to))
-            }
-            Request::BooleanStatus { kind } => {
-                given(fmi2False, |it| Given::integers(vec![it]), |to| component.boolean_status(kind, to))
-            }
-            Request::GetState { state } => {
-                let Some(mut pointer) = self.pointer(state) else { return ERROR };
-                (component.get_state(&mut pointer), self.keep(state, pointer))
-            }
-            Request::DeserializeState { bytes } => {
-                let mut pointer = ptr::null_mut();
-                (component.deserialize_state(&bytes, &mut pointer), self.keep(0, pointer))
-            }
-            Request::SetState { state } => self.pointer(state).map_or(ERROR, |it| plain(component.set_state(it))),
-            Request::FreeState { state } => {
-                self.states.remove(&state).map_or(ERROR, |mut pointer| plain(component.free_state(&mut pointer)))
-            }
-            Request::StateSize { state } => {
-                let (Some(pointer), mut size) = (self.pointer(state), 0) else { return ERROR };
-                (component.state_size(pointer, &mut size), Given::Number(size as u64))
-            }
-            Request::SerializeState { state, size } => {
-                let size = usize::try_from(size).ok().filter(|&size| size <= LONGEST_STATE);
-                let (Some(pointer), Some(size)) = (self.pointer(state), size) else { return ERROR };
-                given(vec![0; size], Given::Bytes, |to| component.serialize_state(pointer, to))
-            }
-            Request::Instantiate { .. } | Request::Unload => ERROR,
+            _ => {}
         }
-    }
-
-    /// The state of a number; NULL for none.
-    fn pointer(&self, state: u64) -> Option<fmi2FMUstate> {
-        if state == 0 { Some(ptr::null_mut()) } else { self.states.get(&state).copied() }
+        let Some(component) = &self.component else { return ERROR };
+        let mut number = 0;
+        if let Some(state) = request.state().filter(|state| **state != 0) {
+            number = *state;
+            let Some(address) = self.states.get(&number) else { return ERROR };
+            *state = *address;
+        }
+        let request = &request;
+        let call = |results: Results<'_>| component.call(request, results);
+        match request {
+            Request::GetReal { references: of } | Request::GetOutputDerivatives { references: of, .. } => {
+                given(vec![0.0; of.len()], Given::Reals, |to| call(Results::Reals(to)))
+            }
+            Request::DirectionalDerivative { unknowns: of, .. } => {
+                given(vec![0.0; of.len()], Given::Reals, |to| call(Results::Reals(to)))
+            }
+            Request::LastSuccessfulTime => given(vec![0.0], Given::Reals, |to| call(Results::Reals(to))),
+            Request::GetInteger { references: of } | Request::GetBoolean { references: of } => {
+                given(vec![0; of.len()], Given::integers, |to| call(Results::Integers(to)))
+            }
+            Request::Terminated => given(vec![0], Given::integers, |to| call(Results::Integers(to))),
+            Request::GetString { references: of } => {
+                given(vec![CString::default(); of.len()], Given::texts, |to| call(Results::Texts(to)))
+            }
+            Request::SerializeState { size, .. } => match usize::try_from(*size) {
+                Ok(size @ ..=LONGEST_STATE) => given(vec![0; size], Given::Bytes, |to| call(Results::Bytes(to))),
+                _ => ERROR,
+            },
+            Request::StateSize { .. } => given(0, Given::Number, |to| call(Results::Number(to))),
+            Request::GetState { .. } | Request::DeserializeState { .. } => {
+                let mut address = 0;
+                let status = call(Results::Number(&mut address));
+                (status, self.keep(number, address))
+            }
+            Request::FreeState { .. } => {
+                self.states.remove(&number);
+                if number == 0 { ERROR } else { (call(Results::None), Given::Nothing) }
+            }
+            _ => (call(Results::None), Given::Nothing),
+        }
     }
 
     /// Keeps a state under its number, or under a new one.
-    fn keep(&mut self, state: u64, pointer: fmi2FMUstate) -> Given {
-        if pointer.is_null() {
+    fn keep(&mut self, state: u64, address: u64) -> Given {
+        if address == 0 {
             return Given::Number(0);
         }
         let number = if state == 0 { self.last_state + 1 } else { state };
         self.last_state = self.last_state.max(number);
-        self.states.insert(number, pointer);
+        self.states.insert(number, address);
         Given::Number(number)
     }
 }

@@ -5,10 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use fmu_abi::fmi2OK;
 
-use super::protocol::{Call, Given, Opening, Reply, Request, build, receive, send};
+use super::protocol::{Call, Given, Opening, Reply, build, receive, send};
 use super::session::Session;
 use crate::library;
 use crate::logging::Environment;
+use crate::request::Request;
 
 /// Serves one instance: reads calls from `requests`, answers on `replies`, and returns when the other side has closed.
 ///
