@@ -113,5 +113,6 @@ fn exact((low, high): Point, log: bool, ticks: usize) -> Option<Axis> {
 }
 
 fn bad_range(panel: &str, axis: &'static str, (low, high): Point) -> ReportError {
-    ReportError::InvalidRange { panel: panel.to_owned(), axis, low, high }
+    let reason = format!("{axis} range {low} to {high} is not a finite, ascending interval");
+    ReportError::Panel { panel: panel.to_owned(), reason }
 }

@@ -7,84 +7,86 @@ const WIDTHS: (f64, f64) = (200.0, 4000.0);
 const HEIGHTS: (f64, f64) = (30.0, 2000.0);
 const COLUMNS: usize = 6;
 
-pub(super) fn check(figure: &Figure) -> Result<(), ReportError> {
+type Result = std::result::Result<(), String>;
+
+pub(super) fn check(figure: &Figure) -> std::result::Result<(), ReportError> {
+    let refuse = |reason| Err(ReportError::Figure { figure: figure.title.clone(), reason });
     if figure.panels.is_empty() {
-        return Err(ReportError::NoPanels { figure: figure.title.clone() });
+        return refuse("has no panels".to_owned());
     }
     if !(1..=COLUMNS).contains(&figure.columns) {
-        let (figure, columns) = (figure.title.clone(), figure.columns);
-        return Err(ReportError::InvalidColumns { figure, columns, max: COLUMNS });
+        return refuse(format!("has {} columns, allowed are 1 to {COLUMNS}", figure.columns));
     }
     check_size("figure width", figure.width, WIDTHS)?;
-    figure.panels.iter().try_for_each(check_panel)
+    figure.panels.iter().try_for_each(|panel| {
+        check_height(panel, panel.height)?;
+        check_panel(panel).map_err(|reason| ReportError::Panel { panel: panel.title.clone(), reason })
+    })
 }
 
 /// Heights that follow from the data are known once the figure is laid out.
-pub(super) fn check_height(panel: &Panel, height: f64) -> Result<(), ReportError> {
+pub(super) fn check_height(panel: &Panel, height: f64) -> std::result::Result<(), ReportError> {
     check_size(&format!("height of panel `{}`", panel.title), height, HEIGHTS)
 }
 
-fn check_panel(panel: &Panel) -> Result<(), ReportError> {
-    check_height(panel, panel.height)?;
+fn check_panel(panel: &Panel) -> Result {
     for series in &panel.series {
         let (xs, ys) = series.data.lengths();
         if xs != ys {
-            let (panel, series) = (panel.title.clone(), series.label.clone());
-            return Err(ReportError::LengthMismatch { panel, series, xs, ys });
+            return Err(format!("series `{}`: {xs} x values for {ys} y values", series.label));
         }
     }
     if let Some(line) = panel.lines.iter().find(|line| !line.value.is_finite()) {
-        let (panel, line, value) = (panel.title.clone(), line.label.clone(), line.value);
-        return Err(ReportError::InvalidLine { panel, line, value });
+        return Err(format!("reference line `{}` at {} is not finite", line.label, line.value));
     }
     if panel.equal_aspect && (panel.log_x || panel.log_y) {
-        return Err(ReportError::LogToScale { panel: panel.title.clone() });
+        return Err("a drawing to scale has no logarithmic axes".to_owned());
     }
-    panel.map.iter().try_for_each(|map| check_map(panel, map))?;
+    panel.map.iter().try_for_each(check_map)?;
     check_limits(panel)?;
     check_logarithms(panel)
 }
 
-fn check_map(panel: &Panel, map: &HeatMap) -> Result<(), ReportError> {
+fn check_map(map: &HeatMap) -> Result {
     let (columns, rows, values) = (map.xs.len(), map.ys.len(), map.values.len());
     if columns == 0 || rows == 0 || columns.checked_mul(rows) != Some(values) {
-        return Err(ReportError::MapSize { panel: panel.title.clone(), columns, rows, values });
+        return Err(format!("{values} values for a map of {columns} x {rows} cells"));
     }
-    check_ascending(panel, "x of the map", map.xs)?;
-    check_ascending(panel, "y of the map", map.ys)?;
+    check_ascending("x of the map", map.xs)?;
+    check_ascending("y of the map", map.ys)?;
     let Scale::Kinds(names) = &map.scale else { return Ok(()) };
-    let known = |value: f64| value.is_nan() || (value >= 0.0 && value < names.len() as f64 && value.fract() == 0.0);
+    let kinds = names.len();
+    let known = |value: f64| value.is_nan() || (value >= 0.0 && value < kinds as f64 && value.fract() == 0.0);
     match map.values.iter().find(|&&value| !known(value)) {
-        Some(&value) => Err(ReportError::UnknownKind { panel: panel.title.clone(), value, kinds: names.len() }),
+        Some(value) => Err(format!("{value} is none of the {kinds} kinds of the map, which count from 0")),
         None => Ok(()),
     }
 }
 
-fn check_limits(panel: &Panel) -> Result<(), ReportError> {
+fn check_limits(panel: &Panel) -> Result {
     for band in &panel.bands {
         let finite = band.limits.iter().map(|limit| limit.0).filter(|x| x.is_finite());
-        check_ascending(panel, &format!("x of band `{}`", band.label), &finite.collect::<Vec<f64>>())?;
+        check_ascending(&format!("x of band `{}`", band.label), &finite.collect::<Vec<f64>>())?;
     }
     let limits = panel.bands.iter().map(|band| band.limits).chain(panel.bars.iter().map(|bars| bars.limits));
     match limits.flatten().find(|(_, low, high)| low > high) {
-        Some(&(x, low, high)) => Err(ReportError::InvalidLimits { panel: panel.title.clone(), x, low, high }),
+        Some((x, low, high)) => Err(format!("limits {low} to {high} at x = {x} are in the wrong order")),
         None => Ok(()),
     }
 }
 
-fn check_ascending(panel: &Panel, what: &str, values: &[f64]) -> Result<(), ReportError> {
-    let finite = values.iter().find(|value| !value.is_finite()).map(|&value| (value, value));
-    let descent = values.windows(2).find(|pair| pair[0] >= pair[1]).map(|pair| (pair[0], pair[1]));
-    match finite.or(descent) {
+fn check_ascending(what: &str, values: &[f64]) -> Result {
+    let gap = values.iter().find(|value| !value.is_finite()).map(|value| (value, value));
+    let descent = values.windows(2).find(|pair| pair[0] >= pair[1]).map(|pair| (&pair[0], &pair[1]));
+    match gap.or(descent) {
         Some((before, after)) => {
-            let (panel, what) = (panel.title.clone(), what.to_owned());
-            Err(ReportError::NotAscending { panel, what, before, after })
+            Err(format!("{what}: {after} follows {before}, but the values must be finite and ascend"))
         }
         None => Ok(()),
     }
 }
 
-fn check_logarithms(panel: &Panel) -> Result<(), ReportError> {
+fn check_logarithms(panel: &Panel) -> Result {
     let limits = || panel.bands.iter().map(|b| b.limits).chain(panel.bars.iter().map(|b| b.limits)).flatten();
     let points = || panel.series.iter().flat_map(|series| series.data.iter());
     let cells = panel.map.as_ref();
@@ -104,14 +106,14 @@ fn check_logarithms(panel: &Panel) -> Result<(), ReportError> {
     } else {
         return Ok(());
     };
-    Err(ReportError::NoLogarithm { panel: panel.title.clone(), axis })
+    Err(format!("no value on the logarithmic {axis} axis is above 0, or a cell of the map is not"))
 }
 
-fn check_size(what: &str, value: f64, (min, max): (f64, f64)) -> Result<(), ReportError> {
+fn check_size(what: &str, value: f64, (min, max): (f64, f64)) -> std::result::Result<(), ReportError> {
     if (min..=max).contains(&value) {
         return Ok(());
     }
-    Err(ReportError::InvalidSize { what: what.to_owned(), value, min, max })
+    Err(ReportError::Size { what: what.to_owned(), value: format!("{value} px"), min, max })
 }
 
 #[cfg(test)]

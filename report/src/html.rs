@@ -33,7 +33,10 @@ struct Page<'a> {
 /// that leads nowhere.
 pub fn render_html(report: &Report) -> Result<String, ReportError> {
     let ids = section_ids(report)?;
-    report.sections.iter().try_for_each(|section| check(section, &ids))?;
+    report.sections.iter().try_for_each(|section| {
+        let section_error = |reason| ReportError::Section { section: section.heading.clone(), reason };
+        check(section, &ids).map_err(section_error)
+    })?;
     let has_charts = report.sections.iter().flat_map(|section| &section.figures).any(|figure| figure.chart.is_some());
     let scripts = has_charts.then(|| (CHART_LIBRARY.as_str(), PAGE_SCRIPT));
     let page = Page { report, ids: &ids, style: include_str!("page.css"), policy: policy(has_charts), scripts };
@@ -47,36 +50,32 @@ fn section_ids(report: &Report) -> Result<Vec<String>, ReportError> {
         let id = if section.id.is_empty() { format!("section-{number}") } else { section.id.clone() };
         let is_name = id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "._-".contains(c));
         if !is_name || id == "chart-library" || ids.contains(&id) {
-            return Err(ReportError::InvalidId { section: section.heading.clone(), id });
+            let reason = format!("id `{id}` is taken, or has more than small letters, digits, `.`, `-` and `_`");
+            return Err(ReportError::Section { section: section.heading.clone(), reason });
         }
         ids.push(id);
     }
     Ok(ids)
 }
 
-fn check(section: &Section, ids: &[String]) -> Result<(), ReportError> {
-    section.tables.iter().try_for_each(|table| check_table(&section.heading, table, ids))?;
-    for figure in &section.figures {
-        let broken = |chart: &String| serde_json::from_str::<IgnoredAny>(chart).is_err();
-        let reason = fault(&figure.svg).or_else(|| {
-            figure.chart.as_ref().filter(|chart| broken(chart)).map(|_| "the data of its chart are not JSON")
-        });
-        if let Some(reason) = reason {
-            return Err(ReportError::UnsafeFigure { section: section.heading.clone(), reason });
-        }
-    }
-    Ok(())
+fn check(section: &Section, ids: &[String]) -> Result<(), String> {
+    section.tables.iter().try_for_each(|table| check_table(table, ids))?;
+    let faulty = section.figures.iter().find_map(|figure| {
+        let is_json = |chart: &String| serde_json::from_str::<IgnoredAny>(chart).is_ok();
+        let has_data = figure.chart.as_ref().is_none_or(is_json);
+        fault(&figure.svg).or((!has_data).then_some("the data of its chart are not JSON"))
+    });
+    faulty.map_or(Ok(()), |reason| Err(format!("the figure is not a passive SVG element ({reason})")))
 }
 
-fn check_table(section: &str, table: &Table, ids: &[String]) -> Result<(), ReportError> {
-    let expected = table.columns.len();
-    if let Some((row, number)) = table.rows.iter().zip(1..).find(|(row, _)| row.len() != expected) {
-        let (section, found) = (section.to_owned(), row.len());
-        return Err(ReportError::RaggedTable { section, row: number, found, expected });
+fn check_table(table: &Table, ids: &[String]) -> Result<(), String> {
+    let columns = table.columns.len();
+    if let Some((row, number)) = table.rows.iter().zip(1..).find(|(row, _)| row.len() != columns) {
+        return Err(format!("table row {number} has {} cells for {columns} columns", row.len()));
     }
     let mut targets = table.rows.iter().flatten().filter_map(|cell| cell.target.as_ref());
     match targets.find(|target| !ids.contains(target)) {
-        Some(target) => Err(ReportError::BrokenLink { section: section.to_owned(), target: target.clone() }),
+        Some(target) => Err(format!("a link leads to `{target}`, but no section has this id")),
         None => Ok(()),
     }
 }

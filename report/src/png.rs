@@ -30,7 +30,7 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 pub fn render_png(svg: &str, scale: f64) -> Result<Vec<u8>, ReportError> {
     if !(SCALES.0..=SCALES.1).contains(&scale) {
         let (what, (min, max)) = ("pixels for each px".to_owned(), SCALES);
-        return Err(ReportError::InvalidScale { what, value: scale, min, max });
+        return Err(ReportError::Size { what, value: scale.to_string(), min, max });
     }
     let options = Options { fontdb: Arc::clone(&FONTS), font_family: "Noto Sans".to_owned(), ..Options::default() };
     // Noto Sans has no superscript minus; a macron looks the same.
@@ -38,8 +38,8 @@ pub fn render_png(svg: &str, scale: f64) -> Result<Vec<u8>, ReportError> {
     let tree = Tree::from_str(&svg, &options).map_err(|error| failed(&error.to_string()))?;
     let (width, height) = (f64::from(tree.size().width()) * scale, f64::from(tree.size().height()) * scale);
     if width * height > LARGEST {
-        let (what, value) = ("number of pixels".to_owned(), width * height);
-        return Err(ReportError::InvalidScale { what, value, min: 1.0, max: LARGEST });
+        let (what, value) = ("number of pixels".to_owned(), (width * height).to_string());
+        return Err(ReportError::Size { what, value, min: 1.0, max: LARGEST });
     }
     let mut pixels = Pixmap::new(rounded(width), rounded(height)).ok_or_else(|| failed("it has no size"))?;
     pixels.fill(Color::WHITE);
