@@ -9,7 +9,7 @@ use zip::read::ZipFile;
 use zip::result::ZipError;
 
 use super::description::ModelDescription;
-use super::error::{DescriptionError, FmiError, Refusal, Result};
+use super::error::{FmiError, Result};
 use videg_system::input;
 use videg_system::temporary::TemporaryFolder;
 
@@ -84,24 +84,26 @@ impl Archive {
         let mut file = input::open_regular(path).map_err(FmiError::io("open", path))?;
         let found = file.metadata().map_err(FmiError::io("read", path))?;
         if found.len() > limits.archive_bytes {
-            return Err(refuse(Refusal::ArchiveSize { found: found.len(), allowed: limits.archive_bytes }));
+            return Err(refuse(format!("the archive has {} bytes, allowed are {}", found.len(), limits.archive_bytes)));
         }
         if directory::is_zip64(&mut file).map_err(FmiError::io("read", path))? {
-            return Err(refuse(Refusal::Zip64));
+            return Err(refuse(
+                "the archive has a zip64 directory, which only archives beyond 65535 entries or 4 GiB need".to_owned(),
+            ));
         }
         let again = file.try_clone().map_err(FmiError::io("read", path))?;
         let broken = |cause| FmiError::NotAnArchive { path: path.into(), cause };
         let mut zip = ZipArchive::new(file).map_err(broken)?;
         if zip.len() > limits.entries {
-            return Err(refuse(Refusal::Entries { found: zip.len(), allowed: limits.entries }));
+            return Err(refuse(format!("the archive has {} entries, allowed are {}", zip.len(), limits.entries)));
         }
         let listed = directory::count(&again, zip.central_directory_start(), limits.entries + 1);
         let listed = listed.map_err(FmiError::io("read", path))?;
         if listed != zip.len() {
-            return Err(refuse(Refusal::Duplicates { listed, found: zip.len() }));
+            return Err(refuse(format!("the archive lists {listed} entries with {} different names", zip.len())));
         }
         if zip.has_overlapping_entries().map_err(broken)? {
-            return Err(refuse(Refusal::Overlap));
+            return Err(refuse("the entries overlap: some bytes of the archive belong to two of them".to_owned()));
         }
         let mut archive = Self { path: path.into(), zip, limits, names: Vec::new() };
         archive.vet_entries()?;
@@ -154,11 +156,11 @@ impl Archive {
             .read_to_end(&mut text)
             .map_err(FmiError::io("unpack modelDescription.xml of", &path))?;
         if text.len() as u64 > allowed_by_ratio {
-            let reason = Refusal::Ratio { entry: DESCRIPTION.into(), packed, allowed: self.limits.ratio };
+            let reason = inflates(DESCRIPTION, packed, &self.limits);
             return Err(FmiError::Refused { path, reason });
         }
         if text.len() as u64 > allowed {
-            let cause = DescriptionError::Size { found: text.len() as u64, allowed };
+            let cause = ModelDescription::too_large(text.len() as u64, allowed);
             return Err(FmiError::Description { origin, cause });
         }
         ModelDescription::parse(&text, &origin)
@@ -204,12 +206,17 @@ impl Archive {
             let name = entry.name().map_err(broken)?.into_owned();
             names.add(&name).map_err(|reason| FmiError::Refused { path: path(), reason })?;
             if !is_plain(entry.unix_mode()) {
-                return Err(FmiError::Refused { path: path(), reason: Refusal::SpecialFile { entry: name } });
+                let reason = format!("entry \"{}\" is a symbolic link or a special file", name.escape_debug());
+                return Err(FmiError::Refused { path: path(), reason });
             }
             self.names.push(name);
         }
         Ok(())
     }
+}
+
+fn inflates(entry: &str, packed: u64, limits: &Limits) -> String {
+    format!("entry \"{}\" inflates its {packed} bytes more than {} times", entry.escape_debug(), limits.ratio)
 }
 
 /// A new file, which the user alone may read.
@@ -243,10 +250,14 @@ fn unpack_entry(
         };
         written += count as u64;
         if written > allowed_by_ratio {
-            return refuse(Refusal::Ratio { entry: name.into(), packed, allowed: limits.ratio });
+            return refuse(inflates(name, packed, limits));
         }
         let Some(rest) = left.checked_sub(count as u64) else {
-            return refuse(Refusal::UnpackedSize { entry: name.into(), allowed: limits.unpacked_bytes });
+            return refuse(format!(
+                "unpacking passed {} bytes at entry \"{}\"",
+                limits.unpacked_bytes,
+                name.escape_debug()
+            ));
         };
         *left = rest;
         file.write_all(buffer.get(..count).unwrap_or(&buffer)).map_err(FmiError::io("unpack", path))?;

@@ -10,10 +10,7 @@ use thiserror::Error;
 
 use super::logging::{LogRecord, Status};
 
-mod causes;
-
 use super::isolated::Ending;
-pub use causes::{DescriptionError, Refusal, ValueError};
 
 /// Result of the importer.
 pub type Result<T> = std::result::Result<T, FmiError>;
@@ -33,10 +30,10 @@ pub enum FmiError {
     MissingEntry { path: PathBuf, entry: &'static str },
     /// The archive breaks a safety rule.
     #[error("{}: refused: {reason}", path.display())]
-    Refused { path: PathBuf, reason: Refusal },
+    Refused { path: PathBuf, reason: String },
     /// The model description cannot be used.
     #[error("{origin}: {cause}")]
-    Description { origin: String, cause: DescriptionError },
+    Description { origin: String, cause: String },
     /// There is no binary for this machine.
     #[error("{}: no binary for this platform (wanted {wanted}, the FMU has: {})", path.display(), list(found))]
     NoBinary { path: PathBuf, wanted: String, found: Vec<String> },
@@ -65,15 +62,9 @@ pub enum FmiError {
     /// The FMU does not offer an optional function.
     #[error("{function} of '{instance}' was not called: the FMU does not declare {capability}")]
     NotSupported { function: &'static str, instance: String, capability: &'static str },
-    /// Slices that belong together have different lengths.
-    #[error("{function} of '{instance}': {references} value references but {values} {what}")]
-    Length { function: &'static str, instance: String, references: usize, values: usize, what: &'static str },
-    /// A state of one instance was given to another.
-    #[error("{function} of '{instance}': the state belongs to another instance, '{owner}'")]
-    ForeignState { function: &'static str, instance: String, owner: String },
-    /// A serialised state is too large.
-    #[error("{function} of '{instance}': a state of {found} bytes, allowed are {allowed}")]
-    StateSize { function: &'static str, instance: String, found: usize, allowed: usize },
+    /// Slices that belong together have different lengths, a state belongs to another instance, or is too large.
+    #[error("{function} of '{instance}': {reason}")]
+    Arguments { function: &'static str, instance: String, reason: String },
     /// The process of an isolated FMU cannot be started.
     #[error("cannot start {} {} for the FMU: {cause}", program.display(), super::isolated::WORKER_VERB)]
     Worker { program: PathBuf, cause: String },
@@ -106,6 +97,24 @@ impl FmiError {
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |cause| Self::Io { action, path: path.to_path_buf(), cause }
     }
+}
+
+/// Why a value does not suit its variable.
+#[derive(Debug, Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
+pub enum ValueError {
+    /// The variable cannot be set from outside.
+    #[error("{variable} cannot be set: it is {variability} {causality}; inputs and parameters can be set")]
+    NotSettable { variable: String, variability: &'static str, causality: &'static str },
+    /// The text does not read as the type of the variable.
+    #[error("{variable} = \"{}\": allowed is {allowed}", found.escape_debug())]
+    Parse { variable: String, found: String, allowed: String },
+    /// The value lies outside its bounds.
+    #[error("{variable} = {found} is out of range: allowed is {allowed}")]
+    Range { variable: String, found: String, allowed: String },
+    /// The value is of another type than its variable.
+    #[error("{variable} is of type {wanted}, not {found}")]
+    Type { variable: String, wanted: &'static str, found: &'static str },
 }
 
 fn list(names: &[String]) -> String {

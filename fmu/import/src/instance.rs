@@ -94,6 +94,12 @@ impl Core {
         Err(FmiError::NotSupported { function, instance: self.name.clone(), capability })
     }
 
+    /// The error of a call that was not made because of its arguments.
+    #[cold]
+    pub(super) fn refused(&self, function: &'static str, reason: String) -> FmiError {
+        FmiError::Arguments { function, instance: self.name.clone(), reason }
+    }
+
     /// Fails unless there are as many values as value references.
     #[inline]
     pub(super) fn same_length(
@@ -106,7 +112,7 @@ impl Core {
         if references == values {
             return Ok(());
         }
-        Err(FmiError::Length { function, instance: self.name.clone(), references, values, what })
+        Err(self.refused(function, format!("{references} value references but {values} {what}")))
     }
 }
 

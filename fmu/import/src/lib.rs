@@ -50,7 +50,7 @@ pub use description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
     ModelDescription, Unit, Variability, Variable,
 };
-pub use error::{DescriptionError, FmiError, Refusal, Result, ValueError};
+pub use error::{FmiError, Result, ValueError};
 pub use fmu::Fmu;
 pub use instance::Instance;
 pub use isolated::{Bounds, Isolation};

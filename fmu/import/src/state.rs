@@ -3,7 +3,7 @@
 use std::fmt;
 use std::rc::Rc;
 
-use super::error::{FmiError, Result};
+use super::error::Result;
 use super::instance::{Core, Instance};
 use super::isolated::LONGEST_STATE;
 use super::request::{Request, Results};
@@ -105,15 +105,17 @@ impl Instance {
 
     fn checked_size(&self, function: &'static str, size: u64) -> Result<usize> {
         let found = usize::try_from(size).unwrap_or(usize::MAX);
-        let (instance, allowed) = (self.name().to_owned(), LONGEST_STATE);
-        if found <= allowed { Ok(found) } else { Err(FmiError::StateSize { function, instance, found, allowed }) }
+        if found <= LONGEST_STATE {
+            return Ok(found);
+        }
+        Err(self.core().refused(function, format!("a state of {found} bytes, allowed are {LONGEST_STATE}")))
     }
 
     fn require_own(&self, function: &'static str, state: &FmuState) -> Result<()> {
         if Rc::ptr_eq(self.core(), &state.core) {
             return Ok(());
         }
-        let (instance, owner) = (self.name().to_owned(), state.core.name().to_owned());
-        Err(FmiError::ForeignState { function, instance, owner })
+        let owner = state.core.name();
+        Err(self.core().refused(function, format!("the state belongs to another instance, '{owner}'")))
     }
 }

@@ -8,14 +8,15 @@ use super::description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
     ModelDescription, Unit, Variability, Variable,
 };
-use super::error::{DescriptionError as Error, FmiError};
+use super::error::FmiError;
 use element::{Element, missing, not_allowed};
 
 mod element;
 mod types;
 mod variable;
 
-type Result<T> = std::result::Result<T, Error>;
+/// The error says what is wrong with the description.
+type Result<T> = std::result::Result<T, String>;
 
 impl ModelDescription {
     /// Largest document that [`ModelDescription::parse`] takes, in bytes.
@@ -28,8 +29,12 @@ impl ModelDescription {
     /// million elements, 256 attributes of an element or 64 KiB in an attribute.
     pub fn parse(document: &[u8], origin: &str) -> std::result::Result<Self, FmiError> {
         let (found, allowed) = (document.len() as u64, Self::MAX_BYTES);
-        let description = if found > allowed { Err(Error::Size { found, allowed }) } else { read(document) };
+        let description = if found > allowed { Err(Self::too_large(found, allowed)) } else { read(document) };
         description.map_err(|cause| FmiError::Description { origin: origin.to_owned(), cause })
+    }
+
+    pub(super) fn too_large(found: u64, allowed: u64) -> String {
+        format!("the model description has {found} bytes, allowed are {allowed}")
     }
 }
 
@@ -39,11 +44,11 @@ fn read(document: &[u8]) -> Result<ModelDescription> {
     let element = Element::parse(&text)?;
     let root = "fmiModelDescription";
     if element.name() != root {
-        return Err(Error::Root { found: element.name() });
+        return Err(format!("the root element is <{}>, allowed is <{root}>", element.name()));
     }
     let fmi_version = element.required(root, "fmiVersion")?;
     if fmi_version != "2.0" {
-        return Err(Error::Version { found: fmi_version });
+        return Err(format!("fmiVersion is \"{fmi_version}\", allowed is \"2.0\""));
     }
     let enumerations = types::enumerations(&element)?;
     let variables = variables(&element)?;
@@ -78,7 +83,7 @@ fn decode(document: &[u8]) -> Result<Cow<'_, str>> {
     if declaration.starts_with(b"<?xml") && declaration.windows(latin1.len()).any(|window| window == latin1) {
         return Ok(document.iter().map(|&byte| char::from(byte)).collect::<String>().into());
     }
-    Err(Error::Encoding { position: error.valid_up_to() })
+    Err(format!("the model description is not UTF-8 (first bad byte at {})", error.valid_up_to()))
 }
 
 fn variables(root: &Element<'_>) -> Result<Vec<Variable>> {
@@ -150,7 +155,7 @@ fn positions(variables: &[Variable]) -> Result<HashMap<String, usize>> {
     let mut positions = HashMap::with_capacity(variables.len());
     for (position, variable) in variables.iter().enumerate() {
         if positions.insert(variable.name.clone(), position).is_some() {
-            return Err(Error::Duplicate { name: variable.name.clone() });
+            return Err(format!("two variables are named \"{}\"", variable.name));
         }
     }
     Ok(positions)

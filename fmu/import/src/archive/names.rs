@@ -3,8 +3,6 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use crate::error::Refusal;
-
 /// Longest name, bytes: of a whole path, macOS takes 1024.
 const LONGEST: usize = 1000;
 /// Deepest path, parts.
@@ -33,14 +31,12 @@ impl Names {
     }
 
     /// Takes the name of a further entry; a folder's ends with a slash.
-    pub fn add(&mut self, name: &str) -> Result<(), Refusal> {
-        if let Some(why) = fault(name) {
-            return Err(Refusal::Path { entry: name.chars().take(100).collect(), why });
-        }
+    pub fn add(&mut self, name: &str) -> Result<(), String> {
         let parts: Vec<_> = name.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
-        if parts.len() > DEEPEST {
-            let why = "its name has more than 32 parts";
-            return Err(Refusal::Path { entry: name.chars().take(100).collect(), why });
+        let too_deep = (parts.len() > DEEPEST).then_some("its name has more than 32 parts");
+        if let Some(why) = fault(name).or(too_deep) {
+            let shown: String = name.chars().take(100).collect();
+            return Err(format!("entry \"{}\" may leave the folder: {why}", shown.escape_debug()));
         }
         for end in 1..=parts.len() {
             let path = parts[..end].join("/");
@@ -48,15 +44,17 @@ impl Names {
             let found = Known { path, is_folder: end < parts.len() || name.ends_with('/') };
             let is_full = self.known.len() >= self.allowed;
             match self.known.entry(key) {
-                Entry::Vacant(_) if is_full => return Err(Refusal::Paths { allowed: self.allowed }),
+                Entry::Vacant(_) if is_full => {
+                    return Err(format!("the archive has more than {} files and folders", self.allowed));
+                }
                 Entry::Vacant(place) => {
                     place.insert(found);
                 }
                 // Many entries share their folders.
                 Entry::Occupied(known) if found.is_folder && *known.get() == found => {}
                 Entry::Occupied(known) => {
-                    let (entry, other) = (name.to_owned(), known.get().path.clone());
-                    return Err(Refusal::Collision { entry, other });
+                    let (entry, other) = (name.escape_debug(), known.get().path.escape_debug());
+                    return Err(format!("entry \"{entry}\" would take the place of \"{other}\""));
                 }
             }
         }
@@ -104,7 +102,7 @@ mod tests {
 
     fn refusal(names: &[&str]) -> Option<String> {
         let mut all = Names::new(100);
-        names.iter().find_map(|name| all.add(name).err()).map(|reason| reason.to_string())
+        names.iter().find_map(|name| all.add(name).err())
     }
 
     #[test]

@@ -7,7 +7,7 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::{Archive, Limits};
-use crate::{FmiError, Fmu, Refusal};
+use crate::{FmiError, Fmu};
 
 const GOOD: &[u8] = include_bytes!("../testdata/good.xml");
 
@@ -32,11 +32,14 @@ fn zip_bytes(entries: &[(&str, &[u8])]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-fn refusal(result: Result<impl Sized, FmiError>) -> Refusal {
-    match result.err().unwrap() {
-        FmiError::Refused { reason, .. } => reason,
-        other => panic!("{other}"),
-    }
+/// What is told of an archive that is opened, described and unpacked within `limits`.
+fn refusal(bytes: &[u8], limits: Limits) -> String {
+    let (_folder, path) = saved(bytes);
+    let tried = Archive::open_with(&path, limits).and_then(|mut archive| {
+        archive.description()?;
+        archive.unpack().map(drop)
+    });
+    tried.unwrap_err().to_string()
 }
 
 #[test]
@@ -64,15 +67,6 @@ fn unpacking_gives_the_files_back_and_cleans_up() {
     assert!(!place.exists());
 }
 
-#[test]
-fn names_that_leave_the_folder_are_refused() {
-    for name in ["../evil", "a/../../evil", "/etc/evil", "C:/evil", "c:evil", "a\\..\\evil", "\\\\host\\evil", "a/.."] {
-        let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), (name, b"evil")]);
-        let reason = refusal(Archive::open(&path));
-        assert!(matches!(&reason, Refusal::Path { entry, .. } if entry == name), "{name}: {reason}");
-    }
-}
-
 /// The bytes with every `from` replaced by `to`, which is as long.
 fn renamed(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
     for at in 0..bytes.len() - from.len() {
@@ -83,106 +77,69 @@ fn renamed(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
     bytes
 }
 
-#[test]
-fn two_entries_of_one_name_are_refused() {
-    let bytes = zip_bytes(&[("modelDescription.xml", GOOD), ("one", b"1"), ("two", b"2")]);
-    let (_folder, path) = saved(&renamed(bytes, b"two", b"one"));
-    assert_eq!(refusal(Archive::open(&path)), Refusal::Duplicates { listed: 3, found: 2 });
-    let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("one", b"1"), ("ONE", b"2")]);
-    assert!(matches!(refusal(Archive::open(&path)), Refusal::Collision { .. }));
+/// A good archive with further entries.
+fn with(entries: &[(&str, &[u8])]) -> Vec<u8> {
+    zip_bytes(&[&[("modelDescription.xml", GOOD)], entries].concat())
 }
 
-#[test]
-fn entries_that_share_bytes_are_refused() {
-    let mut bytes = zip_bytes(&[("a", b"some bytes"), ("b", b"some bytes")]);
-    // The second header of the directory, to whose offset of 4 bytes that of the first entry is written.
-    let at = bytes.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap() + 42;
-    bytes[at..at + 4].fill(0);
-    let (_folder, path) = saved(&bytes);
-    let error = Archive::open(&path).err().unwrap();
-    assert!(
-        matches!(error, FmiError::Refused { reason: Refusal::Overlap, .. } | FmiError::NotAnArchive { .. }),
-        "{error}"
-    );
-}
-
-#[test]
-fn symbolic_links_are_refused() {
+fn linked() -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     writer.add_symlink("resources", "/etc", SimpleFileOptions::default()).unwrap();
-    let (_folder, path) = saved(&writer.finish().unwrap().into_inner());
-    assert_eq!(refusal(Archive::open(&path)), Refusal::SpecialFile { entry: "resources".into() });
+    writer.finish().unwrap().into_inner()
 }
 
-#[test]
-fn a_bomb_is_stopped_by_its_ratio() {
-    let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("resources/zeros", &vec![0; 4 << 20])]);
-    let reason = refusal(Archive::open(&path).unwrap().unpack());
-    assert!(matches!(reason, Refusal::Ratio { allowed: 100, .. }), "{reason}");
-}
-
-#[test]
-fn a_description_that_inflates_is_stopped_by_its_ratio() {
-    let bomb = [GOOD, &vec![b' '; 4 << 20]].concat();
-    let (_folder, path) = zipped(&[("modelDescription.xml", &bomb)]);
-    let reason = refusal(Archive::open(&path).unwrap().description());
-    assert!(
-        matches!(&reason, Refusal::Ratio { entry, allowed: 100, .. } if entry == "modelDescription.xml"),
-        "{reason}"
-    );
-}
-
-#[test]
-fn a_bomb_that_declares_a_small_size_is_measured() {
-    let size = (4_u32 << 20) + 12_345;
-    let mut bytes = zip_bytes(&[("resources/zeros", &vec![0; size as usize])]);
-    let declared = size.to_le_bytes();
-    let places: Vec<_> = (0..bytes.len() - 4).filter(|&at| bytes[at..at + 4] == declared).collect();
-    assert_eq!(places.len(), 2);
-    for at in places {
-        bytes[at..at + 4].copy_from_slice(&10_u32.to_le_bytes());
-    }
-    let (_folder, path) = saved(&bytes);
-    let error = Archive::open(&path).unwrap().unpack().unwrap_err();
-    assert!(matches!(error, FmiError::Refused { .. } | FmiError::NotAnArchive { .. }), "{error}");
-}
-
-#[test]
-fn sizes_and_numbers_are_bounded() {
-    let noise: Vec<u8> = (0..200_000_u32).map(|i| i.wrapping_mul(2_654_435_761).to_be_bytes()[0]).collect();
-    let (_folder, path) = zipped(&[("a", &noise), ("b", &noise), ("c", b"")]);
-    let opened = |limits| Archive::open_with(&path, limits);
-    let reason = refusal(opened(Limits { unpacked_bytes: 300_000, ..Limits::default() }).unwrap().unpack());
-    assert_eq!(reason, Refusal::UnpackedSize { entry: "b".into(), allowed: 300_000 });
-    let reason = refusal(opened(Limits { archive_bytes: 100, ..Limits::default() }));
-    assert!(matches!(reason, Refusal::ArchiveSize { allowed: 100, .. }));
-    let reason = refusal(opened(Limits { entries: 2, ..Limits::default() }));
-    assert_eq!(reason, Refusal::Entries { found: 3, allowed: 2 });
-}
-
-#[test]
-fn a_zip64_directory_is_refused() {
-    let mut bytes = zip_bytes(&[("modelDescription.xml", GOOD)]);
+fn with_zip64_directory() -> Vec<u8> {
+    let mut bytes = with(&[]);
     let end = bytes.len() - 22;
     bytes.splice(end..end, b"PK\x06\x07".iter().copied().chain([0; 16]));
-    let (_folder, path) = saved(&bytes);
-    assert_eq!(refusal(Archive::open(&path)), Refusal::Zip64);
+    bytes
 }
 
 #[test]
-fn an_identifier_that_leaves_the_folder_is_refused() {
-    let evil = String::from_utf8_lossy(GOOD).replace("modelIdentifier=\"Toy\"", "modelIdentifier=\"../../evil\"");
-    let (_folder, path) = zipped(&[("modelDescription.xml", evil.as_bytes()), ("binaries/linux64/Toy.so", b"x")]);
-    let error = Fmu::open(&path).unwrap_err().to_string();
-    assert!(error.contains("modelIdentifier is \"../../evil\", allowed is a C identifier"), "{error}");
+fn unsafe_archives_and_those_beyond_bounds_are_refused() {
+    let zeros = vec![0; 4 << 20];
+    let noise: Vec<u8> = (0..200_000_u32).map(|i| i.wrapping_mul(2_654_435_761).to_be_bytes()[0]).collect();
+    let bomb = [GOOD, &vec![b' '; 4 << 20]].concat();
+    let any = Limits::default();
+    for (bytes, limits, told) in [
+        (renamed(with(&[("one", b"1"), ("two", b"2")]), b"two", b"one"), any, "lists 3 entries with 2 different names"),
+        (with(&[("one", b"1"), ("ONE", b"2")]), any, "entry \"ONE\" would take the place of \"one\""),
+        (linked(), any, "entry \"resources\" is a symbolic link or a special file"),
+        (with_zip64_directory(), any, "the archive has a zip64 directory"),
+        (with(&[("resources/zeros", &zeros)]), any, "bytes more than 100 times"),
+        (zip_bytes(&[("modelDescription.xml", &bomb)]), any, "entry \"modelDescription.xml\" inflates its"),
+        (
+            with(&[("a", &noise), ("b", &noise)]),
+            Limits { unpacked_bytes: 300_000, ..any },
+            "unpacking passed 300000 bytes at entry \"b\"",
+        ),
+        (with(&[]), Limits { archive_bytes: 100, ..any }, "bytes, allowed are 100"),
+        (with(&[("a", b""), ("b", b"")]), Limits { entries: 2, ..any }, "the archive has 3 entries, allowed are 2"),
+        (with(&[]), Limits { description_bytes: 1000, ..any }, "allowed are 1000"),
+    ] {
+        let found = refusal(&bytes, limits);
+        assert!(found.contains(told), "{told}: {found}");
+    }
+    for name in ["../evil", "a/../../evil", "/etc/evil", "C:/evil", "c:evil", "a\\..\\evil", "\\\\host\\evil", "a/.."] {
+        let found = refusal(&with(&[(name, b"evil")]), any);
+        let told = format!("entry \"{}\" may leave the folder: ", name.escape_debug());
+        assert!(found.contains(&told), "{name}: {found}");
+    }
 }
 
 #[test]
-fn a_huge_description_is_refused_while_unpacking() {
-    let (_folder, path) = zipped(&[("modelDescription.xml", GOOD)]);
-    let limits = Limits { description_bytes: 1000, ..Limits::default() };
-    let error = Archive::open_with(&path, limits).unwrap().description().unwrap_err().to_string();
-    assert!(error.contains("allowed are 1000"), "{error}");
+fn entries_that_share_bytes_or_declare_another_size_are_refused() {
+    let mut shared = with(&[("b", b"some bytes")]);
+    // The second header of the directory, to whose offset of 4 bytes that of the first entry is written.
+    let at = shared.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap() + 42;
+    shared[at..at + 4].fill(0);
+    let size = (4_u32 << 20) + 12_345;
+    let zeros = with(&[("resources/zeros", &vec![0; size as usize])]);
+    let understated = renamed(zeros, &size.to_le_bytes(), &10_u32.to_le_bytes());
+    for bytes in [shared, understated] {
+        let found = refusal(&bytes, Limits::default());
+        assert!(found.contains("refused: ") || found.contains("not a readable FMU"), "{found}");
+    }
 }
 
 #[test]
@@ -195,13 +152,17 @@ fn files_that_are_no_fmu_are_named() {
 }
 
 #[test]
-fn missing_parts_are_named() {
+fn missing_parts_and_an_identifier_that_leaves_the_folder_are_named() {
     let (_folder, path) = zipped(&[("readme.txt", b"hello")]);
     let error = Fmu::open(&path).unwrap_err().to_string();
     assert!(error.ends_with("test.fmu: the archive has no modelDescription.xml"), "{error}");
     let (_folder, path) = zipped(&[("modelDescription.xml", GOOD), ("binaries/atari/Toy.prg", b"x")]);
     let error = Fmu::open(&path).unwrap_err().to_string();
     assert!(error.contains("no binary for this platform") && error.ends_with("the FMU has: atari)"), "{error}");
+    let evil = String::from_utf8_lossy(GOOD).replace("modelIdentifier=\"Toy\"", "modelIdentifier=\"../../evil\"");
+    let (_folder, path) = zipped(&[("modelDescription.xml", evil.as_bytes()), ("binaries/linux64/Toy.so", b"x")]);
+    let error = Fmu::open(&path).unwrap_err().to_string();
+    assert!(error.contains("modelIdentifier is \"../../evil\", allowed is a C identifier"), "{error}");
 }
 
 #[test]

@@ -2,12 +2,13 @@
 //! time without bound.
 
 use std::borrow::Cow;
+use std::fmt::Display;
 use std::str::FromStr;
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
-use super::{Error, Result};
+use super::Result;
 
 /// Deepest nesting of elements; FMI 2.0 itself needs six, vendor annotations may add some.
 const MAX_DEPTH: usize = 64;
@@ -34,12 +35,15 @@ impl<'a> Element<'a> {
         let (mut root, mut open) = (None, Vec::<Self>::new());
         let mut count = 0;
         loop {
-            let event = reader
-                .read_event()
-                .map_err(|error| Error::Syntax { position: reader.error_position(), cause: error.to_string() })?;
-            let syntax = |cause: &str| Error::Syntax { position: reader.buffer_position(), cause: cause.to_owned() };
+            let event = reader.read_event().map_err(|error| malformed(reader.error_position(), &error.to_string()))?;
+            let syntax = |cause| malformed(reader.buffer_position(), cause);
             let closed = match event {
-                Event::DocType(_) => return Err(Error::Doctype),
+                Event::DocType(_) => {
+                    return Err(
+                        "the model description has a DOCTYPE, which is not allowed (entities are never expanded)"
+                            .to_owned(),
+                    );
+                }
                 Event::Eof => {
                     let root = root.filter(|_| open.is_empty());
                     return root.ok_or_else(|| syntax("the document ends too early"));
@@ -48,9 +52,11 @@ impl<'a> Element<'a> {
                     return Err(syntax("the document has a second root element"));
                 }
                 Event::Start(_) | Event::Empty(_) if count == MAX_ELEMENTS => {
-                    return Err(Error::Elements { allowed: MAX_ELEMENTS });
+                    return Err(format!("the model description has more than {MAX_ELEMENTS} elements"));
                 }
-                Event::Start(_) if open.len() == MAX_DEPTH => return Err(Error::Depth { allowed: MAX_DEPTH }),
+                Event::Start(_) if open.len() == MAX_DEPTH => {
+                    return Err(format!("the model description nests elements deeper than {MAX_DEPTH}"));
+                }
                 Event::Start(start) => {
                     open.push(Self::new(start)?);
                     count += 1;
@@ -73,15 +79,16 @@ impl<'a> Element<'a> {
 
     fn new(start: BytesStart<'a>) -> Result<Self> {
         let shown = |name: &str| name.chars().take(100).collect::<String>();
+        let element = || format!("the model description has an element <{}>", shown(start.name().as_ref()));
         for (count, attribute) in start.attributes().enumerate() {
             if count == MAX_ATTRIBUTES {
-                return Err(Error::Attributes { element: shown(start.name().as_ref()), allowed: MAX_ATTRIBUTES });
+                return Err(format!("{} with more than {MAX_ATTRIBUTES} attributes", element()));
             }
-            let attribute = attribute.map_err(|cause| Error::Content { cause: cause.to_string() })?;
+            let attribute = attribute.map_err(unreadable)?;
             let found = attribute.value.len();
             if found > MAX_VALUE && !UNREAD.contains(&attribute.key.as_ref()) {
-                let (element, attribute) = (shown(start.name().as_ref()), shown(attribute.key.as_ref()));
-                return Err(Error::Value { element, attribute, found, allowed: MAX_VALUE });
+                let name = shown(attribute.key.as_ref());
+                return Err(format!("{} whose {name} has {found} bytes, allowed are {MAX_VALUE}", element()));
             }
         }
         Ok(Self { start, children: Vec::new() })
@@ -102,7 +109,7 @@ impl<'a> Element<'a> {
         let mut children = self.children(name);
         match (children.next(), children.next()) {
             (child, None) => Ok(child),
-            (_, Some(_)) => Err(Error::Content { cause: format!("there are two elements <{name}>") }),
+            (_, Some(_)) => Err(unreadable(format!("there are two elements <{name}>"))),
         }
     }
 
@@ -113,14 +120,13 @@ impl<'a> Element<'a> {
 
     /// An attribute, with references resolved.
     pub fn attribute(&self, name: &str) -> Result<Option<String>> {
-        let content = |cause: String| Error::Content { cause };
-        let found = self.start.try_get_attribute(name).map_err(|cause| content(cause.to_string()))?;
+        let found = self.start.try_get_attribute(name).map_err(unreadable)?;
         let value = found.map(|attribute| attribute.normalized_value(XmlVersion::Implicit1_0)).transpose();
-        Ok(value.map_err(|cause| content(cause.to_string()))?.map(Cow::into_owned))
+        Ok(value.map_err(unreadable)?.map(Cow::into_owned))
     }
 
     /// An attribute that must be there; errors name the element by `place`.
-    pub fn required(&self, place: &str, name: &'static str) -> Result<String> {
+    pub fn required(&self, place: &str, name: &str) -> Result<String> {
         self.attribute(name)?.ok_or_else(|| missing(place, name))
     }
 
@@ -128,7 +134,7 @@ impl<'a> Element<'a> {
     pub fn read<T>(
         &self,
         place: &str,
-        name: &'static str,
+        name: &str,
         read: impl FnOnce(&str) -> Option<T>,
         allowed: &str,
     ) -> Result<Option<T>> {
@@ -136,15 +142,15 @@ impl<'a> Element<'a> {
         read(&text).map(Some).ok_or_else(|| not_allowed(place, name, &text, allowed))
     }
 
-    pub fn real(&self, place: &str, name: &'static str) -> Result<Option<f64>> {
+    pub fn real(&self, place: &str, name: &str) -> Result<Option<f64>> {
         self.read(place, name, |text| text.trim().parse().ok(), "a number")
     }
 
-    pub fn integer<T: FromStr>(&self, place: &str, name: &'static str) -> Result<Option<T>> {
+    pub fn integer<T: FromStr>(&self, place: &str, name: &str) -> Result<Option<T>> {
         self.read(place, name, |text| text.trim().parse().ok(), "an integer of the attribute's range")
     }
 
-    pub fn boolean(&self, place: &str, name: &'static str) -> Result<Option<bool>> {
+    pub fn boolean(&self, place: &str, name: &str) -> Result<Option<bool>> {
         let read = |text: &str| match text.trim() {
             "true" | "1" => Some(true),
             "false" | "0" => Some(false),
@@ -154,10 +160,18 @@ impl<'a> Element<'a> {
     }
 }
 
-pub(super) fn missing(place: &str, what: &'static str) -> Error {
-    Error::Missing { place: place.to_owned(), what }
+fn malformed(position: u64, cause: &str) -> String {
+    format!("the model description is not well-formed XML at byte {position}: {cause}")
 }
 
-pub(super) fn not_allowed(place: &str, attribute: &'static str, found: &str, allowed: &str) -> Error {
-    Error::Attribute { place: place.to_owned(), attribute, found: found.to_owned(), allowed: allowed.to_owned() }
+fn unreadable(cause: impl Display) -> String {
+    format!("the model description cannot be read: {cause}")
+}
+
+pub(super) fn missing(place: &str, what: &str) -> String {
+    format!("{place} has no {what}")
+}
+
+pub(super) fn not_allowed(place: &str, attribute: &str, found: &str, allowed: &str) -> String {
+    format!("{place}: {attribute} is \"{found}\", allowed is {allowed}")
 }

@@ -80,7 +80,7 @@ fn enumeration_item(item: &Element<'_>, place: &str) -> Result<EnumerationItem> 
 ///
 /// # Errors
 /// If it is too long for that.
-fn shared(place: &str, name: &'static str, text: String) -> Result<String> {
+fn shared(place: &str, name: &str, text: String) -> Result<String> {
     const LONGEST: usize = 1024;
     let is_short = text.len() <= LONGEST;
     if is_short { Ok(text) } else { Err(not_allowed(place, name, &text, &format!("at most {LONGEST} bytes"))) }

@@ -30,7 +30,7 @@ pub(super) fn variable(element: &Element<'_>, position: usize, types: &Types) ->
     })
 }
 
-fn keyword<T: FromStr>(element: &Element<'_>, place: &str, name: &'static str, allowed: &[&str]) -> Result<Option<T>> {
+fn keyword<T: FromStr>(element: &Element<'_>, place: &str, name: &str, allowed: &[&str]) -> Result<Option<T>> {
     element.read(place, name, |text| text.parse().ok(), &allowed.join(", "))
 }
 
