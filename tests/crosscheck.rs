@@ -7,6 +7,8 @@
 #[path = "../examples/random_crosschecks/draw.rs"]
 #[allow(dead_code, reason = "the example takes more of it")]
 mod draw;
+#[path = "support/tool.rs"]
+mod tool;
 
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -15,38 +17,24 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 
 use serde_json::Value;
 use tempfile::TempDir;
+use tool::{assert_refused, json, said, tool};
 use videg::ngspice::Ngspice;
 
 /// Runs the tool in `folder`, one at a time, because each run asks Cargo whether the FMUs are fresh.
 fn videg(folder: &Path, arguments: &[&str], environment: &[(&str, &Path)]) -> Output {
     static FIRST: LazyLock<Mutex<()>> = LazyLock::new(|| {
         let folder = tempfile::tempdir().unwrap();
-        assert!(command(folder.path(), &["fmu", "build"]).output().unwrap().status.success());
+        assert!(tool(["fmu", "build"]).current_dir(folder.path()).status().unwrap().success());
         Mutex::new(())
     });
     let _held = FIRST.lock().unwrap_or_else(PoisonError::into_inner);
-    command(folder, arguments).envs(environment.iter().copied()).output().unwrap()
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(arguments).current_dir(folder);
-    command
+    tool(arguments).current_dir(folder).envs(environment.iter().copied()).output().unwrap()
 }
 
 fn ngspice() -> Option<PathBuf> {
     let found = Ngspice::find(None);
     assert!(found.is_ok() || std::env::var_os("VIDEG_ALL_TOOLS").is_none(), "{}", found.unwrap_err());
     found.inspect_err(|error| eprintln!("skipped: {error}")).ok().map(|ngspice| ngspice.program().to_owned())
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output, code: i32) -> Value {
-    assert_eq!(output.status.code(), Some(code), "{}", stderr(output));
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 fn check<'a>(value: &'a Value, name: &str) -> &'a Value {
@@ -249,7 +237,7 @@ fn where_ngspice_stops_all_solvers_are_reported_up_to_there_and_open_claims_name
     assert_eq!(draw::verdict(&output), draw::Verdict::GaveUp(reasons.join("; ")));
     let times: Vec<_> = found["solvers"].as_array().unwrap().iter().map(|solver| solver["reached"].clone()).collect();
     assert_eq!(times, [1.5.into(), 1.5.into(), main["reached"].clone(), 1.5.into()]);
-    let said = stderr(&output);
+    let said = said(&output);
     assert!(
         said.contains("ngspice, batch: ngspice stopped at 0.7") && said.contains("What stays open beyond 0.69"),
         "{said}"
@@ -273,15 +261,6 @@ fn without_the_shared_library_the_other_solvers_are_reported() {
     assert_eq!(check(&found, "supply energy")["agreement"]["agree"], true);
 }
 
-fn assert_refused(output: &Output, parts: &[&str]) {
-    let stderr = stderr(output);
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{stderr}");
-    assert_eq!(stderr.lines().count(), 1, "{stderr}");
-    for part in parts {
-        assert!(stderr.contains(part), "{part} is not in: {stderr}");
-    }
-}
-
 #[test]
 fn without_ngspice_one_line_says_how_to_install_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -300,11 +279,7 @@ fn what_cannot_run_is_named() {
         (&["--set", "load.resistance=inf", "--until", "1"], &["load.resistance = inf"]),
         (&["--set", "load.resistance=1\n.control\nshell touch pwned\n.endc"], &["load.resistance"]),
     ] {
-        let output = videg(folder.path(), &[&["crosscheck"], arguments].concat(), &[]);
-        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {}", stderr(&output));
-        for part in parts {
-            assert!(stderr(&output).contains(part), "{arguments:?}: {}", stderr(&output));
-        }
+        assert_refused(&videg(folder.path(), &[&["crosscheck"], arguments].concat(), &[]), parts);
     }
     assert!(!folder.path().join("pwned").exists());
 }

@@ -2,16 +2,20 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
 use serde_json::Value;
 use tempfile::TempDir;
+use tool::{assert_refused, json, tool};
+
+#[path = "support/tool.rs"]
+mod tool;
 
 fn simulate(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(["simulate", "--json", "--until", "5", "--output"]).arg(folder).args(arguments).output().unwrap()
+    let mut command = tool(["simulate", "--json", "--until", "5", "--output"]);
+    command.arg(folder).args(arguments).output().unwrap()
 }
 
 /// The run of both laws, at which several tests look.
@@ -20,9 +24,7 @@ static BOTH: LazyLock<(Value, TempDir)> = LazyLock::new(|| run(&["--law", "both"
 /// What a run prints, and its folder.
 fn run(arguments: &[&str]) -> (Value, TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    let output = simulate(folder.path(), arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    (serde_json::from_slice(&output.stdout).unwrap(), folder)
+    (json(&simulate(folder.path(), arguments), 0), folder)
 }
 
 fn number(value: &Value, key: &str) -> f64 {
@@ -170,11 +172,7 @@ fn a_setting_of_another_law_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let set = format!("contact.law={setting}");
         let output = simulate(folder.path(), &["--law", law, "--set", &set]);
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        for part in [format!("--law {law}"), format!("contact.law = {setting}")] {
-            assert!(message.contains(&part) && message.lines().count() == 1, "{message}");
-        }
+        assert_refused(&output, &[&format!("--law {law}"), &format!("contact.law = {setting}")]);
     }
     let (found, _) = run(&["--law", "compliant", "--set", "contact.law=2"]);
     assert!(number(&found, "impacts") > 0.0);
@@ -184,9 +182,7 @@ fn a_setting_of_another_law_is_refused() {
 fn what_the_impulsive_law_cannot_do_names_that_law() {
     let folder = tempfile::tempdir().unwrap();
     let output = simulate(folder.path(), &["--law", "both", "--set", "contact.reaction=true"]);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains("--law both, impulsive law: contact.reaction = true"), "{message}");
+    assert_refused(&output, &["--law both, impulsive law: contact.reaction = true"]);
 }
 
 /// The Maxwell force of the circuit's voltages acts under the compliant law: harvester and circuit book the same work, up to
@@ -194,12 +190,9 @@ fn what_the_impulsive_law_cannot_do_names_that_law() {
 #[test]
 fn a_co_simulation_under_the_compliant_law_with_feedback_keeps_its_books() {
     let folder = tempfile::tempdir().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(["cosim", "--json", "--until", "5", "--set", "contact.law=compliant"]);
+    let mut command = tool(["cosim", "--json", "--until", "5", "--set", "contact.law=compliant"]);
     command.args(["--set", "contact.electrostaticFeedback=true", "--output"]).arg(folder.path());
-    let output = command.output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = json(&command.output().unwrap(), 0);
     assert!(number(&found, "impacts") > 0.0);
     assert!(number(&found["coupling"], "relative_residual").abs() < 1e-4, "{}", found["coupling"]);
 }

@@ -1,26 +1,21 @@
 //! The masters: the order of each, what an adaptive step saves, and that all circuits go through all of them.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
-use std::process::Command;
 use std::sync::LazyLock;
 
 use serde_json::Value;
+use tool::{json, said, tool};
+
+#[path = "support/tool.rs"]
+mod tool;
 
 /// Seconds of Fig. 14: some thirty impacts.
 const UNTIL: &str = "5";
 
 fn run(arguments: &[&str]) -> Result<Value, String> {
     let folder = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_videg"))
-        .args(["cosim", "--json", "--output"])
-        .arg(folder.path())
-        .args(arguments)
-        .output()
-        .unwrap();
-    if !output.status.success() {
-        return Err(String::from_utf8(output.stderr).unwrap());
-    }
-    Ok(serde_json::from_slice(&output.stdout).unwrap())
+    let output = tool(["cosim", "--json", "--output"]).arg(folder.path()).args(arguments).output().unwrap();
+    if output.status.success() { Ok(json(&output, 0)) } else { Err(said(&output)) }
 }
 
 /// A run of Fig. 14.
@@ -99,17 +94,29 @@ fn a_smaller_tolerance_gives_a_smaller_error() {
 }
 
 #[test]
-fn the_circuit_fmu_goes_through_every_master_as_the_embedded_circuit_does() {
-    for master in [&["gauss-seidel"][..], &["jacobi"], &["plain"], &["gauss-seidel", "--adaptive", "1e-3"]] {
-        let with = |circuit| cosim(&[&["--circuit", circuit, "--master"], master].concat());
-        let (embedded, fmu) = (with("embedded"), with("fmu"));
-        assert_eq!(embedded["coupling"]["steps"], fmu["coupling"]["steps"], "{master:?}");
-        assert_eq!(embedded["coupling"]["rejected"], fmu["coupling"]["rejected"], "{master:?}");
-        let scale = embedded["energy"]["supply"].as_f64().unwrap();
-        for (key, value) in embedded["energy"].as_object().unwrap() {
-            let difference = value.as_f64().unwrap() - fmu["energy"][key].as_f64().unwrap();
-            // They differ in how the end of a ramp is rounded.
-            assert!(difference.abs() < 1e-9 * scale, "{master:?}: {key} differs by {difference:e} J");
+fn the_circuit_fmu_agrees_with_the_embedded_circuit_under_every_master_and_setting() {
+    let masters = [&["gauss-seidel"][..], &["jacobi"], &["plain"], &["gauss-seidel", "--adaptive", "1e-3"]];
+    let masters = masters.map(|master| [&["--master"], master].concat());
+    let settings = [
+        &["load.resistance=inf"][..],
+        &["load.resistance=0"],
+        &["release=storage"],
+        &["release=storage", "storage.voltage=2200", "topology=isolated"],
+    ];
+    let settings = settings.map(|settings| settings.iter().flat_map(|setting| ["--set", *setting]).collect());
+    for arguments in masters.into_iter().chain(settings) {
+        let [embedded, fmu] =
+            ["embedded", "fmu"].map(|circuit| cosim(&[&["--circuit", circuit], &*arguments].concat()));
+        for count in ["steps", "rejected"] {
+            assert_eq!(embedded["coupling"][count], fmu["coupling"][count], "{arguments:?}");
+        }
+        for group in ["energy", "charge"] {
+            let scale = embedded[group]["supply"].as_f64().unwrap();
+            for (key, value) in embedded[group].as_object().unwrap() {
+                let difference = value.as_f64().unwrap() - fmu[group][key].as_f64().unwrap();
+                // They differ in how the end of a ramp is rounded.
+                assert!(difference.abs() <= 1e-9 * scale, "{arguments:?}: {group}.{key} differs by {difference:e}");
+            }
         }
     }
 }

@@ -7,21 +7,21 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 use serde_json::Value;
+use tool::{assert_refused, json, said, tool};
 
 #[path = "support/signals.rs"]
 mod signals;
+#[path = "support/tool.rs"]
+mod tool;
 #[path = "support/waiting.rs"]
 mod waiting;
 
 fn reproduce(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-    command.args(["reproduce", "--json", "--output"]).arg(folder).args(arguments).output().unwrap()
+    tool(["reproduce", "--json", "--output"]).arg(folder).args(arguments).output().unwrap()
 }
 
 fn made(folder: &Path, arguments: &[&str]) -> Value {
-    let output = reproduce(folder, arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    json(&reproduce(folder, arguments), 0)
 }
 
 /// A finding of an item, by the beginning of its quantity.
@@ -136,10 +136,7 @@ fn a_harvesting_cycle_has_the_corners_of_table_1_and_lies_within_them() {
 fn a_name_that_does_not_exist_is_an_error_with_a_hint_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let output = reproduce(&folder.path().join("out"), &["fig41"]);
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("reproduce fig41: no such table or figure; did you mean fig4?"), "{message}");
-    assert!(message.contains("table1") && message.contains("all") && message.lines().count() == 1, "{message}");
+    assert_refused(&output, &["reproduce fig41: no such table or figure; did you mean fig4?", "table1", "all"]);
     assert!(!folder.path().join("out").exists());
 }
 
@@ -147,13 +144,12 @@ fn a_name_that_does_not_exist_is_an_error_with_a_hint_and_nothing_is_written() {
 fn without_ngspice_only_the_crosscheck_by_name_fails() {
     let folder = tempfile::tempdir().unwrap();
     let run = |name: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-        command.args(["reproduce", name, "--json", "--output"]).arg(folder.path()).env("VIDEG_NGSPICE", "/nowhere");
-        command.output().unwrap()
+        let mut command = tool(["reproduce", name, "--json", "--output"]);
+        command.arg(folder.path()).env("VIDEG_NGSPICE", "/nowhere").output().unwrap()
     };
     let named = run("crosscheck");
     assert_eq!(named.status.code(), Some(2));
-    assert!(String::from_utf8(named.stderr).unwrap().contains("/nowhere"));
+    assert!(said(&named).contains("/nowhere"));
     assert_eq!(run("table1").status.code(), Some(0));
 }
 
@@ -188,9 +184,7 @@ fn a_folder_that_cannot_be_made_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let output = reproduce(&file.join("below"), &["table1"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("cannot make the output folder"));
+    assert_refused(&reproduce(&file.join("below"), &["table1"]), &["cannot make the output folder"]);
 }
 
 /// What stands in a folder and the folders in it.
@@ -210,8 +204,8 @@ fn a_signal_leaves_nothing_half_written_and_the_last_line_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let mut random = fastrand::Rng::with_seed(1);
     for round in 0..8 {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
-        command.args(["reproduce", "table1", "fig7", "audit", "--quick", "--output"]).arg(folder.path());
+        let mut command = tool(["reproduce", "table1", "fig7", "audit", "--quick", "--output"]);
+        command.arg(folder.path());
         let mut command = signals::with_default_signals(&command);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let part = folder.path().join("audit/timeseries.csv.part");
@@ -241,7 +235,7 @@ fn a_failure_leaves_nothing_half_written_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("fig7.csv")).unwrap();
     let output = reproduce(folder.path(), &["table1", "fig7"]);
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = said(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     let complete = format!("; what is in {} is complete, of this run or an earlier one", folder.path().display());
     assert!(said.contains("cannot write") && said.contains("fig7.csv") && said.contains(&complete), "{said}");
@@ -251,7 +245,7 @@ fn a_failure_leaves_nothing_half_written_and_says_so() {
     let mut limited = Command::new("sh");
     limited.args(["-c", "trap '' XFSZ; ulimit -f 8192; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_videg")]);
     let output = limited.args(["reproduce", "audit", "--output"]).arg(folder.path()).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = tool::said(&output);
     assert!(output.status.code() == Some(2) && said.contains("timeseries.csv: File too large"), "{said}");
     assert!(said.contains(&complete) && !said.contains(".part"), "{said}");
     assert_nothing_is_half_written(folder.path());
