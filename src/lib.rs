@@ -34,6 +34,11 @@
 //! Beside it: [`videg_report`] draws figures and writes HTML reports, [`videg_system`] has temporary folders, files written
 //! atomically and groups of processes.
 
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "the messages of the error types say it; a section says what is beyond them"
+)]
+
 #[cfg(doctest)]
 mod book;
 mod circuit_sample;

@@ -32,9 +32,6 @@ pub trait Progress: Sync {
 impl Progress for () {}
 
 /// Does `work` as an item of a run.
-///
-/// # Errors
-/// Those of `work`.
 pub fn during<T, E>(
     observer: &dyn Progress,
     name: &str,

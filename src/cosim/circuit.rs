@@ -8,29 +8,17 @@ pub trait CircuitSlave {
     fn label(&self) -> &str;
 
     /// Steps from `time` by `step`, s, while the capacitances (left, right), F, run linearly from `start` to `end`.
-    ///
-    /// # Errors
-    /// What the circuit says.
     fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError>;
 
     /// Outputs at the communication point.
-    ///
-    /// # Errors
-    /// What the circuit says.
     fn sample(&self) -> Result<CircuitSample, CosimError>;
 
     /// Saves the state in place of the one before.
-    ///
-    /// # Errors
-    /// What the circuit says, or that it cannot do this.
     fn save(&mut self) -> Result<(), CosimError> {
         Err(CosimError::NoRollback { label: self.label().to_owned() })
     }
 
     /// Goes back to the state saved.
-    ///
-    /// # Errors
-    /// What the circuit says, or that it cannot do this.
     fn restore(&mut self) -> Result<(), CosimError> {
         Err(CosimError::NoRollback { label: self.label().to_owned() })
     }

@@ -1,22 +1,21 @@
 //! Coupling of harvester and circuits, and its error.
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 use super::CosimError;
 
-/// Signals that the subsystems exchange for a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+/// Signals that the subsystems exchange for a step. The harvester gets extrapolated voltages, from the plain method those
+/// at the communication point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// The harvester steps first, with the voltages extrapolated; then the circuits, with C(t) linear between its ends.
-    /// Second order.
+    /// The harvester steps first, then the circuit with C(t) linear between its ends: second order
     #[default]
     GaussSeidel,
-    /// All step from the same communication point: the circuits with C(t) extrapolated at dC/dt, the harvester with the
-    /// voltages extrapolated. Second order.
+    /// Both step at once, with C(t) extrapolated at dC/dt: second order
     Jacobi,
-    /// The master of a tool that passes on values only: all step from the same communication point of a regular grid without
-    /// points at impacts, and C(t) lags by a step. First order.
+    /// Both step at once on a regular grid and exchange values only, as in a tool without input derivatives: first order
     Plain,
 }
 

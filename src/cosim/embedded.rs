@@ -14,9 +14,6 @@ pub struct EmbeddedCircuit {
 
 impl EmbeddedCircuit {
     /// A circuit with `settings`, both membranes charged, at `capacitance` (left, right), F.
-    ///
-    /// # Errors
-    /// Settings out of bounds.
     pub fn new(label: &str, settings: &Settings, capacitance: [f64; 2]) -> Result<Self, CosimError> {
         let circuit = Circuit::new(settings.parameters(), capacitance)
             .map_err(|cause| CosimError::Circuit { label: label.to_owned(), cause })?;

@@ -10,13 +10,10 @@ use crate::ngspice::NgspiceError;
 #[derive(Debug, Error)]
 #[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum CosimError {
-    /// An FMU refused something.
     #[error(transparent)]
     Fmi(#[from] fmu_import::FmiError),
-    /// The embedded circuit refused something.
     #[error("circuit \"{label}\": {cause}")]
     Circuit { label: String, cause: videg_circuit::Error },
-    /// ngspice refused something.
     #[error("circuit \"{label}\" in ngspice: {cause}")]
     Ngspice { label: String, cause: Box<NgspiceError> },
     /// A circuit cannot go back to an earlier state, which an adaptive step takes.
@@ -24,31 +21,23 @@ pub enum CosimError {
         "--adaptive takes circuits that can go back to an earlier state; \"{label}\" cannot (ngspice never can; allowed: embedded, fmu)"
     )]
     NoRollback { label: String },
-    /// An FMU was to go back to a state and none is saved.
     #[error("{instance}: no earlier state is saved to go back to")]
     NothingSaved { instance: String },
-    /// The options of the master contradict each other or are out of bounds.
     #[error("--adaptive {tolerance}: {bound}")]
     Tolerance { tolerance: f64, bound: String },
-    /// An FMU refused a setting.
     #[error("{place}: {cause}")]
     Refused { place: String, cause: Box<fmu_import::FmiError> },
-    /// Neither the harvester nor the circuit has a variable of this name.
     #[error("{place}: neither the harvester nor the circuit has such a variable; {hint}")]
     UnknownVariable { place: String, hint: String },
-    /// A circuit cannot be put into a netlist.
     #[error(transparent)]
     Netlist(#[from] NgspiceError),
     /// An error about variables that the user set.
     #[error("{cause} ({places})")]
     Located { cause: Box<CosimError>, places: String },
-    /// The observer of the run stopped it.
     #[error("stopped at {time} s")]
     Stopped { time: f64 },
-    /// A setting has a value that the embedded circuit cannot take.
     #[error("{place}: {name} = {value}: {bound}")]
     Setting { place: String, name: String, value: String, bound: String },
-    /// A file could not be written.
     #[error("cannot write {}: {cause}", path.display())]
     Write { path: PathBuf, cause: std::io::Error },
 }

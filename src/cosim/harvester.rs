@@ -135,9 +135,6 @@ impl HarvesterFmu {
     }
 
     /// Steps from `time` by `step`, s.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn step(&mut self, time: f64, step: f64) -> Result<(), CosimError> {
         Ok(self.instance.do_step(time, step)?)
     }
@@ -192,17 +189,11 @@ impl HarvesterFmu {
     }
 
     /// Outputs at the communication point.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn sample(&self) -> Result<HarvesterSample, CosimError> {
         read(&self.instance, &self.reals).map(HarvesterSample)
     }
 
     /// Impacts, and events computed, so far.
-    ///
-    /// # Errors
-    /// What the FMU says.
     pub fn counts(&self) -> Result<[i32; 2], CosimError> {
         let mut counts = [0; 2];
         self.instance.get_integer(&self.counts, &mut counts)?;

@@ -22,10 +22,7 @@ pub struct Row<'a> {
 
 /// Watches a run.
 pub trait Observer {
-    /// Takes the state at a communication point; the first is the start.
-    ///
-    /// # Errors
-    /// Ends the run, e.g. if a file cannot be written.
+    /// Takes the state at a communication point; the first is the start. An error ends the run.
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError>;
 }
 
@@ -118,9 +115,6 @@ impl Master {
     }
 
     /// Runs to the end, showing each communication point to `observers`.
-    ///
-    /// # Errors
-    /// What a subsystem or an observer says.
     pub fn run(mut self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, CosimError> {
         let window = self.scenario.window;
         let mut point = self.start()?;

@@ -36,7 +36,7 @@ pub use master::{Master, Observer, Outcome, Row};
 pub use ngspice::NgspiceCircuit;
 pub(crate) use ratios::{CapacitanceRatios, best_release_voltage};
 pub(crate) use record::TimeProgress;
-pub use record::{CsvRecorder, Trace, TracePoint};
+pub use record::{CsvRecorder, ImpactLog, MembraneImpact, Trace, TracePoint};
 pub use run::{CircuitSolver, Cosimulation, LabelledCircuit, Options, Results, run};
 pub(crate) use schedule::Schedule;
 pub(crate) use settings::{CircuitRequest, label, voltage_warning};

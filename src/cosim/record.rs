@@ -20,9 +20,6 @@ pub struct CsvRecorder {
 
 impl CsvRecorder {
     /// Begins the file that will be at `path`; with `circuit`, the columns of the first circuit are in it, too.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn create(path: &Path, circuit: bool) -> Result<Self, CosimError> {
         let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
         let file = AtomicFile::create(path).map_err(fail)?;
@@ -34,9 +31,6 @@ impl CsvRecorder {
     }
 
     /// Writes the rest, and gives the file its name.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn finish(self) -> Result<(), CosimError> {
         let Self { path, writer, .. } = self;
         let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
@@ -47,9 +41,6 @@ impl CsvRecorder {
     }
 
     /// Writes the rest of a run that ended early, under the other name.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn leave(mut self) -> Result<(), CosimError> {
         self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
     }
@@ -76,6 +67,47 @@ impl Observer for CsvRecorder {
     }
 }
 
+/// An impact of the ball on a membrane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MembraneImpact {
+    /// s
+    pub time: f64,
+    /// The membrane: 0 left, 1 right.
+    pub side: usize,
+    /// `C_3` / `C_2`.
+    pub ratio: f64,
+}
+
+/// Finds the impacts from the running sum of their gains. Impacts within one communication step count as one.
+#[derive(Debug)]
+pub struct ImpactLog {
+    bias_voltage: f64,
+    gain: f64,
+    /// In order.
+    pub impacts: Vec<MembraneImpact>,
+}
+
+impl ImpactLog {
+    /// A log for a harvester of `bias_voltage`, V.
+    pub fn new(bias_voltage: f64) -> Self {
+        Self { bias_voltage, gain: 0.0, impacts: Vec::new() }
+    }
+}
+
+impl Observer for ImpactLog {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        let gain = row.harvester.voltage_gain();
+        if gain > self.gain {
+            // Left is the end that the ball meets when z_M - z_m = +s/2.
+            let side = usize::from(row.harvester.relative_displacement() < 0.0);
+            let ratio = 1.0 + (gain - self.gain) / self.bias_voltage;
+            self.impacts.push(MembraneImpact { time: row.time, side, ratio });
+            self.gain = gain;
+        }
+        Ok(())
+    }
+}
+
 /// One point of a [`Trace`].
 #[derive(Debug, Clone)]
 pub struct TracePoint {
@@ -85,6 +117,13 @@ pub struct TracePoint {
     pub harvester: HarvesterSample,
     /// The circuits.
     pub circuits: Vec<CircuitSample>,
+}
+
+impl TracePoint {
+    /// The point of `row`.
+    pub fn of(row: &Row<'_>) -> Self {
+        Self { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() }
+    }
 }
 
 /// Tells the time reached to a [`Progress`], in thousandths of the run, and ends the run if that wants it.
@@ -156,14 +195,13 @@ impl Trace {
 
 impl Observer for Trace {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
-        let point = || TracePoint { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() };
         let [detail_due, due] = &mut self.due;
         if row.time >= *detail_due || row.time >= self.until {
-            self.detail.push(point());
+            self.detail.push(TracePoint::of(row));
             *detail_due = row.time + self.spacing[0];
         }
         if row.time >= *due {
-            self.overview.push(point());
+            self.overview.push(TracePoint::of(row));
             *due += self.spacing[1];
         }
         Ok(())

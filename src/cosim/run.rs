@@ -94,9 +94,6 @@ pub struct Cosimulation<'a> {
 
 impl<'a> Cosimulation<'a> {
     /// Initialises harvester and circuits, with a run of the mechanics alone ahead.
-    ///
-    /// # Errors
-    /// As [`run`], before the first step.
     pub fn new(options: &Options<'a>) -> Result<Self, CosimError> {
         let &Options { harvester: fmu, scenario, solver, coupling } = options;
         let (mechanical, request) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
@@ -112,9 +109,6 @@ impl<'a> Cosimulation<'a> {
     }
 
     /// Runs to the end and shows each communication point to `recorder`.
-    ///
-    /// # Errors
-    /// What a subsystem or the recorder says.
     pub fn run(self, recorder: &mut dyn Observer, progress: &dyn Progress) -> Result<Results, CosimError> {
         let Self { master, scenario, circuits, bias_voltage } = self;
         let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));

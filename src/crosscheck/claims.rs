@@ -254,8 +254,7 @@ impl Findings<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cosim::MechanicsSummary;
-    use crate::crosscheck::MembraneImpact;
+    use crate::cosim::{MechanicsSummary, MembraneImpact};
     use crate::ngspice::CapacitanceTable;
     use videg_circuit::Circuit;
 

@@ -9,22 +9,14 @@ use crate::ngspice::NgspiceError;
 
 /// Why a file cannot be written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum FileError {
-    /// The file is not of an earlier export.
     #[error("--export: {} is there already and is not of an earlier export; name another folder", .0.display())]
     Foreign(PathBuf),
-    /// The system refuses.
     #[error("cannot write {}: {cause}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
-    /// A netlist cannot be made.
+    Write { path: PathBuf, cause: std::io::Error },
     #[error(transparent)]
     Ngspice(#[from] NgspiceError),
-    /// A figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] ReportError),
 }

@@ -136,9 +136,6 @@ fn script(sums: &str, printed: &str) -> String {
 }
 
 /// Checks that the folder does not exist, or that its page, if there is one, is of an earlier export.
-///
-/// # Errors
-/// Another file of these names.
 pub fn check(folder: &Path) -> Result<(), FileError> {
     if folder.exists() && !folder.is_dir() {
         return Err(FileError::Foreign(folder.to_owned()));

@@ -14,9 +14,6 @@ use crate::cosim::CircuitSample;
 
 /// Writes data and figures into `folder`; returns the files, and the figures as SVG: the overlay and, if there is a sweep,
 /// that of the sweep.
-///
-/// # Errors
-/// A file that cannot be written.
 pub fn write(folder: &Path, found: &Crosscheck) -> Result<(Vec<PathBuf>, Vec<String>), FileError> {
     let mut files = vec![
         csv(folder.join("waveforms.csv"), waveforms(found))?,

@@ -3,20 +3,9 @@
 use fmu_import::Fmu;
 use videg_circuit::{Settings, Topology, formulas};
 
-use crate::cosim::{CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome, Row};
+use crate::cosim::{Coupling, HarvesterFmu, ImpactLog, Master, MechanicsSummary, MembraneImpact, Observer, Outcome};
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 use crate::scenario::{Scenario, Setting};
-
-/// An impact of the ball on a membrane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MembraneImpact {
-    /// s
-    pub time: f64,
-    /// The membrane: 0 left, 1 right.
-    pub side: usize,
-    /// `C_3` / `C_2`.
-    pub ratio: f64,
-}
 
 /// A run of the mechanics.
 #[derive(Debug, Clone)]
@@ -55,7 +44,7 @@ impl MechanicalRun {
         let table = refined(&table, scenario.step.max(scenario.until / Self::GRID))?;
         let harvester = HarvesterFmu::new(fmu, scenario, settings)?;
         let bias_voltage = harvester.bias_voltage();
-        let mut log = ImpactLog { bias_voltage, gain: 0.0, impacts: Vec::new() };
+        let mut log = ImpactLog::new(bias_voltage);
         let master = Master::new(harvester, Vec::new(), scenario, Coupling::default())?;
         let Outcome { mechanics: summary, warnings, .. } = master.run(&mut [&mut log, observer])?;
         let least = |column: &[f64]| column.iter().copied().fold(f64::INFINITY, f64::min);
@@ -131,25 +120,4 @@ fn refined(table: &CapacitanceTable, spacing: f64) -> Result<CapacitanceTable, N
         refined.push(end, b)?;
     }
     Ok(refined)
-}
-
-/// Finds the impacts from the running sum of their gains. Impacts within one communication step count as one.
-struct ImpactLog {
-    bias_voltage: f64,
-    gain: f64,
-    impacts: Vec<MembraneImpact>,
-}
-
-impl Observer for ImpactLog {
-    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
-        let gain = row.harvester.voltage_gain();
-        if gain > self.gain {
-            // Left is the end that the ball meets when z_M - z_m = +s/2.
-            let side = usize::from(row.harvester.relative_displacement() < 0.0);
-            let ratio = 1.0 + (gain - self.gain) / self.bias_voltage;
-            self.impacts.push(MembraneImpact { time: row.time, side, ratio });
-            self.gain = gain;
-        }
-        Ok(())
-    }
 }

@@ -31,7 +31,7 @@ mod sweep;
 pub use check::{Agreement, Claim, QuantityCheck, Values};
 pub use compare::ComparedCircuit;
 pub use error::FileError;
-pub use mechanics::{MechanicalRun, MembraneImpact};
+pub use mechanics::MechanicalRun;
 pub use pulses::Pulses;
 pub use run::{Crosscheck, Options, run};
 pub use solver::Solver;

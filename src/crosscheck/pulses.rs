@@ -2,7 +2,8 @@
 
 use videg_circuit::{Topology, formulas};
 
-use super::mechanics::{MechanicalRun, MembraneImpact};
+use super::mechanics::MechanicalRun;
+use crate::cosim::MembraneImpact;
 use crate::ngspice::{CapacitanceTable, NgspiceError, Waveforms};
 
 /// The pulses of a run that differ in height, in order of their height, one after the other.

@@ -3,7 +3,9 @@
 use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 
 use super::{PaperError, Study};
-use crate::cosim::{CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row};
+use crate::cosim::{
+    CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, ImpactLog, Master, Observer, Row,
+};
 use crate::scenario::{Request, Setting};
 
 /// A run of a case of the paper that drives circuits.
@@ -74,21 +76,15 @@ impl Drive {
         };
         let Coupled { master, rest_capacitance, bias_voltage } =
             Coupled::new(study, request, circuits, self.tolerance)?;
-        let mut recorder = WindowRecorder {
-            from,
-            bias_voltage,
-            gain: 0.0,
-            start: None,
-            peaks: vec![0.0; circuits.len()],
-            ratios: Vec::new(),
-        };
-        let outcome = master.run(&mut [&mut recorder])?;
+        let mut log = ImpactLog::new(bias_voltage);
+        let mut recorder = WindowRecorder { from, start: None, peaks: vec![0.0; circuits.len()] };
+        let outcome = master.run(&mut [&mut log, &mut recorder])?;
         let ends = recorder.start.iter().flatten().zip(&outcome.circuits);
         Ok(Driven {
             time: to - from,
             power: ends.map(|(start, end)| Power::between(start, &end.ledger, to - from)).collect(),
             peaks: recorder.peaks,
-            ratios: recorder.ratios,
+            ratios: log.impacts.iter().filter(|impact| impact.time > from).map(|impact| impact.ratio).collect(),
             eq14: outcome.mechanics.average_power_eq13,
             rest_capacitance: rest_capacitance[0],
             bias_voltage,
@@ -164,24 +160,15 @@ pub fn circuit(topology: Topology, release: Release, voltage: f64, resistance: f
     settings
 }
 
-/// Notes the ledgers at the start of the window, and voltages and impacts in it; impacts within one communication step
-/// count as one.
+/// Notes the ledgers at the start of the window, and the highest voltages in it.
 struct WindowRecorder {
     from: f64,
-    bias_voltage: f64,
-    gain: f64,
     start: Option<Vec<Ledger>>,
     peaks: Vec<f64>,
-    ratios: Vec<f64>,
 }
 
 impl Observer for WindowRecorder {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
-        let gain = row.harvester.voltage_gain();
-        if gain > self.gain && row.time > self.from {
-            self.ratios.push(1.0 + (gain - self.gain) / self.bias_voltage);
-        }
-        self.gain = gain;
         if self.start.is_none() && row.time >= self.from {
             self.start = Some(row.circuits.iter().map(|circuit| circuit.ledger).collect());
         }

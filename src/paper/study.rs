@@ -46,10 +46,7 @@ pub struct Run {
 }
 
 impl Study<'_> {
-    /// Averages of each run, in their order.
-    ///
-    /// # Errors
-    /// The first that failed, in their order.
+    /// Averages of each run, in their order; the error is that of the first run that failed.
     pub fn averages(&self, runs: &[Run]) -> Result<Vec<Averages>, PaperError> {
         self.each(runs, |run| self.average(run))
     }

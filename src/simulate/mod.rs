@@ -51,9 +51,6 @@ pub struct Simulation<'a> {
 
 impl<'a> Simulation<'a> {
     /// Initialises the harvester.
-    ///
-    /// # Errors
-    /// As [`run`], before the first step.
     pub fn new(options: &Options<'a>) -> Result<Self, CosimError> {
         let &Options { harvester: fmu, scenario } = options;
         let (mechanical, circuit) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
@@ -62,9 +59,6 @@ impl<'a> Simulation<'a> {
     }
 
     /// Runs to the end and shows each communication point to `recorder`.
-    ///
-    /// # Errors
-    /// What the FMU or the recorder says.
     pub fn run(self, recorder: &mut dyn Observer, progress: &dyn Progress) -> Result<Results, CosimError> {
         let Self { master, scenario, circuit } = self;
         let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));
