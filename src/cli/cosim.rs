@@ -10,7 +10,7 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading, mechanics};
-use super::{Exit, cosim_report, output, picture, time_series};
+use super::{Exit, cosim_report, output, packaging, picture, time_series};
 use crate::cosim::{
     CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance,
     LabelledCircuit, Method, Options, Results,
@@ -19,9 +19,9 @@ use crate::scenario::Scenario;
 use videg_system::atomic_file;
 
 /// Values of the circuit that nobody set: not the start values of its FMU.
-const DEFAULTS: &str = "Unless set: supply.voltage is biasVoltage, zener.voltage is supply.voltage (both as in the paper), \
-    storage.voltage is what gains most over the impacts of a run of the mechanics ahead. The FMU HarvestingCircuit alone \
-    starts at fixed values.";
+const DEFAULTS: &str = "Defaults: supply.voltage is biasVoltage and zener.voltage is supply.voltage, as in the paper; storage.voltage \
+    is the voltage with the largest net gain over the impacts, from a run of the mechanics ahead. The FMU HarvestingCircuit \
+    alone has fixed start values.";
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -29,39 +29,18 @@ const DEFAULTS: &str = "Unless set: supply.voltage is biasVoltage, zener.voltage
 pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,
-    /// Which circuit the harvester is coupled with
+    /// Solver of the circuit
     #[arg(long, value_enum, default_value_t = Backend::Embedded)]
     circuit: Backend,
-    /// What harvester and circuit know of each other during a communication step
-    #[arg(long, value_enum, default_value_t = Order::GaussSeidel)]
-    master: Order,
-    /// Adapt the communication step (--step is the first one) so that no signal within it is off by more than this part of
+    /// Signals that harvester and circuit exchange for a communication step
+    #[arg(long, value_enum, default_value_t)]
+    master: Method,
+    /// Adapt the communication step, from --step on, so that the error of each signal within it stays below this fraction of
     /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     adaptive: Option<f64>,
     #[command(flatten)]
     isolation: IsolationOptions,
-}
-
-/// The method of the master, as it is asked for.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Order {
-    /// The harvester steps first, then the circuit with C(t) linear between its ends: second order
-    GaussSeidel,
-    /// Both step at once, with C(t) extrapolated at dC/dt: second order
-    Jacobi,
-    /// Both step at once on a regular grid and get values only, as from a tool that knows no more of FMI: first order
-    Plain,
-}
-
-impl From<Order> for Method {
-    fn from(order: Order) -> Self {
-        match order {
-            Order::GaussSeidel => Self::GaussSeidel,
-            Order::Jacobi => Self::Jacobi,
-            Order::Plain => Self::Plain,
-        }
-    }
 }
 
 /// What solves the circuit.
@@ -92,7 +71,7 @@ struct Output<'a> {
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = options.scenario()?;
-    let coupling = Coupling { method: arguments.master.into(), tolerance: arguments.adaptive };
+    let coupling = Coupling { method: arguments.master, tolerance: arguments.adaptive };
     coupling.check()?;
     let harvester = arguments.isolation.open_own("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
@@ -100,7 +79,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let solver = match arguments.circuit {
         Backend::Embedded => CircuitSolver::Embedded,
         Backend::Ngspice => {
-            program = std::env::current_exe().context("cannot find this program's own file")?;
+            program = packaging::program()?;
             CircuitSolver::Ngspice(&program)
         }
         Backend::Fmu => {
@@ -141,10 +120,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 /// Runs `cosimulation` and writes its time series to `csv`. The time series of a run that fails stays under another name.
 fn record(cosimulation: Cosimulation<'_>, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
     let mut recorder = CsvRecorder::create(csv, true)?;
-    let bar = TimeBar::new(scenario.name.clone());
-    let results = cosimulation.run(&mut recorder, &bar);
-    bar.finish();
-    match results {
+    match cosimulation.run(&mut recorder, &TimeBar::new(&scenario.name)) {
         Ok(results) => {
             recorder.finish()?;
             Ok(results)

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use videg_circuit::names;
@@ -23,16 +22,16 @@ use crate::scenario::Setting;
 pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,
-    /// What releases the charge, as --set release=
+    /// Release element, as --set release=
     #[arg(long, value_enum)]
     release: Option<ReleaseName>,
-    /// How the membranes are connected, as --set topology=
+    /// Connection of the membranes, as --set topology=
     #[arg(long, value_enum)]
     topology: Option<TopologyName>,
-    /// Follow the net gain over the voltage of release and the load resistance, too
+    /// Also calculate the net gain over the voltage of release and the load resistance
     #[arg(long)]
     sweep: bool,
-    /// Write the netlists, C(t) and the expected values into a folder that ngspice alone can run
+    /// Write netlists, C(t) and expected values into a folder for ngspice alone
     #[arg(long, value_name = "DIR")]
     export: Option<PathBuf>,
 }
@@ -108,12 +107,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let ngspice = Ngspice::find(None)?;
     let fmu = packaging::open("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
-    let program = std::env::current_exe().context("cannot find this program's own file")?;
-    let bar = TaskBar::new(scenario.name.clone());
-    let (harvester, ngspice, sweep) = (&fmu, &ngspice, arguments.sweep);
-    let options_of_run = Options { harvester, scenario: &scenario, ngspice, program: &program, sweep };
-    let found = crosscheck::run(&options_of_run, &bar)?;
-    bar.finish();
+    let (program, sweep) = (packaging::program()?, arguments.sweep);
+    let inputs = Options { harvester: &fmu, scenario: &scenario, ngspice: &ngspice, program: &program, sweep };
+    let found = crosscheck::run(&inputs, &TaskBar::new(&scenario.name))?;
     let (mut written, figures) = files::write(&folder, &found)?;
     let html = folder.join("report.html");
     output::write(&html, page::html(&found, figures)?)?;

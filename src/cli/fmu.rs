@@ -28,12 +28,12 @@ pub struct Arguments {
 enum Task {
     /// Build the FMUs of this project into target/fmu
     Build {
-        /// Build for these instead of this machine alone, all into the same FMUs: linux64 (runs with glibc 2.17 and
+        /// Build for these platforms, all into the same FMUs, instead of this machine: linux64 (runs with glibc 2.17 and
         /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
         #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
         targets: Vec<String>,
-        /// Add a library that was built elsewhere, such as darwin64=libVibroImpactHarvester.dylib; its name tells the
-        /// FMU. May be repeated
+        /// Add a library built elsewhere, e.g. darwin64=libVibroImpactHarvester.dylib; its name tells the FMU. May be
+        /// repeated
         #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
         added: Vec<String>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
@@ -43,7 +43,7 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
-    /// Load an FMU and run it for some steps: does it keep the promises of its model description?
+    /// Load an FMU, run some steps, and check it against its model description
     Check {
         /// The FMU; its code is run
         file: PathBuf,
@@ -53,7 +53,7 @@ enum Task {
         #[command(flatten)]
         isolation: IsolationOptions,
     },
-    /// Describe an FMU: platforms, capabilities, variables. Nothing of it is unpacked or run
+    /// Describe an FMU: platforms, capabilities, variables; unpacks and runs nothing
     Info {
         /// The FMU
         file: PathBuf,
@@ -80,21 +80,12 @@ fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bo
     }
     let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
     let waiting = spinner("building the FMUs");
-    let built = package::build_all(&Options {
-        output: folder,
-        targets: targets.to_vec(),
-        added,
-        progress: packaging::follow,
-        ..Options::default()
-    });
-    waiting.finish_and_clear();
-    let fmus = built?;
-    if json {
-        output::print_json(&serde_json::to_string_pretty(&Built { fmus })?)?;
-    } else {
-        fmus.iter().try_for_each(|path| output::print(&path.display().to_string()))?;
-    }
-    Ok(())
+    let (targets, progress) = (targets.to_vec(), packaging::follow);
+    let options = Options { output: folder, targets, added, progress, ..Options::default() };
+    let built = Built { fmus: package::build_all(&options)? };
+    drop(waiting);
+    let paths = || built.fmus.iter().map(|path| path.display().to_string()).collect::<Vec<_>>();
+    output::show(json, &built, || paths().join("\n"))
 }
 
 /// One variable as `--json` shows it.
@@ -139,12 +130,7 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
         platforms: archive.platforms(),
         variables,
     };
-    if json {
-        output::print_json(&serde_json::to_string_pretty(&info)?)?;
-    } else {
-        output::print(&text(&info))?;
-    }
-    Ok(())
+    output::show(json, &info, || text(&info))
 }
 
 /// Names of the items of each enumeration by their values: there may be many items, and many variables of their type.

@@ -55,44 +55,16 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
     let fmu = isolation.open(file)?;
     let (checks, end) = checks(&fmu);
     let passed = checks.iter().all(|check| check.passed);
-    if json {
-        output::print_json(&serde_json::to_string_pretty(&Output { file, passed, checks })?)?;
-    } else {
-        for check in &checks {
-            let (mark, detail) = (if check.passed { "ok    " } else { "FAILED" }, &check.detail);
-            let colon = if detail.is_empty() { "" } else { ": " };
-            output::print(&one_line(&format!("{mark}  {}{colon}{detail}", check.name)))?;
-        }
-    }
+    let line = |CheckResult { name, passed, detail }: &CheckResult| {
+        let mark = if *passed { "ok    " } else { "FAILED" };
+        let colon = if detail.is_empty() { "" } else { ": " };
+        one_line(&format!("{mark}  {name}{colon}{detail}"))
+    };
+    let output = Output { file, passed, checks };
+    output::show(json, &output, || output.checks.iter().map(line).collect::<Vec<_>>().join("\n"))?;
     match end {
         Some(error) => Err(error.into()),
         None => Ok(if passed { Exit::Passed } else { Exit::Failed }),
-    }
-}
-
-fn check(name: &'static str, result: Result<String, String>) -> CheckResult {
-    let passed = result.is_ok();
-    CheckResult { name, passed, detail: result.unwrap_or_else(|reason| reason) }
-}
-
-/// Results of the checks in their order, up to the first that fails.
-#[derive(Default)]
-struct CheckList {
-    done: Vec<CheckResult>,
-    /// What the FMU did to its process.
-    end: Option<FmiError>,
-}
-
-impl CheckList {
-    /// Adds a check; whether it has passed.
-    fn add(&mut self, name: &'static str, result: Result<String, Trouble>) -> bool {
-        let result = result.map_err(|trouble| match trouble {
-            Trouble::Failed(reason) => reason,
-            Trouble::Ended(error) => self.end.insert(error).to_string(),
-        });
-        let passed = result.is_ok();
-        self.done.push(check(name, result));
-        passed
     }
 }
 
@@ -108,20 +80,27 @@ fn checks(fmu: &Fmu) -> (Vec<CheckResult>, Option<FmiError>) {
             done(instance.terminate().and_then(|()| instance.reset()).and_then(|()| initialize(instance)))
         }),
     ];
-    let mut checks = CheckList::default();
-    let first = "library loads and instantiates";
-    let mut instance = match fmu.instantiate("check", Logging::default()) {
-        Ok(instance) => instance,
-        Err(error) => {
-            checks.add(first, Err(error.into()));
-            return (checks.done, checks.end);
-        }
+    let (mut checks, mut end) = (Vec::new(), None);
+    let mut passes = |name, result: Result<String, Trouble>| {
+        let passed = result.is_ok();
+        let detail = result.unwrap_or_else(|trouble| match trouble {
+            Trouble::Failed(reason) => reason,
+            Trouble::Ended(error) => end.insert(error).to_string(),
+        });
+        checks.push(CheckResult { name, passed, detail });
+        passed
     };
-    checks.add(first, Ok(String::new()));
-    if tasks.into_iter().all(|(name, task)| checks.add(name, task(&mut instance))) {
-        checks.add("is freed", done(instance.free()));
+    let first = "library loads and instantiates";
+    match fmu.instantiate("check", Logging::default()) {
+        Err(error) => _ = passes(first, Err(error.into())),
+        Ok(mut instance) => {
+            passes(first, Ok(String::new()));
+            if tasks.into_iter().all(|(name, task)| passes(name, task(&mut instance))) {
+                passes("is freed", done(instance.free()));
+            }
+        }
     }
-    (checks.done, checks.end)
+    (checks, end)
 }
 
 fn done<T>(result: Result<T, FmiError>) -> Result<String, Trouble> {

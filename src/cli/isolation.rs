@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context as _, ensure};
+use anyhow::ensure;
 use clap::Args;
 
 use super::{output, packaging};
@@ -17,18 +17,17 @@ const LONGEST: f64 = 1e9;
 /// How FMUs are run.
 #[derive(Args, Default)]
 pub struct IsolationOptions {
-    /// Run each instance of an FMU in a process of its own, which is all that it can take down [default: of FMUs that are
-    /// not of this project]
+    /// Run each instance of an FMU in its own process, so that a crash ends only that process [default: for FMUs that are not
+    /// of this project]
     #[arg(long, conflicts_with = "no_isolate")]
     isolate: bool,
     /// Run the FMU in this process: faster, for FMUs that you trust
     #[arg(long)]
     no_isolate: bool,
-    /// Longest time that a call of an isolated FMU may take, s; 0: any [default: 60]
+    /// Longest duration of a call of an isolated FMU, s; 0: no limit [default: 60]
     #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true, conflicts_with = "no_isolate")]
     time_limit: Option<f64>,
-    /// Memory (address space) that the process of an isolated FMU may take, MiB; 0: any. Not on macOS and Windows
-    /// [default: 4096]
+    /// Largest address space of the process of an isolated FMU, MiB; 0: no limit. Not on macOS and Windows [default: 4096]
     #[arg(long, value_name = "MIB", conflicts_with = "no_isolate")]
     memory_limit: Option<u32>,
 }
@@ -89,8 +88,7 @@ impl IsolationOptions {
             // Not an error: on Linux the same script has the limit.
             output::warn(&["--memory-limit binds nothing on this system".to_owned()]);
         }
-        let program = std::env::current_exe().context("cannot find this program's own file")?;
-        Ok(Isolation { program, bounds: self.bounds() })
+        Ok(Isolation { program: packaging::program()?, bounds: self.bounds() })
     }
 
     /// Limits of the FMU of the user, or of those of this project if there is none; none if it is not isolated.

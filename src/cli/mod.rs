@@ -52,13 +52,13 @@ struct Cli {
 enum Verb {
     /// Co-simulate the harvester FMU with a harvesting circuit
     Cosim(cosim::Arguments),
-    /// Hold the closed forms of the paper, the embedded solver and ngspice against each other on one C(t)
+    /// Compare the closed forms of the paper, the embedded solver and ngspice on the same C(t)
     Crosscheck(crosscheck::Arguments),
-    /// Run the harvester FMU alone: the mechanics, C(t), and the gains that the paper counts
+    /// Run the harvester FMU alone: mechanics, C(t) and the gains of the paper
     Simulate(simulate::Arguments),
-    /// Run many times over parameters and seeds, on all cores; resumes what was interrupted, merges what was divided
+    /// Run many simulations over parameters and seeds, on all cores; resumes interrupted sweeps, merges shards
     Sweep(Box<sweep::Arguments>),
-    /// Reproduce the tables and figures of the paper, as data, pictures and one report
+    /// Reproduce the tables and figures of the paper as data, pictures and one report
     Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs
     Fmu(fmu::Arguments),

@@ -12,8 +12,8 @@ pub struct CaseOptions {
     /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. Initial values
-    /// of a case stay as they are in the paper
+    /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. The initial
+    /// values of a case stay those of the paper
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
     /// Case file (TOML) with case, until, step, window and a [set] table
@@ -29,7 +29,7 @@ pub struct CaseOptions {
 pub struct RunOptions {
     #[command(flatten)]
     case: CaseOptions,
-    /// Communication step, s; impacts and peaks of C(t) are landed on as well [default: 1e-3]
+    /// Communication step, s; impacts and peaks of C(t) are communication points, too [default: 1e-3]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     step: Option<f64>,
     /// Averaging window, s [default: 50,100, or the second half of a shorter run]
@@ -58,9 +58,6 @@ pub fn parse_window(text: &str) -> Result<Window, String> {
 
 impl CaseOptions {
     /// Resolves the options.
-    ///
-    /// # Errors
-    /// Whatever in them makes no sense.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
         self.request()?.resolve()
     }
@@ -78,17 +75,11 @@ impl CaseOptions {
 
 impl RunOptions {
     /// Resolves the options.
-    ///
-    /// # Errors
-    /// Whatever in them makes no sense.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
         self.scenario_with(Vec::new())
     }
 
     /// Resolves the options, with `more` settings on top of theirs.
-    ///
-    /// # Errors
-    /// Whatever in them makes no sense.
     pub fn scenario_with(&self, more: Vec<Setting>) -> Result<Scenario, ScenarioError> {
         let mut request = self.case.request()?;
         request.settings.extend(more);

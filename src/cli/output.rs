@@ -5,6 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use serde::Serialize;
 
 use super::message::{plain, plain_json, say};
 use crate::scenario::Scenario;
@@ -36,6 +37,12 @@ pub fn print_json(json: &str) -> io::Result<()> {
     put(&(plain_json(json) + "\n"))
 }
 
+/// Prints `value` as a JSON document, or else its `text`.
+pub fn show(is_json: bool, value: &impl Serialize, text: impl FnOnce() -> String) -> anyhow::Result<()> {
+    let text = if is_json { plain_json(&serde_json::to_string_pretty(value)?) } else { plain(&text()) };
+    Ok(put(&(text + "\n"))?)
+}
+
 /// Writes `text` on stdout as it is. A reader that closes early (`videg ... | head`) is no failure.
 pub fn put(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout();
@@ -45,14 +52,11 @@ pub fn put(text: &str) -> io::Result<()> {
     }
 }
 
-/// The command as a user would type it.
-pub fn command_line() -> String {
-    typed(std::env::args_os().skip(1))
-}
-
 /// An HTML report, with nothing but its heading.
 pub fn report(title: impl Into<String>, subtitle: impl Into<String>) -> Report {
-    Report::new(title, subtitle).command(command_line()).generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
+    Report::new(title, subtitle)
+        .command(typed(std::env::args_os().skip(1)))
+        .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
 }
 
 /// These arguments as a user would type them. A file name may be no valid text.

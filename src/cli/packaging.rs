@@ -24,13 +24,18 @@ pub fn build() -> anyhow::Result<Vec<PathBuf>> {
     // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
     let as_is = std::env::var_os("CARGO").is_none();
     let placed = package::build_for_use(&Options { as_is, progress: follow, ..Options::default() });
-    waiting.finish_and_clear();
+    drop(waiting);
     let Placed { archives, refused } = placed.context("cannot package the FMUs")?;
     if let (Some(refused), Some(folder)) = (refused, archives.first().and_then(|archive| archive.parent())) {
         static SAID: Once = Once::new();
         SAID.call_once(|| say(&format!("{refused}; the FMUs are in {}", folder.display())));
     }
     Ok(archives)
+}
+
+/// This program's own file, which runs FMUs and ngspice's library in processes of their own.
+pub fn program() -> anyhow::Result<PathBuf> {
+    std::env::current_exe().context("cannot find this program's own file")
 }
 
 /// Packages the FMUs, with progress; returns the archive of the one with this identifier.

@@ -1,54 +1,37 @@
-//! Progress bars on stderr. They draw only if that is a terminal.
+//! Progress bars on stderr. They draw only if that is a terminal, and go when they are dropped.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use super::message::{plain, say};
 use crate::progress::{Progress, Running};
 
-/// A bar that follows the simulated time.
-pub struct TimeBar {
-    bar: ProgressBar,
-}
+/// Follows the simulated time.
+pub struct TimeBar(ProgressBar);
 
 impl TimeBar {
     /// A bar with this text.
-    pub fn new(message: impl Into<String>) -> Self {
-        let bar = styled("{msg} [{bar:40}] {percent:>3} %, {eta} left").with_message(plain(&message.into()));
-        Self { bar }
-    }
-
-    /// Removes the bar.
-    pub fn finish(self) {
-        self.bar.finish_and_clear();
+    pub fn new(message: &str) -> Self {
+        Self(styled("{msg} [{bar:40}] {percent:>3} %, {eta} left").with_message(plain(message)))
     }
 }
 
 impl Progress for TimeBar {
     fn advance(&self, done: u64, total: u64, _running: &[Running]) {
-        show(&self.bar, done, total);
+        show(&self.0, done, total);
     }
 }
 
-/// A bar that follows tasks and names those that run.
-pub struct TaskBar {
-    bar: ProgressBar,
-    name: String,
-}
+/// Follows tasks and names those that run.
+pub struct TaskBar(ProgressBar);
 
 impl TaskBar {
     /// A bar for the tasks of `name`.
-    pub fn new(name: String) -> Self {
-        let bar = styled("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}");
-        tick(&bar, Duration::from_millis(500));
-        Self { bar, name }
-    }
-
-    /// Removes the bar.
-    pub fn finish(self) {
-        self.bar.finish_and_clear();
+    pub fn new(name: &str) -> Self {
+        let bar = styled("{prefix} [{bar:20}] {pos}/{len}, {elapsed}: {wide_msg}").with_prefix(plain(name));
+        Self(ticking(bar, Duration::from_millis(500)))
     }
 }
 
@@ -58,14 +41,13 @@ impl Progress for TaskBar {
             Some(percent) => format!("{} {percent} %", task.name),
             None => task.name.clone(),
         };
-        self.bar.set_prefix(self.name.clone());
-        show(&self.bar, done, total);
-        self.bar.set_message(running.iter().map(task).collect::<Vec<_>>().join(" | "));
+        show(&self.0, done, total);
+        self.0.set_message(running.iter().map(task).collect::<Vec<_>>().join(" | "));
     }
 }
 
-/// A bar that follows items of unlike length, and the parts of the present one. Without a terminal, a line for each complete
-/// item goes to stderr, since it may take minutes.
+/// Follows items of unlike length, and the parts of the present one. Without a terminal, a line for each complete item goes to
+/// stderr, since it may take minutes.
 pub struct ItemBar {
     bar: ProgressBar,
     items: usize,
@@ -76,13 +58,7 @@ impl ItemBar {
     /// A bar for so many items.
     pub fn new(items: usize) -> Self {
         let bar = styled("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
-        tick(&bar, Duration::from_millis(500));
-        Self { bar, items, begun: AtomicUsize::new(0) }
-    }
-
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
+        Self { bar: ticking(bar, Duration::from_millis(500)), items, begun: AtomicUsize::new(0) }
     }
 }
 
@@ -108,7 +84,7 @@ impl Progress for ItemBar {
     }
 }
 
-/// A bar that follows runs, their rate and the time that is left.
+/// Follows runs, their rate and the time that is left.
 pub struct RunBar<'a> {
     bar: ProgressBar,
     has_begun: AtomicBool,
@@ -118,14 +94,8 @@ pub struct RunBar<'a> {
 impl<'a> RunBar<'a> {
     /// A bar for the runs of `name`, which end early when `stop` is set.
     pub fn new(name: &str, stop: &'a AtomicBool) -> Self {
-        let bar = styled("{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left")
-            .with_message(plain(name));
-        Self { bar, has_begun: AtomicBool::new(false), stop }
-    }
-
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
+        let bar = styled("{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left");
+        Self { bar: bar.with_message(plain(name)), has_begun: AtomicBool::new(false), stop }
     }
 }
 
@@ -146,7 +116,7 @@ impl Progress for RunBar<'_> {
 /// A bar with a style that holds the form of its line.
 fn styled(template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(1).with_style(style.progress_chars("=> "))
+    ProgressBar::new(1).with_style(style.progress_chars("=> ")).with_finish(ProgressFinish::AndClear)
 }
 
 fn show(bar: &ProgressBar, done: u64, total: u64) {
@@ -156,14 +126,14 @@ fn show(bar: &ProgressBar, done: u64, total: u64) {
 
 /// A spinner for work of unknown length.
 pub fn spinner(message: &str) -> ProgressBar {
-    let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
-    tick(&spinner, Duration::from_millis(100));
-    spinner
+    let spinner = ProgressBar::new_spinner().with_message(message.to_owned()).with_finish(ProgressFinish::AndClear);
+    ticking(spinner, Duration::from_millis(100))
 }
 
 /// Redraws a visible bar at intervals, if the system gives a thread for that: without one the library would panic.
-fn tick(bar: &ProgressBar, every: Duration) {
+fn ticking(bar: ProgressBar, every: Duration) -> ProgressBar {
     if !bar.is_hidden() && std::thread::Builder::new().spawn(|| ()).is_ok() {
         bar.enable_steady_tick(every);
     }
+    bar
 }

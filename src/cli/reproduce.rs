@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::interruption::Interruption;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
-use super::{Exit, format, output, packaging, picture, reproduce_files as files};
+use super::{Exit, format, output, packaging, picture, reproduce_files as files, run_output};
 use crate::cosim::{Cosimulation, CsvRecorder, Options};
 use crate::crosscheck;
 use crate::ngspice::Ngspice;
@@ -21,13 +21,13 @@ use fmu_import::{Fmu, nearest_name};
 /// Arguments of the verb.
 #[derive(Args)]
 pub struct Arguments {
-    /// What to make, e.g. table2 fig14; all: everything there is [default: all]
+    /// Items to make, e.g. table2 fig14; all: every item [default: all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
     /// Folder for data, pictures and report
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     output: PathBuf,
-    /// Make fewer samples and coarser grids, for a look
+    /// Use fewer samples and coarser grids, for a quick look
     #[arg(long)]
     quick: bool,
     /// Print one JSON object on stdout instead of the table
@@ -39,31 +39,14 @@ pub struct Arguments {
 const AUDIT: &str = "audit";
 const CROSSCHECK: &str = "crosscheck";
 
-/// An item that was made, for `--json`.
-#[derive(Serialize)]
-struct Made<'a> {
-    name: &'a str,
-    title: &'a str,
-    findings: Vec<Row<'a>>,
-    files: &'a [PathBuf],
-}
-
-#[derive(Serialize)]
-struct Row<'a> {
-    #[serde(flatten)]
-    finding: &'a Finding,
-    /// videg / paper - 1.
-    deviation: Option<f64>,
-}
-
 #[derive(Serialize)]
 struct Output<'a> {
     quick: bool,
     /// Whether each difference from the paper has a known reason, and the solvers of the crosscheck agree.
     passed: bool,
-    items: Vec<Made<'a>>,
+    items: &'a [Chapter],
     warnings: &'a [String],
-    report: PathBuf,
+    report: &'a Path,
 }
 
 /// Everything made so far.
@@ -105,19 +88,18 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
     if wanted.has(CROSSCHECK) {
         during(&bar, CROSSCHECK, "against ngspice", || made.crosscheck(&fmu, wanted.names_it(CROSSCHECK), &bar))?;
     }
-    bar.finish();
+    drop(bar);
     let passed = !made.solvers_disagree && !made.findings().any(|finding| finding.verdict == Verdict::Differs);
     let report = page::write(folder, &made.chapters, &made.warnings, &fmu, arguments.quick)?;
     files::summary(&folder.join("summary.csv"), made.findings())?;
-    let json = serde_json::to_string_pretty(&made.json(arguments.quick, passed, &report))?;
-    output::write(&folder.join("result.json"), &json)?;
-    if arguments.json {
-        output::print_json(&json)?;
-    } else {
-        output::print(&made.text(&report))?;
-    }
-    output::warn(&made.warnings);
+    let (items, warnings) = (&made.chapters[..], &made.warnings[..]);
+    let result = Output { quick: arguments.quick, passed, items, warnings, report: &report };
+    run_output::conclude(folder, arguments.json, &result, &[made.text(&report)], warnings)?;
     Ok(if passed { Exit::Passed } else { Exit::Failed })
+}
+
+fn all_names() -> impl Iterator<Item = &'static str> {
+    ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK])
 }
 
 /// Names of the items to make.
@@ -127,7 +109,7 @@ struct Wanted {
 
 impl Wanted {
     fn new(names: &[String]) -> anyhow::Result<Self> {
-        let known: Vec<&str> = ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK, "all"]).collect();
+        let known: Vec<&str> = all_names().chain(["all"]).collect();
         if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
             let hint = nearest_name(unknown, known.iter().copied());
             let hint = hint.map_or_else(String::new, |nearest| format!("did you mean {nearest}? "));
@@ -146,7 +128,7 @@ impl Wanted {
     }
 
     fn count(&self) -> usize {
-        ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK]).filter(|name| self.has(name)).count()
+        all_names().filter(|name| self.has(name)).count()
     }
 }
 
@@ -193,7 +175,7 @@ impl Reproduction<'_> {
         let folder = self.folder.join(CROSSCHECK);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
-        let program = std::env::current_exe().context("cannot find this program's own file")?;
+        let program = packaging::program()?;
         let options = crosscheck::Options {
             harvester: fmu,
             scenario: &scenario,
@@ -211,18 +193,6 @@ impl Reproduction<'_> {
 
     fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.chapters.iter().flat_map(|chapter| &chapter.findings)
-    }
-
-    fn json<'b>(&'b self, quick: bool, passed: bool, report: &Path) -> Output<'b> {
-        let row = |finding: &'b Finding| Row { finding, deviation: finding.deviation() };
-        let made = |chapter: &'b Chapter| Made {
-            name: chapter.name,
-            title: chapter.title,
-            findings: chapter.findings.iter().map(row).collect(),
-            files: &chapter.files,
-        };
-        let items = self.chapters.iter().map(made).collect();
-        Output { quick, passed, items, warnings: &self.warnings, report: report.to_owned() }
     }
 
     fn text(&self, report: &Path) -> String {

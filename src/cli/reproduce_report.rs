@@ -2,14 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::{cosim_report, crosscheck_report, format, output};
 use crate::cosim::Results;
 use crate::crosscheck::Crosscheck;
 use crate::paper::{Artefact, Finding, Verdict};
 use fmu_import::Fmu;
-use videg_report::{self, Cell, Column, Drawing, Report, Section, Table, Tone};
+use videg_report::{self, Cell, Column, Drawing, Section, Table, Tone};
 
-/// One table or figure in the report.
+/// One table or figure in the report. Field names are the keys of `--json`.
+#[derive(Serialize)]
 pub struct Chapter {
     /// Its name on the command line.
     pub name: &'static str,
@@ -19,6 +22,7 @@ pub struct Chapter {
     pub findings: Vec<Finding>,
     /// The files written.
     pub files: Vec<PathBuf>,
+    #[serde(skip)]
     sections: Vec<Section>,
 }
 
@@ -83,13 +87,11 @@ pub fn write(
     fmu: &Fmu,
     quick: bool,
 ) -> anyhow::Result<PathBuf> {
-    let mut report = Report::new(
+    let mut report = output::report(
         "The paper, reproduced",
         "Every table and figure of \"Energy harvesting from a DE-based dynamic vibro-impact system\", computed through the \
          FMI 2.0 co-simulation interface of VibroImpactHarvester.fmu, and what lies beyond the paper.",
     )
-    .command(output::command_line())
-    .generated_by(concat!("videg ", env!("CARGO_PKG_VERSION")))
     .section(summary(chapters, warnings, quick));
     for section in chapters.iter().flat_map(|chapter| &chapter.sections) {
         report = report.section(section.clone());

@@ -25,8 +25,8 @@ use videg_report::Section;
 pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,
-    /// Law of the contact between ball and membrane, the same as --set contact.law=LAW; both: run one after the other and
-    /// compare [default: impulsive]
+    /// Contact law of ball and membrane, the same as --set contact.law=LAW; both: run and compare both laws [default:
+    /// impulsive]
     #[arg(long, value_enum)]
     law: Option<Law>,
     #[command(flatten)]
@@ -65,9 +65,7 @@ fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results>
     let simulation = Simulation::new(&Options { harvester: fmu, scenario })?;
     output::warn(time_series::warning(scenario, false).as_slice());
     let mut recorder = CsvRecorder::create(csv, false)?;
-    let bar = TimeBar::new(scenario.name.clone());
-    let results = simulation.run(&mut recorder, &bar)?;
-    bar.finish();
+    let results = simulation.run(&mut recorder, &TimeBar::new(&scenario.name))?;
     recorder.finish()?;
     Ok(results)
 }

@@ -59,12 +59,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let parameters = package.write(&ssp).with_context(|| format!("cannot package {FILE}"))?;
     let warnings: Vec<_> = enumerations(&parameters, [&harvester_fmu, &circuit_fmu]).collect();
-    if arguments.json {
-        let packaged = Packaged { case: &scenario.name, ssp: &ssp, parameters: &parameters, warnings: &warnings };
-        output::print_json(&serde_json::to_string_pretty(&packaged)?)?;
-    } else {
-        output::print(&ssp.display().to_string())?;
-    }
+    let packaged = Packaged { case: &scenario.name, ssp: &ssp, parameters: &parameters, warnings: &warnings };
+    output::show(arguments.json, &packaged, || ssp.display().to_string())?;
     output::warn(&warnings);
     Ok(Exit::Passed)
 }

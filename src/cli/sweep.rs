@@ -28,19 +28,19 @@ pub struct Arguments {
     /// Run any FMU for FMI 2.0 co-simulation, in place of the harvester
     #[arg(long, value_name = "FILE")]
     fmu: Option<PathBuf>,
-    /// Run share i of n only, for `sweep merge` to put together
+    /// Run only share I of N; `sweep merge` puts the shards together
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
-    /// Runs that go on at once [default: one on each core]
+    /// Number of parallel runs [default: one on each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Folder for the results; the same command with the same folder goes on where it ended
+    /// Folder for the results; the same command with the same folder resumes
     #[arg(long, value_name = "DIR", default_value = "out/sweep")]
     output: PathBuf,
-    /// Begin anew, whatever is in the folder
+    /// Start again; discards the results in the folder
     #[arg(long)]
     fresh: bool,
-    /// Check the sweep and print how many points and runs it has; run and write nothing
+    /// Check the sweep and print its number of points and runs; runs and writes nothing
     #[arg(long)]
     check: bool,
     /// Print one JSON object on stdout instead of the table
@@ -115,11 +115,9 @@ fn run_merge(merge: &Merge) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
     let elapsed_s = started.elapsed().as_secs_f64();
-    if merge.json {
-        output::print_json(&serde_json::to_string_pretty(&Merged { runs, failed, elapsed_s, files: &files })?)?;
-    } else {
-        output::print(&format!("merged {runs} runs, {failed} of them failed\n\n{}", file_list(&files)))?;
-    }
+    output::show(merge.json, &Merged { runs, failed, elapsed_s, files: &files }, || {
+        format!("merged {runs} runs, {failed} of them failed\n\n{}", file_list(&files))
+    })?;
     Ok(verdict(runs, failed))
 }
 
@@ -170,12 +168,10 @@ impl<'a> Counts<'a> {
 
 fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::Result<Exit> {
     let counts = Counts::new(sweep, design, sweep.runs());
-    if arguments.json {
-        output::print_json(&serde_json::to_string_pretty(&counts)?)?;
-    } else {
-        let Counts { case, points, samples, runs, .. } = counts;
-        output::print(&format!("sweep {case}: {design} of {points} points, {samples} samples each: {runs} runs"))?;
-    }
+    let Counts { case, points, samples, runs, .. } = counts;
+    output::show(arguments.json, &counts, || {
+        format!("sweep {case}: {design} of {points} points, {samples} samples each: {runs} runs")
+    })?;
     Ok(Exit::Passed)
 }
 
@@ -185,10 +181,7 @@ fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBo
     options.shard = arguments.shard;
     options.jobs = arguments.jobs.map_or(options.jobs, usize::from);
     options.fresh = arguments.fresh;
-    let bar = RunBar::new(&format!("sweep {}", sweep.name()), stop);
-    let report = sweep::run(&options, &bar);
-    bar.finish();
-    report
+    sweep::run(&options, &RunBar::new(&format!("sweep {}", sweep.name()), stop))
 }
 
 fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, elapsed_s: f64) -> anyhow::Result<Exit> {
@@ -202,11 +195,7 @@ fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, e
         shard: arguments.shard.map(|shard| shard.to_string()),
         files: &report.files,
     };
-    if arguments.json {
-        output::print_json(&serde_json::to_string_pretty(&result)?)?;
-    } else {
-        output::print(&text(&result))?;
-    }
+    output::show(arguments.json, &result, || text(&result))?;
     if failed > 0 {
         say(&format!("warning: {failed} of {runs} runs failed; the column error says why"));
     }

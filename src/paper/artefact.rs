@@ -38,18 +38,21 @@ pub struct Finding {
     pub verdict: Verdict,
     /// Why, in a few words; empty where there is nothing to explain.
     pub reason: String,
+    /// videg / paper - 1, if the paper prints a number.
+    pub deviation: Option<f64>,
 }
 
 impl Finding {
     /// A number that the paper does not have.
     pub(super) fn new(place: impl Into<String>, quantity: impl Into<String>, unit: &str, videg: f64) -> Self {
         let (place, quantity, unit) = (place.into(), quantity.into(), unit.to_owned());
-        Self { place, quantity, unit, paper: None, videg, verdict: Verdict::Beyond, reason: String::new() }
+        let (verdict, reason) = (Verdict::Beyond, String::new());
+        Self { place, quantity, unit, paper: None, videg, verdict, reason, deviation: None }
     }
 
     /// With the number that the paper prints.
     pub(super) fn printed(self, paper: f64) -> Self {
-        Self { paper: Some(paper), ..self }
+        Self { paper: Some(paper), deviation: Some(self.videg / paper - 1.0), ..self }
     }
 
     /// How it goes together with what the paper prints or says in words.
@@ -65,11 +68,6 @@ impl Finding {
     /// With a reason.
     pub(super) fn reason(self, reason: impl Into<String>) -> Self {
         Self { reason: reason.into(), ..self }
-    }
-
-    /// videg / paper - 1, where the paper prints a number.
-    pub fn deviation(&self) -> Option<f64> {
-        self.paper.map(|paper| self.videg / paper - 1.0)
     }
 
     /// Whether the paper says something that it can be compared with.

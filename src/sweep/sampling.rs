@@ -33,13 +33,13 @@ pub struct Sampling {
     /// How points are chosen [default: grid]
     #[arg(long, value_enum, value_name = "DESIGN")]
     pub design: Option<Design>,
-    /// Number of points of lhs and random; a grid has as many as it has
+    /// Number of points of lhs and random; a grid has those of its values
     #[arg(long, value_name = "N")]
     pub points: Option<u64>,
-    /// Runs of each point, each with other noise [default: 1]
+    /// Runs of each point, each with its own noise [default: 1]
     #[arg(long, value_name = "N")]
     pub samples: Option<u64>,
-    /// Seed of the design, and of the noise of the first run; each further run has the next [default: 1]
+    /// Seed of the design, and of the noise of the first run; each further run takes the next [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Give sample i the same seed in all points (common random numbers)

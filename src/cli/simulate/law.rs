@@ -15,7 +15,7 @@ pub enum Law {
     Impulsive,
     /// The membrane is a nonlinear spring with losses
     Compliant,
-    /// One after the other, side by side
+    /// Both laws, side by side
     Both,
 }
 
