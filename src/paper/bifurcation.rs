@@ -2,7 +2,7 @@
 
 use super::excitation::Cylinder;
 use super::stroboscope::{Orbit, Start, Stroboscope, periods};
-use super::{PaperError, Picture, Sheet, Study};
+use super::{Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
 /// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
@@ -25,7 +25,7 @@ pub struct Path {
 
 impl Path {
     /// Symbol of the parameter, without its unit.
-    pub fn symbol(&self) -> &str {
+    fn symbol(&self) -> &str {
         self.axis.split(' ').next().unwrap_or_default()
     }
 }
@@ -44,13 +44,14 @@ const WAYS: [&str; 3] = ["saw-tooth start", "followed upwards", "followed downwa
 
 /// A diagram: for each way, the motion at each value.
 pub struct Diagram {
+    path: &'static Path,
     xs: Vec<f64>,
     ways: Vec<Vec<Orbit>>,
 }
 
 impl Diagram {
     /// Follows `path`.
-    pub fn new(study: &Study<'_>, cylinder: &Cylinder, path: &Path) -> Result<Self, PaperError> {
+    pub fn new(study: &Study<'_>, cylinder: &Cylinder, path: &'static Path) -> Result<Self, PaperError> {
         let count = study.effort.of(400_u32, 100);
         let [from, to] = path.range;
         let xs: Vec<f64> = (0..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)).collect();
@@ -71,11 +72,25 @@ impl Diagram {
             }
             Ok(orbits)
         })?;
-        Ok(Self { xs, ways: std::iter::once(fresh).chain(followed).collect() })
+        Ok(Self { path, xs, ways: std::iter::once(fresh).chain(followed).collect() })
+    }
+
+    /// How often starts of different history end in different periodic motions.
+    pub fn finding(&self) -> Finding {
+        let coexisting = self.coexisting();
+        let reason = match (coexisting.first(), coexisting.last()) {
+            (Some(first), Some(last)) => {
+                format!("of the {} looked at; between {first:.4} and {last:.4}", self.xs.len())
+            }
+            _ => "one <U> wherever the motions are periodic".to_owned(),
+        };
+        let place = format!("Bifurcation diagram over {}", self.path.symbol());
+        let quantity = "values at which two periodic motions of different <U> exist";
+        Finding::new(place, quantity, "1", coexisting.len() as f64).reason(reason)
     }
 
     /// Values at which two ways lead to different `<U>`, by more than a part in a thousand, though both are periodic.
-    pub fn coexisting(&self) -> Vec<f64> {
+    fn coexisting(&self) -> Vec<f64> {
         let periodic = |orbit: &Orbit| orbit.recurrence().map(|n| orbit.voltage_gain(n));
         let differs = |index: usize| {
             let gains: Vec<f64> = self.ways.iter().filter_map(|orbits| periodic(&orbits[index])).collect();
@@ -85,14 +100,9 @@ impl Diagram {
         self.xs.iter().enumerate().filter(|(index, _)| differs(*index)).map(|(_, &x)| x).collect()
     }
 
-    /// How many values of the parameter were looked at.
-    pub fn values(&self) -> usize {
-        self.xs.len()
-    }
-
     /// Stretches of the parameter over which the saw-tooth start leads to one number of periods; `None` is no
     /// recurrence.
-    pub fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {
+    fn stretches(&self) -> Vec<(f64, f64, Option<usize>)> {
         let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
         for (&x, orbit) in self.xs.iter().zip(self.ways.iter().flatten()) {
             let recurrence = orbit.recurrence();
@@ -105,8 +115,8 @@ impl Diagram {
     }
 
     /// The longer stretches as a table.
-    pub fn table(&self, path: &Path) -> Table {
-        let symbol = path.symbol();
+    pub fn table(&self) -> Table {
+        let symbol = self.path.symbol();
         let columns = [
             Column::numbers(format!("{symbol} from")),
             Column::numbers(format!("{symbol} to")),
@@ -121,7 +131,8 @@ impl Diagram {
     }
 
     /// Displacements over the parameter, each way, and `<U>`.
-    pub fn picture(&self, path: &Path) -> Result<Picture, PaperError> {
+    pub fn picture(&self) -> Result<Picture, PaperError> {
+        let path = self.path;
         let mut clouds: Vec<Vec<(f64, f64)>> = self.ways.iter().map(|orbits| self.cloud(orbits)).collect();
         // Upwards and downwards share a panel, where equal dots would hide each other.
         let upwards = clouds[1].clone();
@@ -172,8 +183,9 @@ impl Diagram {
     }
 
     /// Every flash of the periodic or chaotic motions: one row each until the motion comes back.
-    pub fn sheet(&self, path: &Path) -> Sheet {
-        let columns = [path.axis, "way (1)", "displacement (m)", "velocity (m/s)", "<U> (V/s)", "recurrence (periods)"];
+    pub fn sheet(&self) -> Sheet {
+        let columns =
+            [self.path.axis, "way (1)", "displacement (m)", "velocity (m/s)", "<U> (V/s)", "recurrence (periods)"];
         let rows = self.ways.iter().zip([0.0, 1.0, 2.0]).flat_map(|(orbits, way)| {
             self.xs.iter().zip(orbits).flat_map(move |(&x, orbit)| {
                 let recurrence = orbit.recurrence();
@@ -183,6 +195,6 @@ impl Diagram {
                 taken.map(move |flash| vec![x, way, flash.displacement, flash.velocity, gain, recurrence])
             })
         });
-        Sheet::new(path.name, columns, rows)
+        Sheet::new(self.path.name, columns, rows)
     }
 }

@@ -3,7 +3,7 @@
 use super::bifurcation::{Diagram, Path};
 use super::excitation::{Cylinder, FORCE, FREQUENCY};
 use super::stroboscope::Start;
-use super::{Artefact, Finding, PaperError, Study, poincare};
+use super::{Artefact, PaperError, Study, poincare};
 
 /// r of Figure 14.
 const RESTITUTION: f64 = 0.6;
@@ -38,26 +38,12 @@ pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     };
     for path in &PATHS {
         let diagram = Diagram::new(study, &cylinder, path)?;
-        artefact.findings.push(coexistence(path, &diagram));
-        artefact.tables.push(diagram.table(path));
-        artefact.pictures.push(diagram.picture(path)?);
-        artefact.sheets.push(diagram.sheet(path));
+        artefact.findings.push(diagram.finding());
+        artefact.tables.push(diagram.table());
+        artefact.pictures.push(diagram.picture()?);
+        artefact.sheets.push(diagram.sheet());
     }
     Ok(artefact)
-}
-
-/// How often starts of different history end in different periodic motions.
-fn coexistence(path: &Path, diagram: &Diagram) -> Finding {
-    let coexisting = diagram.coexisting();
-    let reason = match (coexisting.first(), coexisting.last()) {
-        (Some(first), Some(last)) => {
-            format!("of the {} looked at; between {first:.4} and {last:.4}", diagram.values())
-        }
-        _ => "one <U> wherever the motions are periodic".to_owned(),
-    };
-    let place = format!("Bifurcation diagram over {}", path.symbol());
-    let quantity = "values at which two periodic motions of different <U> exist";
-    Finding::new(place, quantity, "1", coexisting.len() as f64).reason(reason)
 }
 
 fn text() -> Vec<String> {

@@ -7,38 +7,19 @@ use videg_report::ReportError;
 
 /// Why an item could not be made.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum PaperError {
-    /// An item.
     #[error("cannot make {name}: {cause}")]
-    Item {
-        /// Its name.
-        name: &'static str,
-        /// Why.
-        cause: Box<PaperError>,
-    },
-    /// The FMU.
+    Item { name: &'static str, cause: Box<PaperError> },
     #[error(transparent)]
     Fmi(#[from] FmiError),
-    /// A coupled run.
     #[error(transparent)]
     Cosim(#[from] CosimError),
-    /// A picture.
     #[error(transparent)]
     Report(#[from] ReportError),
-    /// A case.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// An impact is not followed by another one, so that there is no cycle to be drawn.
     #[error("{case}: the impact at {time} s has no rest before it, or no next one, within {within} s")]
-    NoCycle {
-        /// The case.
-        case: &'static str,
-        /// Time of the largest deflection, s.
-        time: f64,
-        /// How far was looked, s.
-        within: f64,
-    },
-    /// The model, where an item asks it for a formula.
-    #[error(transparent)]
-    Model(#[from] videg_model::ModelError),
+    NoCycle { case: &'static str, time: f64, within: f64 },
 }

@@ -100,35 +100,28 @@ impl Half {
     }
 }
 
-/// Means of a curve and their intervals.
-struct Drawn {
-    means: Vec<(f64, f64)>,
-    intervals: Vec<(f64, f64, f64)>,
-}
+/// Means of a curve and their intervals, kV/s.
+type Drawn = (Vec<(f64, f64)>, Vec<(f64, f64, f64)>);
 
-impl Drawn {
-    /// In kV/s.
-    fn new(curve: &Curve) -> Self {
-        let means = curve.points.iter().map(|(x, summary)| (*x, 1e-3 * summary.mean)).collect();
-        let [low, high] = [0, 1].map(|end| move |summary: &Summary| 1e-3 * summary.interval[end]);
-        let intervals = curve.points.iter().map(|(x, summary)| (*x, low(summary), high(summary))).collect();
-        Self { means, intervals }
-    }
+fn drawn(curve: &Curve) -> Drawn {
+    let interval = |(x, summary): &(f64, Summary)| (*x, 1e-3 * summary.interval[0], 1e-3 * summary.interval[1]);
+    let means = curve.points.iter().map(|(x, summary)| (*x, 1e-3 * summary.mean));
+    (means.collect(), curve.points.iter().map(interval).collect())
 }
 
 fn picture(halves: &[(Half, Vec<Curve>)]) -> Result<Picture, PaperError> {
-    let drawn: Vec<Vec<Drawn>> = halves.iter().map(|(_, curves)| curves.iter().map(Drawn::new).collect()).collect();
+    let drawn: Vec<Vec<Drawn>> = halves.iter().map(|(_, curves)| curves.iter().map(drawn).collect()).collect();
     let mut figure = Figure::new("Figure 16: output over amplitude and frequency, r = 1")
         .caption("Average voltage gain over normalised amplitude and over frequency of the harmonic excitation.")
         .columns(2)
         .width(960.0);
     for ((half, curves), drawn) in halves.iter().zip(&drawn) {
         let mut panel = Panel::new(format!("({})", half.letter), half.axis, "<U> (kV/s)").height(300.0);
-        for (color, (curve, drawn)) in curves.iter().zip(drawn).enumerate() {
+        for (color, (curve, (means, intervals))) in curves.iter().zip(drawn).enumerate() {
             panel = panel
-                .series(Series::points(&curve.label, &drawn.means).color(color))
-                .series(Series::points("", &drawn.means).style(Style::Crosses).color(color))
-                .bars(&drawn.intervals, color);
+                .series(Series::points(&curve.label, means).color(color))
+                .series(Series::points("", means).style(Style::Crosses).color(color))
+                .bars(intervals, color);
         }
         figure = figure.panel(panel);
     }

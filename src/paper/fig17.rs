@@ -55,7 +55,7 @@ pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let mut patterns = Vec::new();
     for intensity in PATTERNS {
         let point = INTENSITIES.iter().position(|&d| d == intensity).unwrap_or_default();
-        patterns.push(Pattern::new(study, &self::settings(&cylinder, point, 0, count))?);
+        patterns.push(spikes(study, &self::settings(&cylinder, point, 0, count))?);
     }
     Ok(Artefact {
         findings: findings(&points, study.effort),
@@ -81,40 +81,35 @@ fn settings(cylinder: &Cylinder, point: usize, sample: usize, count: usize) -> V
     settings
 }
 
-/// Voltage peaks of some seconds of a run.
-struct Pattern {
-    /// Spikes from `U_in` to `U_DE4`, s and kV, of the left and the right membrane.
-    spikes: [Vec<(f64, f64)>; 2],
-}
+/// Spikes from `U_in` to `U_DE4`, s and kV, of the left and the right membrane.
+type Spikes = [Vec<(f64, f64)>; 2];
 
-impl Pattern {
+/// Voltage peaks of some seconds of a run.
+fn spikes(study: &Study<'_>, settings: &[Setting]) -> Result<Spikes, PaperError> {
     /// Communication step, s: impacts within one count as one with their mean voltage.
     const STEP: f64 = 1e-3;
-
-    fn new(study: &Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
-        let mut instance = study.start(settings)?;
-        let [from, to] = SHOWN;
-        instance.do_step(0.0, from)?;
-        let mut spikes = [vec![(from, f64::NAN)], vec![(from, f64::NAN)]];
-        let mut before = study.gains(&instance)?;
-        let mut index = 0.0;
-        let mut time = from;
-        while time <= to {
-            let gains = study.gains(&instance)?;
-            if gains.impacts > before.impacts {
-                let [displacement, bias] = study.reals(&instance, ["relativeDisplacement", "biasVoltage"])?;
-                let peak = bias + (gains.voltage - before.voltage) / f64::from(gains.impacts - before.impacts);
-                // Left is the end that the ball meets when z_M - z_m = +s/2.
-                let spikes = &mut spikes[usize::from(displacement < 0.0)];
-                spikes.extend([(time, 1e-3 * bias), (time, 1e-3 * peak), (time, f64::NAN)]);
-            }
-            before = gains;
-            instance.do_step(time, Self::STEP)?;
-            index += 1.0;
-            time = from + index * Self::STEP;
+    let mut instance = study.start(settings)?;
+    let [from, to] = SHOWN;
+    instance.do_step(0.0, from)?;
+    let mut spikes = [vec![(from, f64::NAN)], vec![(from, f64::NAN)]];
+    let mut before = study.gains(&instance)?;
+    let mut index = 0.0;
+    let mut time = from;
+    while time <= to {
+        let gains = study.gains(&instance)?;
+        if gains.impacts > before.impacts {
+            let [displacement, bias] = study.reals(&instance, ["relativeDisplacement", "biasVoltage"])?;
+            let peak = bias + (gains.voltage - before.voltage) / f64::from(gains.impacts - before.impacts);
+            // Left is the end that the ball meets when z_M - z_m = +s/2.
+            let spikes = &mut spikes[usize::from(displacement < 0.0)];
+            spikes.extend([(time, 1e-3 * bias), (time, 1e-3 * peak), (time, f64::NAN)]);
         }
-        Ok(Self { spikes })
+        before = gains;
+        instance.do_step(time, STEP)?;
+        index += 1.0;
+        time = from + index * STEP;
     }
+    Ok(spikes)
 }
 
 fn curve(points: &[Point]) -> Result<Picture, PaperError> {
@@ -139,11 +134,11 @@ fn curve(points: &[Point]) -> Result<Picture, PaperError> {
     Picture::new("fig17", &figure, caption)
 }
 
-fn voltages(patterns: &[Pattern]) -> Result<Picture, PaperError> {
+fn voltages(patterns: &[Spikes]) -> Result<Picture, PaperError> {
     let mut figure = Figure::new("Figure 17: voltage patterns")
         .caption("Voltage peaks of both membranes at low and at high intensity of the phase noise.");
     // One scale for both: the point is how much weaker the impacts are.
-    let peaks = patterns.iter().flat_map(|pattern| pattern.spikes.iter().flatten().map(|point| point.1));
+    let peaks = patterns.iter().flatten().flatten().map(|point| point.1);
     let highest = peaks.filter(|peak| peak.is_finite()).fold(2.0, f64::max);
     for (index, (pattern, intensity)) in patterns.iter().zip(PATTERNS).enumerate() {
         let mut panel = Panel::new(format!("D = {intensity}"), "time (s)", "voltage (kV)")
@@ -151,7 +146,7 @@ fn voltages(patterns: &[Pattern]) -> Result<Picture, PaperError> {
             .x_range(SHOWN[0], SHOWN[1])
             .y_range(1.9, 1.05 * highest)
             .line("", 2.0);
-        for (side, spikes) in ["left", "right"].into_iter().zip(&pattern.spikes) {
+        for (side, spikes) in ["left", "right"].into_iter().zip(pattern) {
             let label = if index == 0 { side } else { "" };
             panel = panel.series(Series::points(label, spikes));
         }

@@ -5,7 +5,7 @@ use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
 use super::coupled::{Coupled, circuit};
 use super::peak::{self, Peak};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Study, artefact};
-use crate::cosim::{CosimError, Observer, Row};
+use crate::cosim::{CosimError, Observer, Row, TracePoint};
 use crate::scenario::Request;
 use videg_report::{Figure, Panel, Series, Style, Table};
 
@@ -59,24 +59,6 @@ impl Kind {
     }
 }
 
-/// The membrane that is pressed in, at one communication point, SI.
-struct Point {
-    time: f64,
-    deflection: f64,
-    capacitance: f64,
-    /// In the order of [`KINDS`], as all that follows.
-    voltages: [f64; KINDS.len()],
-    /// Of both membranes.
-    ledgers: [Ledger; KINDS.len()],
-}
-
-impl Point {
-    /// U, kV, and Q, nC.
-    fn place(&self, kind: usize) -> (f64, f64) {
-        place(self.capacitance, self.voltages[kind])
-    }
-}
-
 /// U, kV, and Q, nC, of a capacitance, F, at a voltage, V.
 fn place(capacitance: f64, voltage: f64) -> (f64, f64) {
     (1e-3 * voltage, 1e9 * capacitance * voltage)
@@ -84,7 +66,7 @@ fn place(capacitance: f64, voltage: f64) -> (f64, f64) {
 
 /// From the beginning of an impact to that of the next one on the same membrane.
 struct Cycle {
-    points: Vec<Point>,
+    points: Vec<TracePoint>,
     bias_voltage: f64,
     rest_capacitance: f64,
     peak: Peak,
@@ -110,28 +92,41 @@ impl Cycle {
             Request { case: Some(peak::CASE.to_owned()), until: Some(peak.time + AROUND), ..Request::default() };
         let Coupled { master, rest_capacitance, bias_voltage } =
             Coupled::new(study, request, &KINDS.map(|kind| kind.settings()), TOLERANCE)?;
-        let mut recorder = CycleRecorder { from: peak.time - AROUND, side: peak.side, points: Vec::new() };
+        let mut recorder = CycleRecorder { from: peak.time - AROUND, points: Vec::new() };
         master.run(&mut [&mut recorder])?;
         let points = recorder.points;
         let none = || PaperError::NoCycle { case: peak::CASE, time: peak.time, within: AROUND };
-        let is_before = |point: &Point| point.time < peak.time && point.deflection <= 0.0;
+        let deflection = |point: &TracePoint| point.harvester.deflection()[peak.side];
+        let is_before = |point: &TracePoint| point.time < peak.time && deflection(point) <= 0.0;
         let begin = points.iter().rposition(is_before).ok_or_else(none)?;
         // Pressed in, let go, and pressed in again.
-        let is_after = |point: &Point| point.time > peak.time && point.deflection <= 0.0;
+        let is_after = |point: &TracePoint| point.time > peak.time && deflection(point) <= 0.0;
         let away = points.iter().position(is_after).ok_or_else(none)?;
-        let again = points.iter().skip(away).position(|point| point.deflection > 0.0).ok_or_else(none)?;
+        let again = points.iter().skip(away).position(|point| deflection(point) > 0.0).ok_or_else(none)?;
         let points = points.into_iter().take(away + again).skip(begin).collect();
         Ok(Self { points, bias_voltage, rest_capacitance: rest_capacitance[peak.side], peak })
+    }
+
+    /// Capacitance, F, and voltage, V, in the circuit of this kind, of the membrane that is pressed in.
+    fn state(&self, point: &TracePoint, kind: usize) -> (f64, f64) {
+        let side = self.peak.side;
+        (point.harvester.capacitance()[side], point.circuits[kind].voltage[side])
     }
 
     /// Energy that a circuit has converted through this membrane, J: - integral of 1/2 `U^2` dC, exact where the
     /// charge or the voltage is kept from point to point.
     fn converted(&self, kind: usize) -> f64 {
         let steps = self.points.windows(2).map(|pair| {
-            let [u, v] = [0, 1].map(|k| pair[k].voltages[kind]);
-            0.5 * u * v * (pair[0].capacitance - pair[1].capacitance)
+            let [(before, u), (after, v)] = [0, 1].map(|k| self.state(&pair[k], kind));
+            0.5 * u * v * (before - after)
         });
         steps.sum()
+    }
+
+    /// U, kV, and Q, nC.
+    fn place(&self, point: &TracePoint, kind: usize) -> (f64, f64) {
+        let (capacitance, voltage) = self.state(point, kind);
+        place(capacitance, voltage)
     }
 
     /// The corners 2, 3 and 4 of the cycle in the paper: U, kV, and Q, nC.
@@ -167,7 +162,7 @@ fn table(cycle: &Cycle) -> Table {
     let numbers = std::iter::once("converted by this membrane (uJ)".to_owned()).chain(accounts);
     KINDS.iter().enumerate().fold(artefact::table("circuit", numbers), |table, (index, kind)| {
         let over_the_cycle = |account: fn(&Ledger) -> f64| match &cycle.points[..] {
-            [first, .., last] => account(&last.ledgers[index]) - account(&first.ledgers[index]),
+            [first, .., last] => account(&last.circuits[index].ledger) - account(&first.circuits[index].ledger),
             _ => f64::NAN,
         };
         let values = columns.iter().map(|(_, account)| over_the_cycle(*account));
@@ -182,25 +177,13 @@ type Account = (&'static str, fn(&Ledger) -> f64);
 /// Notes what happens around the largest deflection.
 struct CycleRecorder {
     from: f64,
-    side: usize,
-    points: Vec<Point>,
+    points: Vec<TracePoint>,
 }
 
 impl Observer for CycleRecorder {
     fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
         if row.time >= self.from {
-            let (mut voltages, mut ledgers) = ([0.0; KINDS.len()], [Ledger::default(); KINDS.len()]);
-            for (kind, circuit) in row.circuits.iter().enumerate().take(KINDS.len()) {
-                voltages[kind] = circuit.voltage[self.side];
-                ledgers[kind] = circuit.ledger;
-            }
-            self.points.push(Point {
-                time: row.time,
-                deflection: row.harvester.deflection()[self.side],
-                capacitance: row.harvester.capacitance()[self.side],
-                voltages,
-                ledgers,
-            });
+            self.points.push(TracePoint::of(row));
         }
         Ok(())
     }
@@ -257,7 +240,7 @@ fn picture(cycle: &Cycle) -> Result<Picture, PaperError> {
     let [second, third, fourth] = corners;
     let ideal = [second, third, fourth, second];
     let paths: Vec<Vec<_>> =
-        (0..KINDS.len()).map(|kind| cycle.points.iter().map(|point| point.place(kind)).collect()).collect();
+        (0..KINDS.len()).map(|kind| cycle.points.iter().map(|point| cycle.place(point, kind)).collect()).collect();
     let mut figure = Figure::new("Figure 8(b): one harvesting cycle").columns(2).width(960.0);
     for (topology, title) in PANELS {
         let mut panel = Panel::new(title, "voltage of the membrane (kV)", "charge of the membrane (nC)")
@@ -284,9 +267,10 @@ fn sheet(cycle: &Cycle) -> Sheet {
     let of_kinds =
         KINDS.iter().flat_map(|kind| ["voltage (V)", "charge (nC)"].map(|what| format!("{}: {what}", kind.name())));
     let columns = ["time (s)", "capacitance (pF)"].map(str::to_owned).into_iter().chain(of_kinds);
-    let row = |point: &Point| {
-        let places = (0..KINDS.len()).map(|kind| (point.voltages[kind], point.place(kind).1));
-        [point.time, 1e12 * point.capacitance].into_iter().chain(places.flat_map(|(u, q)| [u, q])).collect()
+    let row = |point: &TracePoint| {
+        let capacitance = point.harvester.capacitance()[cycle.peak.side];
+        let places = (0..KINDS.len()).flat_map(|kind| [cycle.state(point, kind).1, cycle.place(point, kind).1]);
+        [point.time, 1e12 * capacitance].into_iter().chain(places).collect()
     };
     Sheet::new("fig8", columns, cycle.points.iter().map(row))
 }

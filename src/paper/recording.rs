@@ -76,7 +76,8 @@ pub(super) fn record(
     [from, to]: [f64; 2],
     step: f64,
 ) -> Result<Recording, PaperError> {
-    let mut recorder = Recorder::new(study, settings)?;
+    let recording = Recording { samples: Vec::new(), impacts: Vec::new() };
+    let mut recorder = Recorder { study, instance: study.start(settings)?, time: 0.0, recording };
     if from > 0.0 {
         recorder.go_to(from)?;
         recorder.note()?;
@@ -104,12 +105,7 @@ struct Recorder<'a> {
     recording: Recording,
 }
 
-impl<'a> Recorder<'a> {
-    fn new(study: &'a Study<'_>, settings: &[Setting]) -> Result<Self, PaperError> {
-        let recording = Recording { samples: Vec::new(), impacts: Vec::new() };
-        Ok(Self { study, instance: study.start(settings)?, time: 0.0, recording })
-    }
-
+impl Recorder<'_> {
     /// Steps on; the time is kept as the FMU keeps it, as a sum.
     fn go_to(&mut self, time: f64) -> Result<(), PaperError> {
         let step = time - self.time;

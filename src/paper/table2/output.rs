@@ -152,86 +152,65 @@ fn nearby(computation: &Computation) -> Sheet {
 }
 
 type Points = Vec<(f64, f64)>;
-type Limits = Vec<(f64, f64, f64)>;
-
-/// Contents of panel (a).
-struct Overview {
-    paper: Points,
-    own: Points,
-    range: Limits,
-    middle: Limits,
+/// A distribution function with its label, and the paper's value on it.
+struct Curve {
+    label: String,
+    points: Points,
+    printed: [(f64, f64); 2],
 }
 
-impl Overview {
-    fn new(computation: &Computation) -> Self {
-        let cases = computation.cases.iter().map(|case| (f64::from(case.printed.number), case));
-        let all: Vec<_> = cases.chain([(FREE, &computation.free)]).collect();
-        let limits = |low: f64, high: f64| {
-            all.iter().map(|(x, case)| (*x, case.nearby.quantile(low), case.nearby.quantile(high))).collect()
-        };
-        Self {
-            paper: all.iter().map(|(x, case)| (*x - BESIDE, case.printed.gain)).collect(),
-            own: all.iter().map(|(x, case)| (*x + BESIDE, case.own)).collect(),
-            range: limits(0.0, 1.0),
-            middle: limits(0.05, 0.95),
-        }
-    }
-
-    fn panel(&self) -> Panel<'_> {
-        Panel::new("(a)", "figure of the paper", "<U> (V/s)")
-            .x_names(PLACES)
-            .x_range(9.5, 15.5)
-            .height(240.0)
-            .bars(&self.range, 5)
-            .bars(&self.middle, 0)
-            .series(Series::points("videg", &self.own).style(Style::Markers).color(0))
-            .series(Series::points("paper", &self.paper).style(Style::Crosses).color(1))
-    }
+fn curves<'a>(ensembles: impl Iterator<Item = (&'a Computed, &'a Ensemble)>) -> Vec<Curve> {
+    let curve = |(case, ensemble): (&Computed, &Ensemble)| Curve {
+        label: format!("Figure {}", case.printed.number),
+        points: ensemble.distribution(),
+        printed: [(case.printed.gain, 0.0), (case.printed.gain, 1.0)],
+    };
+    ensembles.map(curve).collect()
 }
 
-/// Distribution functions and the paper's values on them.
-struct Curves {
-    curves: Vec<(String, usize, Points)>,
-    printed: Vec<(usize, Points)>,
-}
-
-impl Curves {
-    fn of<'a>(ensembles: impl Iterator<Item = (&'a Computed, &'a Ensemble)>) -> Self {
-        let (mut curves, mut printed) = (Vec::new(), Vec::new());
-        for (color, (case, ensemble)) in ensembles.enumerate() {
-            curves.push((format!("Figure {}", case.printed.number), color, ensemble.distribution()));
-            printed.push((color, vec![(case.printed.gain, 0.0), (case.printed.gain, 1.0)]));
-        }
-        Self { curves, printed }
-    }
-
-    fn panel(&self, title: &str) -> Panel<'_> {
-        let panel = Panel::new(title, "<U> (V/s)", "share of starts below").y_range(0.0, 1.0).height(240.0);
-        let panel = self.curves.iter().fold(panel, |panel, (label, color, points)| {
-            panel.series(Series::points(label.as_str(), points).style(Style::Steps).color(*color))
-        });
-        self.printed.iter().enumerate().fold(panel, |panel, (index, (color, points))| {
-            let label = if index == 0 { "paper" } else { "" };
-            panel.series(Series::points(label, points).style(Style::Dashed).color(*color))
-        })
-    }
+fn panel<'a>(title: &str, curves: &'a [Curve]) -> Panel<'a> {
+    let panel = Panel::new(title, "<U> (V/s)", "share of starts below").y_range(0.0, 1.0).height(240.0);
+    let panel = curves.iter().enumerate().fold(panel, |panel, (color, curve)| {
+        panel.series(Series::points(curve.label.as_str(), &curve.points).style(Style::Steps).color(color))
+    });
+    curves.iter().enumerate().fold(panel, |panel, (color, curve)| {
+        let label = if color == 0 { "paper" } else { "" };
+        panel.series(Series::points(label, &curve.printed).style(Style::Dashed).color(color))
+    })
 }
 
 fn picture(computation: &Computation) -> Result<Picture, PaperError> {
+    let place = |case: &Computed, free: bool| if free { FREE } else { f64::from(case.printed.number) };
+    let beside = |offset: f64, gain: fn(&Computed) -> f64| -> Points {
+        all(computation).map(|(case, free)| (place(case, free) + offset, gain(case))).collect()
+    };
+    let (paper, own) = (beside(-BESIDE, |case| case.printed.gain), beside(BESIDE, |case| case.own));
+    let limits = |low: f64, high: f64| -> Vec<_> {
+        let [low, high] = [low, high].map(|share| move |case: &Computed| case.nearby.quantile(share));
+        all(computation).map(|(case, free)| (place(case, free), low(case), high(case))).collect()
+    };
+    let (range, middle) = (limits(0.0, 1.0), limits(0.05, 0.95));
+    let overview = Panel::new("(a)", "figure of the paper", "<U> (V/s)")
+        .x_names(PLACES)
+        .x_range(9.5, 15.5)
+        .height(240.0)
+        .bars(&range, 5)
+        .bars(&middle, 0)
+        .series(Series::points("videg", &own).style(Style::Markers).color(0))
+        .series(Series::points("paper", &paper).style(Style::Crosses).color(1));
     let chaotic = || computation.cases.iter().filter(|case| case.is_chaotic());
-    let others = || computation.cases.iter().filter(|case| !case.is_chaotic());
-    let overview = Overview::new(computation);
-    let exact = Curves::of(chaotic().map(|case| (case, &case.nearby)));
-    let stepped = Curves::of(chaotic().filter_map(|case| case.stepped.as_ref().map(|ensemble| (case, ensemble))));
-    let unstable = Curves::of(others().take(1).map(|case| (case, &case.nearby)));
+    let exact = curves(chaotic().map(|case| (case, &case.nearby)));
+    let stepped = curves(chaotic().filter_map(|case| case.stepped.as_ref().map(|ensemble| (case, ensemble))));
+    let unstable = computation.cases.iter().filter(|case| !case.is_chaotic()).take(1);
+    let unstable = curves(unstable.map(|case| (case, &case.nearby)));
     let title = format!("Table 2: average voltage gain, {} nearby starts each", computation.nudges.len());
     let figure = Figure::new(title)
         .columns(2)
         .width(960.0)
-        .panel(overview.panel())
-        .panel(exact.panel("(b) chaotic cases, FMU").x_range(6400.0, 7700.0))
-        .panel(unstable.panel("(c) saw-tooth orbit, FMU"))
-        .panel(stepped.panel("(d) chaotic cases, paper's stepping").x_range(6400.0, 7700.0));
+        .panel(overview)
+        .panel(panel("(b) chaotic cases, FMU", &exact).x_range(6400.0, 7700.0))
+        .panel(panel("(c) saw-tooth orbit, FMU", &unstable))
+        .panel(panel("(d) chaotic cases, paper's stepping", &stepped).x_range(6400.0, 7700.0));
     let caption = format!(
         "Average voltage gain <U> over 50 to 100 s, Eq. (15). (a) The paper (crosses), its starts through the FMU \
          (dots; free: Figure 12 with the ball started outside the gap), and starts with the ball's velocity nudged by up to {NUDGE:e} m/s: all of them and the middle 90 %. \
