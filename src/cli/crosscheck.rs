@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Connection of the membranes, as --set topology=
     #[arg(long, value_enum)]
     topology: Option<TopologyName>,
-    /// Also calculate the net gain over the voltage of release and the load resistance
+    /// Also compute the net gain over the voltage of release and the load resistance
     #[arg(long)]
     sweep: bool,
     /// Write netlists, C(t) and expected values into a folder for ngspice alone

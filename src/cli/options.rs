@@ -29,7 +29,7 @@ pub struct CaseOptions {
 pub struct RunOptions {
     #[command(flatten)]
     case: CaseOptions,
-    /// Communication step, s; impacts and peaks of C(t) are communication points, too [default: 1e-3]
+    /// Communication step, s; the master also stops at impacts and peaks of C(t) [default: 1e-3]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     step: Option<f64>,
     /// Averaging window, s [default: 50,100, or the second half of a shorter run]
