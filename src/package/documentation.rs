@@ -2,7 +2,7 @@
 
 use askama::Template;
 
-use super::contents::Contents;
+use super::entries::Entries;
 use super::error::{PackageError, Result};
 use fmu_import::{Causality, EnumerationItem, Kind, ModelDescription, Variable};
 
@@ -67,13 +67,13 @@ struct Row {
 ///
 /// # Errors
 /// When the page or the picture cannot be written.
-pub(super) fn add(contents: &mut Contents) -> Result<()> {
-    if let Some((page, picture)) = page_and_picture(contents.description())? {
-        contents.entries.add_bytes("documentation/index.html", page.into_bytes());
-        contents.entries.add_bytes("model.png", picture);
+pub(super) fn add(description: &ModelDescription, entries: &mut Entries) -> Result<()> {
+    if let Some((page, picture)) = page_and_picture(description)? {
+        entries.add("documentation/index.html", page);
+        entries.add("model.png", picture);
     }
     for (name, text) in LICENSES {
-        contents.entries.add_bytes(&format!("documentation/licenses/{name}"), text.into());
+        entries.add(&format!("documentation/licenses/{name}"), text);
     }
     Ok(())
 }

@@ -81,7 +81,7 @@ fn entries(fmu: &FmuPackage, archive: &[u8], description: &str, added: &[AddedBi
         return Err(refuse("has another model description; package the FMUs and compile videg again".to_owned()));
     }
     for binary in added.iter().filter(|binary| binary.identifier == fmu.identifier) {
-        entries.add_file(&binary.platform.entry(fmu.identifier), &binary.path);
+        entries.add_file(&binary.platform.entry(fmu.identifier), &binary.path)?;
     }
     Ok(entries)
 }
@@ -104,13 +104,10 @@ mod tests {
 
     /// An archive as it is packaged, as bytes.
     fn packaged(description: &str) -> Vec<u8> {
-        let folder = tempfile::tempdir().unwrap();
         let mut entries = Entries::default();
-        entries.add_bytes("modelDescription.xml", description.as_bytes().to_vec());
-        std::fs::write(folder.path().join("library"), library()).unwrap();
-        entries.add_file("binaries/linux64/VibroImpactHarvester.so", &folder.path().join("library"));
-        entries.write(&folder.path().join("it.fmu")).unwrap();
-        std::fs::read(folder.path().join("it.fmu")).unwrap()
+        entries.add("modelDescription.xml", description);
+        entries.add("binaries/linux64/VibroImpactHarvester.so", library());
+        entries.packed(Path::new("it.fmu")).unwrap()
     }
 
     #[test]
@@ -137,14 +134,9 @@ mod tests {
         for (platform, wanted) in [("linux64", b"added".to_vec()), ("win64", library())] {
             let platform = Platform::of_folder(platform).unwrap();
             let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: added_library.clone() };
-            let path = folder.path().join("it.fmu");
-            entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap().write(&path).unwrap();
-            let found = Entries::read(&std::fs::read(path).unwrap()).unwrap();
-            assert!(
-                found.bytes("binaries/linux64/VibroImpactHarvester.so") == Some(&wanted[..]),
-                "{}",
-                platform.folder
-            );
+            let found = entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap();
+            let inside = found.bytes("binaries/linux64/VibroImpactHarvester.so");
+            assert!(inside == Some(&wanted[..]), "{}", platform.folder);
             assert_eq!(found.bytes(&platform.entry(FMUS[0].identifier)), Some(&b"added"[..]));
         }
     }

@@ -1,9 +1,8 @@
 //! The entries of an archive. Equal entries give equal bytes.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{self, Cursor, Read as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::io::{Cursor, Read as _, Write as _};
+use std::path::Path;
 
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -12,25 +11,16 @@ use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 use super::error::{PackageError, Result};
 use super::shared_file::write_shared;
 
-/// The entries of an archive: sorted names with forward slashes, each with a file or bytes.
-#[derive(Debug, Clone, Default)]
-pub struct Entries {
-    files: BTreeMap<String, Source>,
-}
-
-/// Where the bytes of an entry come from.
-#[derive(Debug, Clone)]
-enum Source {
-    File(PathBuf),
-    Bytes(Vec<u8>),
-}
+/// The entries of an archive: bytes by sorted names with forward slashes.
+#[derive(Debug, Default)]
+pub(super) struct Entries(BTreeMap<String, Vec<u8>>);
 
 impl Entries {
     /// Reads an archive that this program wrote. Foreign archives need bounds, see [`fmu_import::Archive`].
     ///
     /// # Errors
     /// When it is broken.
-    pub(super) fn read(archive: &[u8]) -> std::result::Result<Self, ZipError> {
+    pub fn read(archive: &[u8]) -> std::result::Result<Self, ZipError> {
         let mut zip = ZipArchive::new(Cursor::new(archive))?;
         let mut entries = Self::default();
         for index in 0..zip.len() {
@@ -38,90 +28,51 @@ impl Entries {
             let name = entry.name()?.into_owned();
             let mut bytes = Vec::new();
             entry.read_to_end(&mut bytes)?;
-            entries.add_bytes(&name, bytes);
+            entries.add(&name, bytes);
         }
         Ok(entries)
     }
 
-    /// The bytes of an entry that holds bytes.
-    pub(super) fn bytes(&self, name: &str) -> Option<&[u8]> {
-        match self.files.get(name) {
-            Some(Source::Bytes(bytes)) => Some(bytes),
-            _ => None,
-        }
+    /// The bytes of an entry.
+    pub fn bytes(&self, name: &str) -> Option<&[u8]> {
+        self.0.get(name).map(Vec::as_slice)
     }
 
-    /// Adds a file under a name with forward slashes.
-    pub fn add_file(&mut self, name: &str, file: &Path) {
-        self.files.insert(name.to_owned(), Source::File(file.to_path_buf()));
+    /// Adds or replaces an entry.
+    pub fn add(&mut self, name: &str, bytes: impl Into<Vec<u8>>) {
+        self.0.insert(name.to_owned(), bytes.into());
     }
 
-    /// Adds bytes under a name with forward slashes.
-    pub fn add_bytes(&mut self, name: &str, bytes: Vec<u8>) {
-        self.files.insert(name.to_owned(), Source::Bytes(bytes));
-    }
-
-    /// Adds the files of a folder and its folders under `prefix`. A folder that does not exist counts as empty.
+    /// The same with the bytes of a file.
     ///
     /// # Errors
-    /// When the folder cannot be read.
-    pub fn add_folder(&mut self, prefix: &str, folder: &Path) -> Result<()> {
-        if !folder.is_dir() {
-            return Ok(());
-        }
-        for entry in fs::read_dir(folder).map_err(PackageError::io("read", folder))? {
-            let path = entry.map_err(PackageError::io("read", folder))?.path();
-            let Some(name) = path.file_name() else { continue };
-            let name = format!("{prefix}/{}", name.to_string_lossy());
-            if path.is_dir() {
-                self.add_folder(&name, &path)?;
-            } else {
-                self.files.insert(name, Source::File(path));
-            }
-        }
+    /// When it cannot be read.
+    pub fn add_file(&mut self, name: &str, file: &Path) -> Result<()> {
+        self.add(name, std::fs::read(file).map_err(PackageError::io("read", file))?);
         Ok(())
     }
 
     /// Names in the archive, in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.files.keys().map(String::as_str)
+        self.0.keys().map(String::as_str)
     }
 
     /// Writes the archive, atomically.
-    ///
-    /// # Errors
-    /// When a file cannot be read or the archive not written.
     pub fn write(&self, archive: &Path) -> Result<()> {
         write_shared(archive, &self.packed(archive)?)
     }
 
     /// The bytes of the archive; errors name it.
-    ///
-    /// # Errors
-    /// When a file cannot be read.
-    pub(super) fn packed(&self, archive: &Path) -> Result<Vec<u8>> {
-        let mut bytes = Cursor::new(Vec::new());
-        self.write_to(&mut bytes, archive)?;
-        Ok(bytes.into_inner())
-    }
-
-    fn write_to(&self, file: &mut Cursor<Vec<u8>>, archive: &Path) -> Result<()> {
-        let failed = |cause| PackageError::Zip { path: archive.to_path_buf(), cause };
-        let mut writer = ZipWriter::new(file);
-        for (name, source) in &self.files {
-            writer.start_file(name.as_str(), options(name)).map_err(failed)?;
-            match source {
-                Source::File(path) => {
-                    let mut input = File::open(path).map_err(PackageError::io("read", path))?;
-                    io::copy(&mut input, &mut writer).map_err(PackageError::io("pack", path))?;
-                }
-                Source::Bytes(bytes) => {
-                    writer.write_all(bytes).map_err(PackageError::io("write", archive))?;
-                }
+    pub fn packed(&self, archive: &Path) -> Result<Vec<u8>> {
+        let packed = || {
+            let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+            for (name, bytes) in &self.0 {
+                writer.start_file(name.as_str(), options(name))?;
+                writer.write_all(bytes)?;
             }
-        }
-        writer.finish().map_err(failed)?;
-        Ok(())
+            Ok(writer.finish()?.into_inner())
+        };
+        packed().map_err(|cause: ZipError| PackageError::io("write", archive)(cause.into()))
     }
 }
 

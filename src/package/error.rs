@@ -19,9 +19,6 @@ pub enum PackageError {
     /// The file system refused.
     #[error("cannot {action} {}: {cause}", path.display())]
     Io { action: &'static str, path: PathBuf, cause: io::Error },
-    /// The archive could not be written.
-    #[error("cannot write {}: {cause}", path.display())]
-    Zip { path: PathBuf, cause: zip::result::ZipError },
     /// Cargo could not be started.
     #[error("cannot run {}: {cause}", program.display())]
     Cargo { program: PathBuf, cause: io::Error },

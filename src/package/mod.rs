@@ -19,7 +19,6 @@
 mod binary;
 mod cache;
 mod cargo;
-mod contents;
 mod documentation;
 mod embedded;
 mod entries;
@@ -35,10 +34,11 @@ mod tools;
 
 use std::path::{Path, PathBuf};
 
+use fmu_import::ModelDescription;
+
 pub use binary::AddedBinary;
 pub use cache::Placed;
-pub use contents::Contents;
-pub use entries::Entries;
+use entries::Entries;
 pub use error::{PackageError, Result};
 pub use platform::Platform;
 pub use ssp::{Part, SystemPackage};
@@ -145,20 +145,31 @@ fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();
     for (index, fmu) in FMUS.iter().enumerate() {
-        let mut contents = Contents::new(fmu.identifier, &locate::description(fmu, workspace)?)?;
-        for (platform, libraries) in &binaries {
-            if let Some(library) = libraries.get(index) {
-                contents.add_library(*platform, library);
-            }
+        let (description, mut entries) = described(fmu.identifier, &locate::description(fmu, workspace)?)?;
+        let built = binaries.iter().filter_map(|(platform, libraries)| Some((*platform, libraries.get(index)?)));
+        let added = options.added.iter().filter(|binary| binary.identifier == fmu.identifier);
+        for (platform, library) in built.chain(added.map(|binary| (binary.platform, &binary.path))) {
+            entries.add_file(&platform.entry(fmu.identifier), library)?;
         }
-        for binary in options.added.iter().filter(|binary| binary.identifier == fmu.identifier) {
-            contents.add_library(binary.platform, &binary.path);
-        }
-        documentation::add(&mut contents)?;
-        references::add(&mut contents);
-        archives.push(contents.entries.packed(&file_name(fmu))?);
+        documentation::add(&description, &mut entries)?;
+        references::add(fmu.identifier, &mut entries);
+        archives.push(entries.packed(&file_name(fmu))?);
     }
     Ok((archives, output(workspace)))
+}
+
+/// The model description at `path`, and the entries of an archive, which begin with it. It must be that of `identifier`.
+fn described(identifier: &str, path: &Path) -> Result<(ModelDescription, Entries)> {
+    let text = std::fs::read(path).map_err(PackageError::io("read", path))?;
+    let description = ModelDescription::parse(&text, &path.display().to_string())?;
+    let found = &description.co_simulation.model_identifier;
+    if found != identifier {
+        let (path, found, allowed) = (path.to_path_buf(), found.clone(), identifier.to_owned());
+        return Err(PackageError::Identifier { path, found, allowed });
+    }
+    let mut entries = Entries::default();
+    entries.add("modelDescription.xml", text);
+    Ok((description, entries))
 }
 
 fn file_name(fmu: &FmuPackage) -> PathBuf {

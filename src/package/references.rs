@@ -1,6 +1,6 @@
 //! Experiments that an FMU carries, with their reference results: the layered standard FMI-LS-REF.
 
-use super::contents::Contents;
+use super::entries::Entries;
 
 /// Where the layered standard has them.
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
@@ -17,13 +17,13 @@ const CIRCUIT: &[(&str, &str)] =
     files!("circuit": "fmi-ls-manifest.xml" "experiments.exp" "pulses-in.csv" "pulses-ref.csv");
 
 /// Adds them to an archive, if the model has any.
-pub(super) fn add(contents: &mut Contents) {
-    let files = match contents.description().co_simulation.model_identifier.as_str() {
+pub(super) fn add(identifier: &str, entries: &mut Entries) {
+    let files = match identifier {
         "VibroImpactHarvester" => HARVESTER,
         "HarvestingCircuit" => CIRCUIT,
         _ => return,
     };
     for (name, text) in files {
-        contents.entries.add_bytes(&format!("{FOLDER}/{name}"), text.replace("\r\n", "\n").into_bytes());
+        entries.add(&format!("{FOLDER}/{name}"), text.replace("\r\n", "\n"));
     }
 }

@@ -119,7 +119,7 @@ impl SystemPackage<'_> {
             let parameters = part.parameters()?;
             let fmu = format!("resources/{}.fmu", part.description.co_simulation.model_identifier);
             let values = format!("resources/{name}.ssv");
-            entries.add_file(&fmu, part.fmu);
+            entries.add_file(&fmu, part.fmu)?;
             self.add_parameters(&mut entries, &values, &parameters)?;
             components.push(Component { name, fmu, values, connectors: part.connectors() });
             all.extend(parameters.into_iter().map(|it| Parameter { name: format!("{name}.{}", it.name), ..it }));
@@ -203,7 +203,7 @@ fn is_start(variable: &Variable, value: &Value) -> bool {
 /// Adds a document, which ends with a line feed.
 fn add_document(entries: &mut Entries, file: &str, document: &impl Template) -> Result<()> {
     let text = document.render().map_err(PackageError::template(file))?;
-    entries.add_bytes(file, (text + "\n").into_bytes());
+    entries.add(file, text + "\n");
     Ok(())
 }
 

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{Contents, FMUS, Options, PackageError, Platform, build_all, documentation, locate};
+use super::{Entries, FMUS, Options, PackageError, build_all, described, documentation, locate};
 use fmu_import::Archive;
 
 const DESCRIPTION: &str = include_str!("../../fmu/import/src/testdata/good.xml");
@@ -11,37 +11,25 @@ const DESCRIPTION: &str = include_str!("../../fmu/import/src/testdata/good.xml")
 /// A tree with the files that packaging reads, but nothing to build.
 fn tree() -> TempDir {
     let tree = TempDir::new().unwrap();
-    let write = |name: &str, text: &str| {
-        let path = tree.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
-    };
-    write("Toy.xml", DESCRIPTION);
-    write("target/release/libToy.so", "library");
-    write("documentation/index.html", "<html/>");
-    write("documentation/images/a.svg", "<svg/>");
+    fs::write(tree.path().join("Toy.xml"), DESCRIPTION).unwrap();
     tree
 }
 
-fn contents(tree: &Path) -> Contents {
-    let mut contents = Contents::new("Toy", &tree.join("Toy.xml")).unwrap();
-    contents.add_library(Platform { folder: "linux64" }, &tree.join("target/release/libToy.so"));
-    contents.entries.add_folder("documentation", &tree.join("documentation")).unwrap();
-    contents.entries.add_folder("resources", &tree.join("absent")).unwrap();
-    documentation::add(&mut contents).unwrap();
-    contents
+fn entries(tree: &Path) -> Entries {
+    let (description, mut entries) = described("Toy", &tree.join("Toy.xml")).unwrap();
+    entries.add("binaries/linux64/Toy.so", "library");
+    documentation::add(&description, &mut entries).unwrap();
+    entries
 }
 
 #[test]
 fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
     let tree = tree();
     let path = tree.path().join("out/deep/Toy.fmu");
-    contents(tree.path()).entries.write(&path).unwrap();
+    entries(tree.path()).write(&path).unwrap();
     let mut archive = Archive::open(&path).unwrap();
     let wanted = [
         "binaries/linux64/Toy.so",
-        "documentation/images/a.svg",
-        "documentation/index.html",
         "documentation/licenses/LICENSE-APACHE",
         "documentation/licenses/LICENSE-MIT",
         "documentation/licenses/license.txt",
@@ -60,7 +48,7 @@ fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
     let archive = |tree: &TempDir| {
         let path = tree.path().join("Toy.fmu");
         fs::write(&path, "old").unwrap();
-        contents(tree.path()).entries.write(&path).unwrap();
+        entries(tree.path()).write(&path).unwrap();
         fs::read(path).unwrap()
     };
     let bytes = archive(&first);
@@ -73,21 +61,9 @@ fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
 }
 
 #[test]
-fn a_failed_write_leaves_the_old_archive_alone() {
-    let tree = tree();
-    let path = tree.path().join("Toy.fmu");
-    fs::write(&path, "old").unwrap();
-    let mut contents = contents(tree.path());
-    contents.entries.add_file("resources/gone", &tree.path().join("gone"));
-    let error = contents.entries.write(&path).unwrap_err().to_string();
-    assert!(error.starts_with("cannot read ") && error.contains("gone"), "{error}");
-    assert_eq!(fs::read(&path).unwrap(), b"old");
-}
-
-#[test]
 fn a_description_of_another_model_is_refused() {
     let tree = tree();
-    let error = Contents::new("Other", &tree.path().join("Toy.xml")).unwrap_err().to_string();
+    let error = described("Other", &tree.path().join("Toy.xml")).unwrap_err().to_string();
     assert!(error.ends_with("modelIdentifier is \"Toy\", allowed is \"Other\""), "{error}");
 }
 
