@@ -30,8 +30,8 @@ struct Queue<R, E, T> {
     next: u64,
     /// End of the numbers to work on.
     end: u64,
-    /// The number whose result is due.
-    due: u64,
+    /// The number whose result is handed on next.
+    first: u64,
     /// Results that wait for earlier ones.
     waiting: BTreeMap<u64, Result<R, E>>,
     /// None while a thread uses it.
@@ -47,13 +47,13 @@ impl<R, E, T> Queue<R, E, T> {
         self.waiting.insert(number, result);
     }
 
-    /// The results that are due, up to an error.
-    fn due(&mut self) -> Vec<R> {
+    /// The results that can be handed on, up to an error.
+    fn ready(&mut self) -> Vec<R> {
         let mut results = Vec::new();
         while self.error.is_none()
-            && let Some(result) = self.waiting.remove(&self.due)
+            && let Some(result) = self.waiting.remove(&self.first)
         {
-            self.due += 1;
+            self.first += 1;
             match result {
                 Ok(result) => results.push(result),
                 Err(error) => self.error = Some(error),
@@ -75,13 +75,13 @@ pub fn in_order<R: Send, E: Send>(
     take: impl FnMut(Vec<R>) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     let Range { start, end } = numbers;
-    let queue = Queue { next: start, end, due: start, waiting: BTreeMap::new(), take: Some(take), error: None };
+    let queue = Queue { next: start, end, first: start, waiting: BTreeMap::new(), take: Some(take), error: None };
     let (queue, changed) = (Mutex::new(queue), Condvar::new());
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let work_off = || {
         loop {
             let mut held = lock();
-            while held.next < held.end && held.next - held.due >= sharing.ahead && !(sharing.is_stopped)() {
+            while held.next < held.end && held.next - held.first >= sharing.ahead && !(sharing.is_stopped)() {
                 held = changed.wait_timeout(held, POLL).unwrap_or_else(PoisonError::into_inner).0;
             }
             if held.next >= held.end || (sharing.is_stopped)() {
@@ -95,7 +95,7 @@ pub fn in_order<R: Send, E: Send>(
             held.add(number, result);
             // One thread takes results; what comes meanwhile it takes together.
             while let Some(mut take) = held.take.take() {
-                let results = held.due();
+                let results = held.ready();
                 if results.is_empty() {
                     held.take = Some(take);
                     break;
@@ -226,7 +226,7 @@ mod tests {
             if number.is_multiple_of(17) {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            // Eight ahead of those that are due, of which some are being taken.
+            // Eight ahead of those that are handed on, of which some are being taken.
             assert!(number < taken.load(Ordering::SeqCst) + 16, "{number} is too far ahead");
             Ok::<_, ()>(number)
         };

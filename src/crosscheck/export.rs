@@ -10,7 +10,8 @@ use super::compare::ComparedCircuit;
 use super::error::FileError;
 use super::run::Crosscheck;
 use super::solver::Solver;
-use crate::ngspice::{CapacitanceSource, CapacitanceTable, Elements, FileName, Netlist, Ngspice, NgspiceError, Run};
+use crate::ngspice::{CapacitanceSource, CapacitanceTable, Elements, Netlist, Ngspice, NgspiceError, Run};
+use crate::ngspice::{NETLIST_FILE, RAW_FILE, TABLE_FILE};
 use videg_system::atomic_file;
 
 /// First line of the page, which tells a folder made here from any other.
@@ -90,7 +91,7 @@ pub fn write(folder: &Path, found: &Crosscheck) -> Result<Vec<PathBuf>, FileErro
         items.push(Item::capacitor(&capacitor, form)?);
     }
     let page = folder.join(PAGE);
-    let names = [FileName::Netlist.name(), FileName::Table.name(), EVALUATION];
+    let names = [NETLIST_FILE, TABLE_FILE, EVALUATION];
     let paths = items.iter().flat_map(|item| names.map(|name| folder.join(&item.folder).join(name)));
     let files: Vec<_> = std::iter::once(page.clone()).chain(paths).collect();
     refuse_foreign(&page, &files)?;
@@ -128,7 +129,7 @@ fn circuit_script(settings: &Settings) -> String {
 }
 
 fn script(sums: &str, printed: &str) -> String {
-    let raw = FileName::Raw.name();
+    let raw = RAW_FILE;
     format!(
         "* videg: sums up {raw}; charges in C, energies in J, voltages in V\n.control\nload {raw}\n\
          let last = length(time) - 1\n{sums}\nset numdgt=9\nprint {printed}\nquit\n.endc\n.end\n"
@@ -164,15 +165,14 @@ fn refuse_foreign(page: &Path, files: &[PathBuf]) -> Result<(), FileError> {
 fn page_text(title: &str, items: &[Item<'_>]) -> String {
     // A name may hold anything; it stays on its line.
     let title: String = title.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    let [netlist, raw] = [FileName::Netlist.name(), FileName::Raw.name()];
+    let [netlist, raw] = [NETLIST_FILE, RAW_FILE];
     let mut text = format!(
         "{MARK}\n\n{title}\n\nEach folder holds a circuit for ngspice (with its XSPICE code models, as Debian's package \
-         has them): the\nnetlist {netlist}, C(t) in {} (time in s, capacitances of the left and the right membrane in \
+         has them): the\nnetlist {netlist}, C(t) in {TABLE_FILE} (time in s, capacitances of the left and the right membrane in \
          pF),\nand {EVALUATION}, which sums up the result. In such a folder\n\n    ngspice -n -b {netlist}\n    ngspice -n -b \
          {EVALUATION}\n\nleaves the waveforms in {raw} and prints the values that stand here: to some 1e-4, as the script sums\ncurrents by \
          the trapezoidal rule alone; to 3e-4 or better with another version of ngspice; the closed forms as far as the\n\
-         crosscheck says.\n",
-        FileName::Table.name()
+         crosscheck says.\n"
     );
     for item in items {
         let _ = write!(text, "\n{}/: {}\n", item.folder, item.about);

@@ -48,5 +48,5 @@ pub use raw::{RawError, RawReader};
 pub(crate) use run::CapacitanceSource;
 pub use run::Run;
 pub use runner::{Ngspice, SolverRun};
-pub(crate) use template::{FileName, Netlist};
+pub(crate) use template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
 pub use waveforms::Waveforms;

@@ -2,7 +2,7 @@
 
 use super::NgspiceError;
 use super::capacitance::PICO;
-use super::template::{FileName, Values, template};
+use super::template::{RAW_FILE, TABLE_FILE, Values, template};
 
 /// Source of C(t).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,9 +87,9 @@ impl Run {
             .number("initial_left_pf", left / PICO)
             .number("initial_right_pf", right / PICO)
             .number("initial_total_pf", (left + right) / PICO)
-            .vectors("saved", saved)
-            .file("table_file", FileName::Table)
-            .file("raw_file", FileName::Raw);
+            .words("saved", saved)
+            .words("table_file", &[TABLE_FILE])
+            .words("raw_file", &[RAW_FILE]);
         let (capacitance, run) = match source {
             CapacitanceSource::Table => (template!("capacitance_table.cir"), template!("run_batch.cir")),
             CapacitanceSource::External => (template!("capacitance_external.cir"), template!("run_live.cir")),

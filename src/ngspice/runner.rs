@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::capacitance::CapacitanceTable;
 use super::kept_output::KeptOutput;
 use super::result::ResultReader;
-use super::template::{FileName, Netlist};
+use super::template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
 use super::{CapacitanceSource, Complaints, Elements, NgspiceError, Run, Waveforms};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
@@ -174,9 +174,9 @@ impl Ngspice {
 
     /// Writes netlist and table into `folder`, where `ngspice -b harvesting.cir` runs them by hand.
     pub(crate) fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
-        let path = folder.join(FileName::Netlist.name());
+        let path = folder.join(NETLIST_FILE);
         atomic_file::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
-        let path = folder.join(FileName::Table.name());
+        let path = folder.join(TABLE_FILE);
         let written = atomic_file::fill(&path, |file| table.write(BufWriter::new(file)));
         written.map_err(|cause| NgspiceError::File { path, cause })
     }
@@ -207,7 +207,7 @@ impl Ngspice {
 
     fn command(&self, folder: &Path) -> Command {
         let mut command = Command::new(&self.program);
-        command.args(["-n", "-b", FileName::Netlist.name()]).current_dir(folder);
+        command.args(["-n", "-b", NETLIST_FILE]).current_dir(folder);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // It would turn the result into ASCII.
         command.env_remove("SPICE_ASCIIRAWFILE");
@@ -218,7 +218,7 @@ impl Ngspice {
 impl BatchOutput {
     /// The result, if there is one.
     pub fn raw(&self) -> Result<Option<BufReader<File>>, NgspiceError> {
-        let path = self.folder.path().join(FileName::Raw.name());
+        let path = self.folder.path().join(RAW_FILE);
         match input::open_regular(&path) {
             Ok(file) => Ok(Some(BufReader::with_capacity(1 << 16, file))),
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(None),

@@ -14,27 +14,10 @@ impl Netlist {
     }
 }
 
-/// The files of a run, in its folder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FileName {
-    /// The netlist.
-    Netlist,
-    /// The table of capacitances.
-    Table,
-    /// The result.
-    Raw,
-}
-
-impl FileName {
-    /// The name, without a folder.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Netlist => "harvesting.cir",
-            Self::Table => "capacitance.tab",
-            Self::Raw => "harvesting.raw",
-        }
-    }
-}
+/// The files of a run, in its folder: netlist, table of capacitances and result.
+pub const NETLIST_FILE: &str = "harvesting.cir";
+pub const TABLE_FILE: &str = "capacitance.tab";
+pub const RAW_FILE: &str = "harvesting.raw";
 
 /// A number as ngspice reads it: digits and an exponent, no suffix letter. The digits are those of this very double; what
 /// ngspice makes of them may be off by two units in the last place (every third number is).
@@ -79,13 +62,9 @@ impl Values {
         self.with(name, Value::Text(part.0.trim_end().to_owned()))
     }
 
-    pub fn file(self, name: &'static str, file: FileName) -> Self {
-        self.with(name, Value::Text(file.name().to_owned()))
-    }
-
-    /// Vectors that the netlist saves.
-    pub fn vectors(self, name: &'static str, vectors: &'static [&'static str]) -> Self {
-        self.with(name, Value::Text(vectors.join(" ")))
+    /// Words of this program: `'static`, so that none can come from a user.
+    pub fn words(self, name: &'static str, words: &'static [&'static str]) -> Self {
+        self.with(name, Value::Text(words.join(" ")))
     }
 
     /// Puts the values into `template`, which need not use all of them.

@@ -223,7 +223,6 @@ mod tests {
             ("[set]\nball.mass = 2026-01-01", "ball.mass"),
             ("case = ", "line 1"),
             ("name = \"a\\u001b[2J\"", "name: the character U+001B"),
-            ("[set]\nball.mass = \"\\u0001\"", "set.ball.mass: the character U+0001"),
         ] {
             let reason = CaseFile::parse(text).unwrap_err();
             assert!(reason.contains(named) && reason.lines().count() == 1, "{text}: {reason}");

@@ -31,18 +31,18 @@ pub(super) enum Rest {
     Nothing,
     /// The trace of a write that was cut short: part of a line, or zero bytes, which no text of an FMU has.
     Torn,
-    /// A whole line, and why it is not the one that is due.
+    /// A whole line, and why it is not the one expected.
     Wrong(String),
 }
 
 impl Extent {
     /// That it is all of a file of `length` bytes with the results of the runs `range`; else what is wrong with them.
     pub fn check_complete(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
-        let due = range.start + self.lines;
+        let expected = range.start + self.lines;
         match &self.rest {
             _ if self.bytes == 0 => Err(NOT_HEADING.to_owned()),
-            Rest::Wrong(reason) if due < range.end => Err(reason.clone()),
-            _ if due < range.end => Err(not_due(self.lines + 2, due, range)),
+            Rest::Wrong(reason) if expected < range.end => Err(reason.clone()),
+            _ if expected < range.end => Err(not_expected(self.lines + 2, expected, range)),
             _ if self.bytes < length => {
                 Err(format!("{} bytes follow line {}, its last", length - self.bytes, self.lines + 1))
             }
@@ -53,12 +53,12 @@ impl Extent {
 
 const NOT_HEADING: &str = "its first line is not the heading of this sweep";
 
-fn not_due(line: u64, due: u64, range: &Range<u64>) -> String {
-    format!("line {line} is not run {due} of runs {} to {}", range.start, range.end - 1)
+fn not_expected(line: u64, expected: u64, range: &Range<u64>) -> String {
+    format!("line {line} is not run {expected} of runs {} to {}", range.start, range.end - 1)
 }
 
 /// Follows results of the runs `range` from their heading on, and hands each line of a run to `take`. Ends before the first
-/// line that is not whole or not that of the run which is due.
+/// line that is not whole or not that of the run expected.
 pub(super) fn follow<E: From<io::Error>>(
     mut from: impl BufRead,
     columns: &[Column],
@@ -117,20 +117,20 @@ impl<'a> Cells<'a> {
         Self { columns, reader: csv_core::Reader::new(), text: Vec::new(), ends }
     }
 
-    /// That `line` is that of the run which is due behind `extent`, and a row of its own, with cells of the types of the
+    /// That `line` is that of the run expected behind `extent`, and a row of its own, with cells of the types of the
     /// columns; else why not.
     fn check(&mut self, line: &[u8], extent: &Extent, range: &Range<u64>) -> Result<(), String> {
-        let (number, due) = (extent.lines + 2, range.start + extent.lines);
+        let (number, expected) = (extent.lines + 2, range.start + extent.lines);
         if range.is_empty() {
             return Err(format!("line {number} is one too many: a share without runs has none"));
         }
-        if due >= range.end {
+        if expected >= range.end {
             return Err(format!("line {number} follows that of the last run, {}", range.end - 1));
         }
-        if line.strip_prefix(due.to_string().as_bytes()).is_none_or(|rest| rest.first() != Some(&b',')) {
-            return Err(not_due(number, due, range));
+        if line.strip_prefix(expected.to_string().as_bytes()).is_none_or(|rest| rest.first() != Some(&b',')) {
+            return Err(not_expected(number, expected, range));
         }
-        self.check_cells(line).map_err(|reason| format!("line {number}, of run {due}, {reason}"))
+        self.check_cells(line).map_err(|reason| format!("line {number}, of run {expected}, {reason}"))
     }
 
     fn check_cells(&mut self, line: &[u8]) -> Result<(), String> {

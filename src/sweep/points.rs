@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_latin_hypercube_has_one_point_in_each_stratum_of_each_variable() {
         let vary = ["membrane.restitution=0:1", "excitation.amplitude=2:4", "membrane.stiffness=log:1:1e6"];
-        for count in [1, 2, 3, 10, 64, 100, 1021] {
+        for count in [1, 2, 3, 10, 16, 17, 64, 100, 1021] {
             for seed in [0, 1, 12_345_678_901] {
                 let points = points(Design::Lhs, &vary, Some(count), seed).unwrap();
                 let mut strata = [vec![], vec![], vec![]];

@@ -93,7 +93,7 @@ impl Record {
         self.results.kept()
     }
 
-    /// Adds the lines of the runs that are due.
+    /// Adds the lines of the runs that follow.
     pub fn append(&mut self, lines: &[Vec<u8>]) -> Result<(), SweepError> {
         if lines.is_empty() {
             return Ok(());

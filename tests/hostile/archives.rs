@@ -5,7 +5,7 @@ use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::stage::{Input, refused};
+use super::sandbox::{Input, refused};
 use super::toy::{DESCRIPTION, library_name, zipped};
 
 /// An archive with a good description and one more entry.

@@ -1,6 +1,6 @@
 //! Model descriptions that lie, swell or climb.
 
-use super::stage::{Input, refused};
+use super::sandbox::{Input, refused};
 use super::toy::{DESCRIPTION, library_name, zipped};
 
 fn check(what: &'static str, description: impl AsRef<[u8]>) -> Input {

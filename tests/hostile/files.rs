@@ -1,6 +1,6 @@
 //! Case files, sweep files, and results of sweeps that somebody else has left.
 
-use super::stage::{Input, refused};
+use super::sandbox::{Input, refused};
 
 fn case(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
     refused(what, &["simulate", "--output", "out", "--case-file", "evil.toml"], vec![("evil.toml", text.into())])

@@ -1,6 +1,6 @@
 //! Libraries of FMUs that fall, hang, swell, lie or close what is not theirs.
 
-use super::stage::{Given, Input};
+use super::sandbox::{Given, Input};
 
 fn check(what: &'static str, macros: &[&str], options: &[&'static str]) -> Input {
     let macros = macros.iter().map(|it| (*it).to_owned()).collect();

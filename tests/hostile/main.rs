@@ -15,12 +15,12 @@ mod memory;
 mod netlists;
 mod options;
 mod page;
-mod stage;
+mod sandbox;
 mod toy;
 
 use std::panic::catch_unwind;
 
-use stage::Input;
+use sandbox::Input;
 
 /// Inputs by kind, in the order of the page.
 fn all() -> Vec<(&'static str, Vec<Input>)> {
@@ -37,10 +37,10 @@ fn all() -> Vec<(&'static str, Vec<Input>)> {
 #[test]
 #[ignore = "slow"]
 fn every_hostile_input_comes_to_what_the_page_says() {
-    stage::build();
+    sandbox::build();
     let mut failures = 0;
     let mut row = |input: &Input| {
-        let told = catch_unwind(|| stage::run(input)); // so that the first failure hides no other
+        let told = catch_unwind(|| sandbox::run(input)); // so that the first failure hides no other
         failures += usize::from(told.is_err());
         told.map_or_else(|_| String::new(), |told| page::row(input, &told))
     };

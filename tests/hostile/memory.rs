@@ -4,7 +4,7 @@ use fmu_import::{Fmu, FmuState, Instance, Logging};
 use videg::ngspice::RawReader;
 use videg::package::{Options, build_all};
 
-use super::stage::{Given, Input};
+use super::sandbox::{Given, Input};
 
 const DESERIALIZE: &str = "Instance::deserialize_state";
 

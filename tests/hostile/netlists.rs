@@ -6,7 +6,7 @@ use std::process::Command;
 
 use videg::ngspice::Ngspice;
 
-use super::stage::CANARY;
+use super::sandbox::CANARY;
 
 const EVIL: &str =
     "name = \".control; shell touch CANARY; $(touch CANARY)\"\ndescription = \"*\\n.control\\nshell touch CANARY\"\n";
@@ -16,7 +16,7 @@ fn commands_in_the_name_of_a_case_reach_no_netlist() {
     if Ngspice::find(None).is_err() && std::env::var_os("VIDEG_ALL_TOOLS").is_none() {
         return;
     }
-    super::stage::build();
+    super::sandbox::build();
     let folder = tempfile::tempdir().unwrap();
     let canary = folder.path().canonicalize().unwrap().join("canary");
     let evil = EVIL.replace(CANARY, &canary.display().to_string());

@@ -1,6 +1,6 @@
 //! Settings and options that are out of bounds, or commands to somebody else.
 
-use super::stage::{Input, refused};
+use super::sandbox::{Input, refused};
 
 fn set(what: &'static str, setting: &str) -> Input {
     refused(what, &["sweep", "--check", "--set", setting], Vec::new())

@@ -2,7 +2,7 @@
 
 use videg_golden::Golden;
 
-use super::stage::{Input, Told};
+use super::sandbox::{Input, Told};
 
 const GOLDEN: Golden = Golden::new("UPDATE_HOSTILE", "cargo test --test hostile -- --ignored");
 

@@ -46,33 +46,6 @@ fn started(mut command: Command, folder: &Path, lines: usize) -> Child {
 }
 
 #[test]
-#[ignore = "slow"]
-fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
-    let (_guard, folder) = folder();
-    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
-    done(&mut long(&whole));
-    let mut random = fastrand::Rng::with_seed(1);
-    for _ in 0..6 {
-        let lines = lines_written(&killed) + random.usize(1..150);
-        let mut command = long(&killed);
-        command.args(["--jobs", "1"]);
-        let mut child = started(command, &killed, lines);
-        child.kill().unwrap();
-        if child.wait().unwrap().success() {
-            break; // It came to its end before it was met, on a machine that is in a hurry.
-        }
-        assert!(!killed.join("sweep.parquet").exists() || killed.join("sweep.csv").exists());
-    }
-    let kept = lines_written(&killed).saturating_sub(1);
-    let said = json(&mut long(&killed));
-    // The last line may have been cut; a sweep that came to its end has no such file any more.
-    let resumed_from = said["resumed_from"].as_u64().unwrap();
-    assert!(resumed_from == 1200 || resumed_from.abs_diff(kept as u64) <= 1, "{said} after {kept}");
-    assert_same_results(&whole, &killed);
-    assert_eq!(names(&killed), ["sweep.csv", "sweep.json", "sweep.parquet"]);
-}
-
-#[test]
 fn results_cut_or_spoilt_anywhere_are_completed_to_the_same_bytes() {
     let (_guard, folder) = folder();
     let [whole, cut] = ["whole", "cut"].map(|name| folder.join(name));
