@@ -3,6 +3,9 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/instance.rs"]
+mod instance;
+
 use std::path::{Path, PathBuf};
 
 use fmu_host::{Fmu, Functions, Instance, abi};
@@ -75,10 +78,7 @@ fn cycles_of_loading_running_and_unloading_leave_memory_flat() {
     // Through the importer, which unpacks the archive each time.
     let imported = || {
         let fmu = fmu_import::Fmu::open(folder.path().join("VibroImpactHarvester.fmu")).unwrap();
-        let mut instance = fmu.instantiate("cycle", Logging::default()).unwrap();
-        instance.setup_experiment(0.0, None, None).unwrap();
-        instance.enter_initialization_mode().unwrap();
-        instance.exit_initialization_mode().unwrap();
+        let mut instance = instance::initialised(&fmu, "harvester", Logging::default(), &[]);
         instance.do_step(0.0, 1.0).unwrap();
         let state = instance.save_state().unwrap();
         instance.restore_state(&state).unwrap();

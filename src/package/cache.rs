@@ -2,7 +2,6 @@
 //! program has its own.
 
 use std::ffi::OsString;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
@@ -38,11 +37,8 @@ pub(super) fn place(archives: &[Vec<u8>], folder: &Path, caches: Option<PathBuf>
 /// The folder of the archives: version, and the beginning of a SHA-256 of all their bytes.
 fn name(archives: &[Vec<u8>]) -> String {
     let hash = Sha256::digest(archives.concat());
-    hash.iter().take(8).fold(concat!(env!("CARGO_PKG_VERSION"), "-").to_owned(), |mut name, byte| {
-        // Writing to a string does not fail.
-        let _ = write!(name, "{byte:02x}");
-        name
-    })
+    let beginning = hash.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
+    format!("{}-{beginning:016x}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The user's cache folder: `XDG_CACHE_HOME`, or that of the system.

@@ -144,9 +144,6 @@ pub(super) fn sha256(content: impl AsRef<[u8]>) -> String {
 
 /// Two digits for each of `bytes`.
 pub(super) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut digits, byte| {
-        let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
-        digits.extend([digit(byte >> 4), digit(byte & 15)]);
-        digits
-    })
+    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
+    digits.filter_map(|digit| char::from_digit(digit.into(), 16)).collect()
 }

@@ -4,14 +4,15 @@ use std::thread;
 
 use fmu_import::{Fmu, Logging, Value};
 
-use super::{fmus, initialised};
+use super::fmus;
+use super::instance::initialised;
 
 /// Sum of the voltage gains after 10 s in steps of 10 ms.
 fn gain(fmu: &Fmu, restitution: f64) -> f64 {
     let restitution = restitution.to_string();
     let settings =
         [("membrane.restitution", &*restitution), ("excitation.phaseNoise", "0.1"), ("excitation.noiseHold", "1e-3")];
-    let mut instance = initialised(fmu, Logging::default(), &settings);
+    let mut instance = initialised(fmu, "one of many", Logging::default(), &settings);
     (0..1000).for_each(|k| instance.do_step(0.01 * f64::from(k), 0.01).unwrap());
     match instance.get_by_name("gain.voltage").unwrap() {
         Value::Real(gain) => gain,

@@ -10,7 +10,8 @@ use videg::scenario::{Request, Scenario};
 use videg_circuit::Settings;
 use videg_model::{Case, Harvester, Membrane, Parameters, Side};
 
-use super::{fmus, initialised};
+use super::fmus;
+use super::instance::initialised;
 
 fn scenario(case: &str, until: f64) -> Scenario {
     Request { case: Some(case.to_owned()), until: Some(until), ..Request::default() }.resolve().unwrap()
@@ -80,7 +81,7 @@ fn every_impact_is_logged_with_rests_and_with_noise() {
         let settings = scenario(case, 5.0).settings;
         let settings = settings.iter().map(|setting| (&*setting.name, &*setting.value));
         let settings: Vec<_> = settings.chain([("excitation.phaseNoise", noise)]).collect();
-        let mut instance = initialised(&fmu, logging, &settings);
+        let mut instance = initialised(&fmu, "logged", logging, &settings);
         (0..5).for_each(|k| instance.do_step(f64::from(k), 1.0).unwrap());
         let impacts = instance.get_by_name("impact.count").unwrap().to_string();
         let logged = lines.lock().unwrap().iter().filter(|line| line.starts_with("impact ")).count();

@@ -10,6 +10,8 @@
 mod archives;
 mod descriptions;
 mod files;
+#[path = "../support/instance.rs"]
+mod instance;
 mod libraries;
 mod memory;
 mod netlists;

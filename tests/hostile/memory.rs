@@ -4,19 +4,15 @@ use fmu_import::{Fmu, FmuState, Instance, Logging};
 use videg::ngspice::RawReader;
 use videg::package::{Options, build_all};
 
+use super::instance;
 use super::sandbox::{Given, Input};
 
 const DESERIALIZE: &str = "Instance::deserialize_state";
 
 /// A harvester after one step, its state, and that as bytes.
 fn saved() -> (Instance, FmuState, Vec<u8>) {
-    let folder = tempfile::tempdir().unwrap();
-    let options = Options { output: Some(folder.path().to_owned()), ..Options::default() };
-    let fmu = Fmu::open(&build_all(&options).unwrap()[0]).unwrap();
-    let mut instance = fmu.instantiate("harvester", Logging::default()).unwrap();
-    instance.setup_experiment(0.0, None, None).unwrap();
-    instance.enter_initialization_mode().unwrap();
-    instance.exit_initialization_mode().unwrap();
+    let fmu = Fmu::open(&build_all(&Options::default()).unwrap()[0]).unwrap();
+    let mut instance = instance::initialised(&fmu, "harvester", Logging::default(), &[]);
     instance.do_step(0.0, 0.3).unwrap();
     let state = instance.save_state().unwrap();
     let bytes = instance.serialize_state(&state).unwrap();

@@ -10,8 +10,8 @@ fn circuit(what: &'static str, setting: &str) -> Input {
     refused(what, &["cosim", "--circuit", "ngspice", "--output", "out", "--until", "1", "--set", setting], Vec::new())
 }
 
-fn option(what: &'static str, words: &[&str]) -> Input {
-    refused(what, words, Vec::new())
+fn option(what: &'static str, line: &str) -> Input {
+    refused(what, &line.split(' ').collect::<Vec<_>>(), Vec::new())
 }
 
 /// All of them.
@@ -32,40 +32,22 @@ pub fn inputs() -> Vec<Input> {
         circuit("a command to ngspice in a name", "load.resistance\n.control\nshell touch CANARY\n.endc\n=1"),
         circuit("no number for the circuit", "load.resistance=NaN"),
         circuit("a resistance below zero", "load.resistance=-1"),
-        option("a run without end", &["simulate", "--output", "out", "--until", "inf"]),
-        option("more steps than can be written", &["simulate", "--output", "out", "--step", "1e-300"]),
-        option("a window outside of the run", &["simulate", "--output", "out", "--until", "10", "--window", "50,100"]),
-        option("an unknown case", &["simulate", "--output", "out", "--case", "../../etc/passwd"]),
+        option("a run without end", "simulate --output out --until inf"),
+        option("more steps than can be written", "simulate --output out --step 1e-300"),
+        option("a window outside of the run", "simulate --output out --until 10 --window 50,100"),
+        option("an unknown case", "simulate --output out --case ../../etc/passwd"),
         option(
             "more points than can be counted",
-            &[
-                "sweep",
-                "--check",
-                "--design",
-                "random",
-                "--points",
-                "18446744073709551615",
-                "--samples",
-                "2",
-                "--vary",
-                "membrane.restitution=0.2:0.9",
-            ],
+            "sweep --check --design random --points 18446744073709551615 --samples 2 --vary membrane.restitution=0.2:0.9",
         ),
         option(
             "a grid of 1e24 points",
-            &[
-                "sweep",
-                "--check",
-                "--vary",
-                "membrane.restitution=0.2:0.9:1000000000000",
-                "--vary",
-                "membrane.stiffness=1e5:2e5:1000000000000",
-            ],
+            "sweep --check --vary membrane.restitution=0.2:0.9:1000000000000 --vary membrane.stiffness=1e5:2e5:1000000000000",
         ),
-        option("a logarithmic range from zero", &["sweep", "--check", "--vary", "membrane.restitution=log:0:0.9:5"]),
-        option("shard 9 of 8", &["sweep", "--shard", "9/8", "--vary", "membrane.restitution=0.2:0.9:2"]),
-        option("a time limit that is none", &["fmu", "check", "toy.fmu", "--time-limit", "-1"]),
-        option("isolated and not isolated", &["fmu", "check", "toy.fmu", "--isolate", "--no-isolate"]),
-        option("a library that is none", &["fmu", "build", "--add-binary", "linux64=out/kept.txt"]),
+        option("a logarithmic range from zero", "sweep --check --vary membrane.restitution=log:0:0.9:5"),
+        option("shard 9 of 8", "sweep --shard 9/8 --vary membrane.restitution=0.2:0.9:2"),
+        option("a time limit that is none", "fmu check toy.fmu --time-limit -1"),
+        option("isolated and not isolated", "fmu check toy.fmu --isolate --no-isolate"),
+        option("a library that is none", "fmu build --add-binary linux64=out/kept.txt"),
     ]
 }

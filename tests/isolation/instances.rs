@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use fmu_import::{Bounds, FmiError, Fmu, Instance, Isolation, Logging, Status};
 use tempfile::TempDir;
 
-use crate::toy;
+use crate::{instance, toy};
 
 fn isolation() -> Isolation {
     let bounds = Bounds { time: Some(Duration::from_secs(20)), memory: Some(1 << 30) };
@@ -33,11 +33,7 @@ fn toy(macros: &[&str]) -> (TempDir, Fmu) {
 }
 
 fn initialised(fmu: &Fmu) -> Instance {
-    let mut instance = fmu.instantiate("toy", Logging::default()).unwrap();
-    instance.setup_experiment(0.0, None, None).unwrap();
-    instance.enter_initialization_mode().unwrap();
-    instance.exit_initialization_mode().unwrap();
-    instance
+    instance::initialised(fmu, "toy", Logging::default(), &[])
 }
 
 /// What a step says of an FMU that ends in it.

@@ -4,6 +4,9 @@
 #[path = "../support/command.rs"]
 mod command;
 #[cfg(target_os = "linux")]
+#[path = "../support/instance.rs"]
+mod instance;
+#[cfg(target_os = "linux")]
 mod interruption;
 #[cfg(target_os = "linux")]
 #[path = "../isolation/mod.rs"]
