@@ -119,6 +119,7 @@ fn check_size(what: &str, value: f64, (min, max): (f64, f64)) -> std::result::Re
 #[cfg(test)]
 mod tests {
     use super::super::figure::Series;
+    use super::super::svg::render_svg;
     use super::*;
 
     fn map(xs: &'static [f64], values: &'static [f64]) -> HeatMap<'static> {
@@ -131,7 +132,12 @@ mod tests {
         let low = [(-1.0, 0.0), (0.0, -3.0)];
         let panel = || Panel::new("(p)", "", "");
         let falling = || panel().series(Series::points("", &low));
+        let torn = Series::columns("C", &[1.0, 2.0], &[1.0]);
         for (panel, told) in [
+            (panel().series(torn), "`(p)`: series `C`: 2 x values for 1 y values"),
+            (panel().x_range(0.0, f64::INFINITY), "`(p)`: x range 0 to inf"),
+            (panel().y_range(2.0, 1.0), "y range 2 to 1"),
+            (panel().line("bias", f64::NAN), "`bias` at NaN"),
             (panel().map(map(&[1.0], &[0.0])), "`(p)`: 1 values for a map of 1 x 2 cells"),
             (panel().map(map(&[], &[])), "0 x 2"),
             (panel().map(map(&[2.0, 1.0], &[0.0; 4])), "x of the map: 1 follows 2"),
@@ -146,13 +152,19 @@ mod tests {
             (falling().log_y(), "logarithmic y axis"),
             (panel().log_x().equal_aspect(), "to scale"),
         ] {
-            let error = check(&Figure::new("F").panel(panel)).unwrap_err().to_string();
+            let error = render_svg(&Figure::new("F").panel(panel)).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");
         }
-        let figure = Figure::new("F").columns(0).panel(panel());
-        assert!(check(&figure).unwrap_err().to_string().contains("`F` has 0 columns"));
+        for (figure, told) in [
+            (Figure::new("F"), "`F` has no panels"),
+            (Figure::new("F").columns(0).panel(panel()), "`F` has 0 columns"),
+            (Figure::new("F").width(f64::NAN).panel(panel()), "figure width is NaN px"),
+        ] {
+            let error = render_svg(&figure).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
         for panel in [panel().map(map(&[1.0], &[0.0, f64::NAN])), panel().log_x()] {
-            check(&Figure::new("").panel(panel)).unwrap();
+            render_svg(&Figure::new("").panel(panel)).unwrap();
         }
     }
 }

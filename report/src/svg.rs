@@ -228,22 +228,4 @@ mod tests {
         figure.width = 200.0;
         parse(&render_svg(&figure).unwrap());
     }
-
-    #[test]
-    fn bad_input_is_an_error_that_names_it() {
-        let error = |figure: Figure| render_svg(&figure).unwrap_err().to_string();
-        let panel = || Panel::new("(b)", "", "");
-        assert!(error(Figure::new("F")).contains("`F` has no panels"));
-        let torn = Series::columns("C", &[1.0, 2.0], &[1.0]);
-        assert!(error(Figure::new("").panel(panel().series(torn))).contains("2 x values for 1"));
-        let endless = panel().x_range(0.0, f64::INFINITY);
-        assert!(error(Figure::new("").panel(endless)).contains("`(b)`: x range 0 to inf"));
-        let reversed = panel().y_range(2.0, 1.0);
-        assert!(error(Figure::new("").panel(reversed)).contains("y range 2 to 1"));
-        let astray = panel().line("bias", f64::NAN);
-        assert!(error(Figure::new("").panel(astray)).contains("`bias` at NaN"));
-        let mut wide = Figure::new("").panel(panel());
-        wide.width = f64::NAN;
-        assert!(error(wide).contains("figure width is NaN px"));
-    }
 }

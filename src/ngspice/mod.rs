@@ -28,7 +28,6 @@ mod capacitance;
 mod capacitor;
 mod elements;
 mod error;
-mod kept_output;
 mod ledger;
 pub mod live;
 mod raw;

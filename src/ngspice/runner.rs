@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use super::capacitance::CapacitanceTable;
-use super::kept_output::KeptOutput;
 use super::result::ResultReader;
 use super::template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
 use super::{CapacitanceSource, Complaints, Elements, NgspiceError, Run, Waveforms};
+use videg_system::output::{KeptOutput, Part};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
 use videg_system::{atomic_file, input};
@@ -189,8 +189,10 @@ impl Ngspice {
         let failed = |cause| NgspiceError::Start { program: self.program.clone(), cause };
         let mut group = ProcessGroup::start(&mut self.command(folder.path())).map_err(failed)?;
         let (stdout, stderr) = (group.child.stdout.take(), group.child.stderr.take());
-        let stdout = stdout.map(|stream| KeptOutput::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
-        let stderr = stderr.map(|stream| KeptOutput::new(stream, Self::OUTPUT)).transpose().map_err(failed)?;
+        let stdout =
+            stdout.map(|stream| KeptOutput::new(stream, Part::Beginning(Self::OUTPUT))).transpose().map_err(failed)?;
+        let stderr =
+            stderr.map(|stream| KeptOutput::new(stream, Part::Beginning(Self::OUTPUT))).transpose().map_err(failed)?;
         let has_ended = group.wait(Some(self.time_limit)).map_err(failed)?;
         // With what it has started.
         let status = group.end().map_err(failed)?;

@@ -3,5 +3,6 @@
 
 pub mod atomic_file;
 pub mod input;
+pub mod output;
 pub mod processes;
 pub mod temporary;

@@ -1,29 +1,40 @@
-//! Importer for FMI 2.0 co-simulation FMUs.
-//!
-//! An FMU is foreign input twice over: an archive and an XML file, which are read with bounds and without trust
-//! ([`Archive`], [`ModelDescription`]), and a shared library, which can only be trusted ([`Fmu`], [`Instance`]) or run in
-//! a process of its own ([`isolated`]). Looking at an FMU ([`Archive::description`]) neither unpacks nor loads anything.
+//! Importer for co-simulation FMUs of FMI 2.0: opens the archive, reads the model description, loads the library, makes instances
+//! and steps them.
 //!
 //! ```no_run
 //! use fmu_import::{Fmu, Logging};
 //!
-//! # fn main() -> Result<(), fmu_import::FmiError> {
-//! let fmu = Fmu::open("target/fmu/VibroImpactHarvester.fmu")?;
-//! let capacitance = [fmu.description().variable("left.capacitance")?.value_reference];
-//! let mut harvester = fmu.instantiate("harvester", Logging::default())?;
-//! harvester.set_by_name("contact.law", "compliant")?;
-//! harvester.setup_experiment(0.0, Some(100.0), None)?;
-//! harvester.enter_initialization_mode()?;
-//! harvester.exit_initialization_mode()?;
+//! # fn main() -> fmu_import::Result<()> {
+//! let fmu = Fmu::open("BouncingBall.fmu")?;
+//! let height = [fmu.description().variable("h")?.value_reference];
+//! let mut ball = fmu.instantiate("ball", Logging::default())?;
+//! ball.set_by_name("e", "0.7")?;
+//! ball.setup_experiment(0.0, Some(3.0), None)?;
+//! ball.enter_initialization_mode()?;
+//! ball.exit_initialization_mode()?;
 //! let mut value = [0.0];
-//! for step in 0..1000 {
-//!     harvester.do_step(f64::from(step) * 0.1, 0.1)?;
-//!     harvester.get_real(&capacitance, &mut value)?;
+//! for step in 0..300 {
+//!     ball.do_step(f64::from(step) * 0.01, 0.01)?;
+//!     ball.get_real(&height, &mut value)?;
 //! }
-//! harvester.terminate()?;
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! - [`Archive`] and [`ModelDescription`] look at an FMU without unpacking or loading anything. They do not trust it: sizes, numbers
+//!   and names are bounded ([`Limits`]), and no entry leaves its folder.
+//! - [`Instance`] has the functions of the standard: values by reference or by name, derivatives, states, also as bytes. A call whose
+//!   status is neither OK nor Warning is an error with the FMU's messages ([`FmiError`]).
+//! - A loaded library runs with all rights of the process. [`Fmu::open_isolated`] gives each instance a process of its own with limits
+//!   on time and memory: a crash, an endless loop or a leak is an error of the call. The program of an [`Isolation`] calls
+//!   [`isolated::serve`] for its verb [`isolated::WORKER_VERB`].
+//!
+//! # Limits
+//! - No model exchange, no FMI 3.0, no FMUs of source code alone.
+//! - Steps are synchronous: `fmi2Pending` is an error. `fmi2CancelStep` is never called.
+//! - An instance stays on its thread, as FMI 2.0 wants it; several instances may run on several threads.
+//! - Of a message with printf arguments, the log shows the format; only `"%s"` alone is filled in.
+//! - Isolation is no sandbox: an FMU may do what its user may. On Windows and macOS its memory is not bounded.
 
 mod access;
 mod archive;

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use super::protocol::{Job, Ramp, Reply, receive, send};
-use crate::ngspice::kept_output::KeptOutput;
+use videg_system::output::{KeptOutput, Part};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
 
@@ -69,7 +69,8 @@ impl Worker {
         let missing = || fail(io::Error::other("no pipe"));
         let requests = BufWriter::new(child.stdin.take().ok_or_else(missing)?);
         let replies = read_replies(child.stdout.take().ok_or_else(missing)?).map_err(fail)?;
-        let stderr = KeptOutput::new(child.stderr.take().ok_or_else(missing)?, KEPT_STDERR).map_err(fail)?;
+        let stderr =
+            KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
         let vectors = job.vectors.len();
         let mut worker = Self { group, requests, replies, stderr, limit, vectors, _folder: folder };
         // A worker that is gone already is found out by the first step.

@@ -1,10 +1,8 @@
 //! A worker as the host sees it: started, asked, watched and ended.
 
-use std::collections::VecDeque;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
-use std::process::{ChildStderr, Command, Stdio};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::bounds::WORKER_VERB;
@@ -13,6 +11,7 @@ use super::pipes::{Heard, Pipes};
 use super::protocol::{Given, Opening, Reply, SPARE, build, frame, longest_answer, unframe};
 use crate::logging::LogRecord;
 use crate::request::Request;
+use videg_system::output::{KeptOutput, Part};
 use videg_system::processes::ProcessGroup;
 
 /// Polling interval for the end of a silent worker: a child of it may hold its pipes open.
@@ -30,13 +29,7 @@ pub(super) struct Process {
     heard: Vec<u8>,
     /// How many calls there were.
     calls: u64,
-    printed: Arc<Mutex<Printed>>,
-}
-
-#[derive(Default)]
-struct Printed {
-    tail: VecDeque<u8>,
-    is_over: bool,
+    printed: KeptOutput,
 }
 
 impl Process {
@@ -49,7 +42,7 @@ impl Process {
         let child = &mut group.child;
         let missing = || io::Error::other("no pipe");
         let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
-        let printed = keep_printed(child.stderr.take().ok_or_else(missing)?)?;
+        let printed = KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::End(KEPT))?;
         let pipes = Pipes::new(requests, replies)?;
         Ok(Self { group, pipes, heard: Vec::new(), calls: 0, printed })
     }
@@ -159,16 +152,7 @@ impl Process {
 
     /// The end of what it printed.
     pub fn printed(&self) -> String {
-        let end = Instant::now() + LOOK;
-        loop {
-            let printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
-            // Something else may hold the pipe open.
-            if printed.is_over || Instant::now() > end {
-                return String::from_utf8_lossy(&printed.tail.iter().copied().collect::<Vec<_>>()).into_owned();
-            }
-            drop(printed);
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        self.printed.text()
     }
 }
 
@@ -193,26 +177,6 @@ impl Deadline {
         }
         Ok(left.min(LOOK))
     }
-}
-
-/// Reads what a worker prints, so that it never waits for a reader, and keeps the end.
-fn keep_printed(mut stderr: ChildStderr) -> io::Result<Arc<Mutex<Printed>>> {
-    let printed = Arc::new(Mutex::new(Printed::default()));
-    let shared = Arc::clone(&printed);
-    std::thread::Builder::new().spawn(move || {
-        let mut chunk = [0; 1024];
-        let keep = |bytes: &[u8]| {
-            let mut printed = shared.lock().unwrap_or_else(PoisonError::into_inner);
-            printed.tail.extend(bytes);
-            let excess = printed.tail.len().saturating_sub(KEPT);
-            printed.tail.drain(..excess);
-        };
-        while let Ok(count @ 1..) = stderr.read(&mut chunk) {
-            keep(&chunk[..count]);
-        }
-        shared.lock().unwrap_or_else(PoisonError::into_inner).is_over = true;
-    })?;
-    Ok(printed)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The output of a child on a stream: read to the end, so that the child never waits for a reader; the beginning is kept.
+//! The output of a child on a stream: read to the end, so that the child never waits for a reader; a part is kept.
 
 use std::io::{self, Read};
 use std::sync::mpsc::{Receiver, channel};
@@ -8,16 +8,29 @@ use std::time::Duration;
 /// Longest wait for the rest when the child has ended: a process that it started and detached may hold the stream open.
 const FAREWELL: Duration = Duration::from_secs(1);
 
+/// Which bytes of a stream are kept, at most as many.
+#[derive(Debug, Clone, Copy)]
+pub enum Part {
+    /// Its first.
+    Beginning(usize),
+    /// Its last.
+    End(usize),
+}
+
 /// A stream that is being read.
-pub(super) struct KeptOutput {
+#[derive(Debug)]
+pub struct KeptOutput {
     kept: Arc<Mutex<Vec<u8>>>,
     /// Closed at the end of the stream.
     end: Receiver<()>,
 }
 
 impl KeptOutput {
-    /// Reads `stream` in a thread and keeps its first `most` bytes.
-    pub fn new(mut stream: impl Read + Send + 'static, most: usize) -> io::Result<Self> {
+    /// Reads `stream` in a thread and keeps `part` of it.
+    ///
+    /// # Errors
+    /// If the thread cannot be started.
+    pub fn new(mut stream: impl Read + Send + 'static, part: Part) -> io::Result<Self> {
         let (kept, (sender, end)) = (Arc::new(Mutex::new(Vec::new())), channel());
         let shared = Arc::clone(&kept);
         std::thread::Builder::new().spawn(move || {
@@ -26,14 +39,20 @@ impl KeptOutput {
             // A stream that breaks has ended.
             while let Ok(count @ 1..) = stream.read(&mut chunk) {
                 let mut kept = shared.lock().unwrap_or_else(PoisonError::into_inner);
-                let count = count.min(most.saturating_sub(kept.len()));
                 kept.extend(&chunk[..count]);
+                match part {
+                    Part::Beginning(most) => kept.truncate(most),
+                    Part::End(most) => {
+                        let excess = kept.len().saturating_sub(most);
+                        kept.drain(..excess);
+                    }
+                }
             }
         })?;
         Ok(Self { kept, end })
     }
 
-    /// The beginning of what was said by a child that has ended.
+    /// What is kept of a child that has ended.
     pub fn text(&self) -> String {
         // Nothing is ever sent: this ends when the stream does, or in time.
         let _ = self.end.recv_timeout(FAREWELL);
