@@ -11,9 +11,6 @@ use std::time::{Duration, SystemTime};
 use anyhow::{Context as _, ensure};
 use serde_json::Value;
 
-/// A benchmark: its file, Criterion's group, and the name in the group.
-type Measured = (&'static str, &'static str, &'static str);
-
 /// What is asked of a ratio.
 enum Asked {
     /// Ours takes at most so many times the time of the baseline.
@@ -24,97 +21,62 @@ enum Asked {
     Nothing,
 }
 
+use Asked::{AtMost, Faster, Nothing};
+
 struct Row {
     what: &'static str,
-    ours: Measured,
-    baseline: Measured,
+    /// File of the benchmark, and Criterion's group.
+    group: (&'static str, &'static str),
+    /// Names in the group.
+    ours: &'static str,
+    baseline: &'static str,
     asked: Asked,
 }
 
-const BALL: &str = "bouncing ball in C";
-const STEP: &str = "doStep without impact";
-const STATE: &str = "get, set and free FMU state";
-const ROLLBACK: &str = "get FMU state, doStep, set, free";
-const CALLS: &str = "100 s of fig14 in calls";
-const MOTION: &str = "100 s";
-const NOISE: &str = "phase noise, 100 s";
-const ENSEMBLE: &str = "phase noise, 8 runs of 20 s";
-const CIRCUIT: &str = "10 s of fig14, shared node, series Zener";
+const STEP: (&str, &str) = ("calls", "doStep without impact");
+const STATE: (&str, &str) = ("calls", "get, set and free FMU state");
+const ROLLBACK: (&str, &str) = ("calls", "get FMU state, doStep, set, free");
+const CALLS: (&str, &str) = ("calls", "100 s of fig14 in calls");
+const MOTION: (&str, &str) = ("harvester", "100 s");
+const NOISE: (&str, &str) = ("noise", "phase noise, 100 s");
+const ENSEMBLE: (&str, &str) = ("noise", "phase noise, 8 runs of 20 s");
+const CIRCUIT: (&str, &str) = ("circuit", "10 s of fig14, shared node, series Zener");
 
+const BALL: &str = "bouncing ball in C";
+const RUNGE_KUTTA: &str = "Runge-Kutta as the paper";
+const PAPER: &str = "fig14, Runge-Kutta as the paper";
+const STAGES: &str = "fig14, Runge-Kutta stage by stage";
+
+#[rustfmt::skip] // one row each
 const ROWS: &[Row] = &[
-    Row {
-        what: "`fmi2DoStep`, 1 ms without an impact; a bouncing ball in C",
-        ours: ("calls", STEP, "harvester"),
-        baseline: ("calls", STEP, BALL),
-        asked: Asked::AtMost(1.5),
-    },
-    Row {
-        what: "`fmi2GetFMUstate`, `fmi2SetFMUstate`, `fmi2FreeFMUstate`; a bouncing ball in C",
-        ours: ("calls", STATE, "harvester"),
-        baseline: ("calls", STATE, BALL),
-        asked: Asked::AtMost(1.5),
-    },
-    Row {
-        what: "the same with a step in between, which is taken back; a bouncing ball in C",
-        ours: ("calls", ROLLBACK, "harvester"),
-        baseline: ("calls", ROLLBACK, BALL),
-        asked: Asked::Nothing,
-    },
-    Row {
-        what: "100 s of Fig. 14 in 100,000 calls of `fmi2DoStep`; the paper's Runge-Kutta at 1e-5 s",
-        ours: ("calls", CALLS, "doStep, 1 ms"),
-        baseline: ("calls", CALLS, "Runge-Kutta as the paper"),
-        asked: Asked::Faster(50.0),
-    },
-    Row {
-        what: "100 s of Fig. 14 in one go; the paper's Runge-Kutta at 1e-5 s",
-        ours: ("harvester", MOTION, "fig14, event-driven"),
-        baseline: ("harvester", MOTION, "fig14, Runge-Kutta as the paper"),
-        asked: Asked::Faster(2000.0),
-    },
-    Row {
-        what: "the same; the paper's Runge-Kutta stage by stage, as in textbooks",
-        ours: ("harvester", MOTION, "fig14, event-driven"),
-        baseline: ("harvester", MOTION, "fig14, Runge-Kutta stage by stage"),
-        asked: Asked::Nothing,
-    },
-    Row {
-        what: "100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample",
-        ours: ("noise", NOISE, "in blocks"),
-        baseline: ("noise", NOISE, "C, Runge-Kutta"),
-        asked: Asked::Faster(10.0),
-    },
-    Row {
-        what: "the same; a plain program in C, closed form sample by sample",
-        ours: ("noise", NOISE, "in blocks"),
-        baseline: ("noise", NOISE, "C, closed form"),
-        asked: Asked::Nothing,
-    },
-    Row {
-        what: "8 runs of 20 s of Fig. 17 on two threads; on one",
-        ours: ("noise", ENSEMBLE, "threads: 2"),
-        baseline: ("noise", ENSEMBLE, "threads: 1"),
-        asked: Asked::Faster(1.8),
-    },
-    Row {
-        what: "circuit, 10 s of Fig. 14, ideal diodes; ngspice",
-        ours: ("circuit", CIRCUIT, "embedded, ideal diodes"),
-        baseline: ("circuit", CIRCUIT, "ngspice, batch"),
-        asked: Asked::Nothing,
-    },
-    Row {
-        what: "circuit, 10 s of Fig. 14, exponential diodes; ngspice",
-        ours: ("circuit", CIRCUIT, "embedded, exponential diodes"),
-        baseline: ("circuit", CIRCUIT, "ngspice, batch"),
-        asked: Asked::Nothing,
-    },
+    row("`fmi2DoStep`, 1 ms without an impact; a bouncing ball in C", STEP, "harvester", BALL, AtMost(1.5)),
+    row("`fmi2GetFMUstate`, `fmi2SetFMUstate`, `fmi2FreeFMUstate`; a bouncing ball in C", STATE, "harvester", BALL, AtMost(1.5)),
+    row("the same with a step in between, which is taken back; a bouncing ball in C", ROLLBACK, "harvester", BALL, Nothing),
+    row("100 s of Fig. 14 in 100,000 calls of `fmi2DoStep`; the paper's Runge-Kutta at 1e-5 s", CALLS, "doStep, 1 ms", RUNGE_KUTTA, Faster(50.0)),
+    row("100 s of Fig. 14 in one go; the paper's Runge-Kutta at 1e-5 s", MOTION, "fig14, event-driven", PAPER, Faster(2000.0)),
+    row("the same; the paper's Runge-Kutta stage by stage, as in textbooks", MOTION, "fig14, event-driven", STAGES, Nothing),
+    row("100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample", NOISE, "in blocks", "C, Runge-Kutta", Faster(10.0)),
+    row("the same; a plain program in C, closed form sample by sample", NOISE, "in blocks", "C, closed form", Nothing),
+    row("8 runs of 20 s of Fig. 17 on two threads; on one", ENSEMBLE, "threads: 2", "threads: 1", Faster(1.8)),
+    row("circuit, 10 s of Fig. 14, ideal diodes; ngspice", CIRCUIT, "embedded, ideal diodes", "ngspice, batch", Nothing),
+    row("circuit, 10 s of Fig. 14, exponential diodes; ngspice", CIRCUIT, "embedded, exponential diodes", "ngspice, batch", Nothing),
 ];
+
+const fn row(
+    what: &'static str,
+    group: (&'static str, &'static str),
+    ours: &'static str,
+    baseline: &'static str,
+    asked: Asked,
+) -> Row {
+    Row { what, group, ours, baseline, asked }
+}
 
 /// Longest time between two measurements that are compared.
 const APART: Duration = Duration::from_secs(3600);
 
 /// Median time of one iteration, s, and when it was measured.
-fn measured((bench, group, name): Measured) -> anyhow::Result<(f64, SystemTime)> {
+fn measured((bench, group): (&str, &str), name: &str) -> anyhow::Result<(f64, SystemTime)> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let name = name.replace(':', "_"); // as Criterion names its folders
     let path = target.join("criterion").join(group).join(name).join("new/estimates.json");
@@ -144,23 +106,23 @@ fn faster(ratio: f64) -> String {
     format!("{ratio:.digits$} times as fast")
 }
 
-fn row(row: &Row) -> anyhow::Result<String> {
-    let ((ours, at), (baseline, other)) = (measured(row.ours)?, measured(row.baseline)?);
+fn line(row: &Row) -> anyhow::Result<String> {
+    let ((ours, at), (baseline, other)) = (measured(row.group, row.ours)?, measured(row.group, row.baseline)?);
     let apart = at.duration_since(other).unwrap_or_else(|earlier| earlier.duration());
     ensure!(
         apart <= APART,
         "{:?} was measured {} s apart from {:?}, which must be at most {} s; run cargo bench --bench {}",
-        row.ours.2,
+        row.ours,
         apart.as_secs(),
-        row.baseline.2,
+        row.baseline,
         APART.as_secs(),
-        row.ours.0
+        row.group.0
     );
     let (ratio, asked) = match row.asked {
-        Asked::AtMost(bound) => (format!("{:.2} of its time", ours / baseline), format!("at most {bound}")),
-        Asked::Faster(bound) => (faster(baseline / ours), format!("at least {bound}")),
-        Asked::Nothing if ours > baseline => (format!("{:.2} of its time", ours / baseline), String::new()),
-        Asked::Nothing => (faster(baseline / ours), String::new()),
+        AtMost(bound) => (format!("{:.2} of its time", ours / baseline), format!("at most {bound}")),
+        Faster(bound) => (faster(baseline / ours), format!("at least {bound}")),
+        Nothing if ours > baseline => (format!("{:.2} of its time", ours / baseline), String::new()),
+        Nothing => (faster(baseline / ours), String::new()),
     };
     Ok(format!("| {} | {} | {} | {ratio} | {asked} |", row.what, show(ours), show(baseline)))
 }
@@ -169,7 +131,7 @@ fn main() -> ExitCode {
     let mut complete = true;
     println!("| benchmark; baseline | videg | baseline | ratio | required |\n|---|---|---|---|---|");
     for entry in ROWS {
-        match row(entry) {
+        match line(entry) {
             Ok(line) => println!("{line}"),
             Err(error) => {
                 complete = false;

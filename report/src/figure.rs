@@ -4,25 +4,22 @@
 #[derive(Debug, Clone, Default)]
 #[must_use]
 pub struct Figure<'a> {
-    /// Drawn above the panels, and the accessible name; an empty title takes no space.
-    pub title: String,
-    /// Long description for screen readers; not drawn.
-    pub caption: String,
-    /// Nominal width in px; the SVG scales with its container.
-    pub width: f64,
-    /// Panels that stand side by side; 1 unless said otherwise.
-    pub columns: usize,
+    pub(super) title: String,
+    pub(super) caption: String,
+    pub(super) width: f64,
+    pub(super) columns: usize,
     /// Row by row, from left to right.
-    pub panels: Vec<Panel<'a>>,
+    pub(super) panels: Vec<Panel<'a>>,
 }
 
 impl<'a> Figure<'a> {
-    /// A figure of 720 px without panels.
+    /// A figure without panels, 720 px wide. The title stands above the panels and is the accessible name; an empty one takes no
+    /// space.
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), width: 720.0, columns: 1, ..Self::default() }
     }
 
-    /// Sets the long description.
+    /// Sets the long description for screen readers, which is not drawn.
     pub fn caption(self, caption: impl Into<String>) -> Self {
         Self { caption: caption.into(), ..self }
     }
@@ -32,7 +29,7 @@ impl<'a> Figure<'a> {
         Self { columns, ..self }
     }
 
-    /// Sets the nominal width in px.
+    /// Sets the nominal width in px; the SVG scales with its container.
     pub fn width(self, width: f64) -> Self {
         Self { width, ..self }
     }
@@ -49,47 +46,32 @@ impl<'a> Figure<'a> {
 #[expect(clippy::struct_excessive_bools, reason = "independent properties, each with a builder of its own")]
 #[must_use]
 pub struct Panel<'a> {
-    /// Short title at the upper left, such as `(a)`.
-    pub title: String,
-    /// Label of the x axis with its unit; empty for none.
-    pub x_label: String,
-    /// Label of the y axis with its unit; empty for none.
-    pub y_label: String,
-    /// Places on the x axis with their names, instead of numbers; none for numbers.
-    pub x_names: Vec<(f64, String)>,
-    /// Ends of the x axis; `None` spans the data.
-    pub x_range: Option<(f64, f64)>,
-    /// Ends of the y axis; `None` spans the data within the x range, and the reference lines.
-    pub y_range: Option<(f64, f64)>,
-    /// Takes the same x axis as the panel below in the same column, which alone carries its tick labels.
-    pub share_x_with_next: bool,
-    /// Height of the frame in px, without labels.
-    pub height: f64,
-    /// Drawn in this order.
-    pub series: Vec<Series<'a>>,
-    /// Horizontal reference lines.
-    pub lines: Vec<ReferenceLine>,
-    /// Areas between two curves, drawn below the series.
-    pub bands: Vec<Band<'a>>,
-    /// Vertical bars, such as confidence intervals, drawn in the colour of their series.
-    pub bars: Vec<Bars<'a>>,
-    /// A quantity over the plane, drawn below everything else.
-    pub map: Option<HeatMap<'a>>,
-    /// Logarithmic x axis: values of 0 and below leave a gap.
-    pub log_x: bool,
-    /// Logarithmic y axis: values of 0 and below leave a gap.
-    pub log_y: bool,
-    /// One unit of x is as long as one of y: for drawings to scale. The height follows from the ranges.
-    pub equal_aspect: bool,
+    pub(super) title: String,
+    pub(super) x_label: String,
+    pub(super) y_label: String,
+    pub(super) x_names: Vec<(f64, String)>,
+    pub(super) x_range: Option<(f64, f64)>,
+    pub(super) y_range: Option<(f64, f64)>,
+    pub(super) share_x_with_next: bool,
+    pub(super) height: f64,
+    pub(super) series: Vec<Series<'a>>,
+    pub(super) lines: Vec<ReferenceLine>,
+    pub(super) bands: Vec<Band<'a>>,
+    pub(super) bars: Vec<Bars<'a>>,
+    pub(super) map: Option<HeatMap<'a>>,
+    pub(super) log_x: bool,
+    pub(super) log_y: bool,
+    pub(super) equal_aspect: bool,
 }
 
 impl<'a> Panel<'a> {
-    /// A panel of 130 px with automatic ranges and no series.
+    /// A panel of 130 px without series. The title, such as `(a)`, stands at the upper left; labels name quantity and unit. An
+    /// empty text takes no space.
     pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
         Self { title: title.into(), x_label: x_label.into(), y_label: y_label.into(), height: 130.0, ..Self::default() }
     }
 
-    /// Sets the ends of the x axis.
+    /// Sets the ends of the x axis, which otherwise spans the data.
     pub fn x_range(self, low: f64, high: f64) -> Self {
         Self { x_range: Some((low, high)), ..self }
     }
@@ -99,17 +81,17 @@ impl<'a> Panel<'a> {
         Self { x_names: names.into_iter().map(|(x, name)| (x, name.into())).collect(), ..self }
     }
 
-    /// Sets the ends of the y axis.
+    /// Sets the ends of the y axis, which otherwise spans the data within the x range, and the reference lines.
     pub fn y_range(self, low: f64, high: f64) -> Self {
         Self { y_range: Some((low, high)), ..self }
     }
 
-    /// Sets the height of the frame in px.
+    /// Sets the height of the frame in px, without labels.
     pub fn height(self, height: f64) -> Self {
         Self { height, ..self }
     }
 
-    /// Shares the x axis of the panel below in the same column.
+    /// Takes the same x axis as the panel below in the same column, which alone carries its tick labels.
     pub fn share_x_with_next(self) -> Self {
         Self { share_x_with_next: true, ..self }
     }
@@ -127,35 +109,35 @@ impl<'a> Panel<'a> {
         self
     }
 
-    /// Adds the area between two curves, in the colour of palette entry `color`; an empty label keeps it out of the
-    /// legend.
+    /// Adds the area between two curves, below the series, in the colour of palette entry `color`; an empty label keeps it out of
+    /// the legend.
     pub fn band(mut self, label: impl Into<String>, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
         self.bands.push(Band { label: label.into(), limits, color });
         self
     }
 
-    /// Adds vertical bars in the colour of palette entry `color`.
+    /// Adds vertical bars, such as confidence intervals, in the colour of palette entry `color`.
     pub fn bars(mut self, limits: &'a [(f64, f64, f64)], color: usize) -> Self {
         self.bars.push(Bars { limits, color });
         self
     }
 
-    /// Sets the map.
+    /// Sets the map, which is drawn below everything else.
     pub fn map(self, map: HeatMap<'a>) -> Self {
         Self { map: Some(map), ..self }
     }
 
-    /// Makes the x axis logarithmic.
+    /// Makes the x axis logarithmic: values of 0 and below leave a gap.
     pub fn log_x(self) -> Self {
         Self { log_x: true, ..self }
     }
 
-    /// Makes the y axis logarithmic.
+    /// Makes the y axis logarithmic, likewise.
     pub fn log_y(self) -> Self {
         Self { log_y: true, ..self }
     }
 
-    /// Draws x and y to one scale.
+    /// Draws x and y to one scale: the height follows from the ranges.
     pub fn equal_aspect(self) -> Self {
         Self { equal_aspect: true, ..self }
     }
@@ -163,21 +145,18 @@ impl<'a> Panel<'a> {
 
 /// The area between two curves.
 #[derive(Debug, Clone)]
-pub struct Band<'a> {
-    /// Text in the legend; empty for none.
+pub(super) struct Band<'a> {
     pub label: String,
     /// x, lower and upper y, by ascending x.
     pub limits: &'a [(f64, f64, f64)],
-    /// Index into the palette.
     pub color: usize,
 }
 
 /// Vertical bars.
 #[derive(Debug, Clone)]
-pub struct Bars<'a> {
+pub(super) struct Bars<'a> {
     /// x, lower and upper y.
     pub limits: &'a [(f64, f64, f64)],
-    /// Index into the palette.
     pub color: usize,
 }
 
@@ -206,10 +185,8 @@ pub enum Scale {
 
 /// A horizontal reference line.
 #[derive(Debug, Clone)]
-pub struct ReferenceLine {
-    /// Text in the legend; empty for none.
+pub(super) struct ReferenceLine {
     pub label: String,
-    /// Where it crosses the y axis.
     pub value: f64,
 }
 
@@ -217,14 +194,11 @@ pub struct ReferenceLine {
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Series<'a> {
-    /// Text in the legend; empty for none.
-    pub label: String,
-    /// The points, in the order in which they are joined.
-    pub data: Data<'a>,
-    /// How they are drawn.
-    pub style: Style,
+    pub(super) label: String,
+    pub(super) data: Data<'a>,
+    pub(super) style: Style,
     /// Index into the palette of Okabe and Ito; `None` is the first colour.
-    pub color: Option<usize>,
+    pub(super) color: Option<usize>,
 }
 
 impl<'a> Series<'a> {
@@ -255,16 +229,9 @@ impl<'a> Series<'a> {
 
 /// Points borrowed from the caller.
 #[derive(Debug, Clone, Copy)]
-pub enum Data<'a> {
-    /// `(x, y)` pairs.
+pub(super) enum Data<'a> {
     Points(&'a [(f64, f64)]),
-    /// Two columns of equal length.
-    Columns {
-        /// The x values.
-        xs: &'a [f64],
-        /// The y values.
-        ys: &'a [f64],
-    },
+    Columns { xs: &'a [f64], ys: &'a [f64] },
 }
 
 impl Data<'_> {

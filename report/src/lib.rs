@@ -46,9 +46,9 @@ mod trace;
 
 pub use drawing::Drawing;
 pub use error::ReportError;
-pub use figure::{Band, Bars, Data, Figure, HeatMap, Panel, ReferenceLine, Scale, Series, Style};
+pub use figure::{Figure, HeatMap, Panel, Scale, Series, Style};
 pub use html::render_html;
-pub use page::{Illustration, Note, Report, Section};
+pub use page::{Report, Section};
 pub use png::render_png;
 pub use svg::render_svg;
 pub use table::{Cell, Column, Table, Tone};

@@ -7,25 +7,20 @@ use super::table::Table;
 #[derive(Debug, Clone, Default)]
 #[must_use]
 pub struct Report {
-    /// Title of the page.
-    pub title: String,
-    /// What the reader should know first, in one paragraph.
-    pub lead: String,
-    /// The command line that made the report; empty for none.
-    pub command: String,
-    /// Name and version of the program.
-    pub generated_by: String,
-    /// In reading order.
-    pub sections: Vec<Section>,
+    pub(super) title: String,
+    pub(super) lead: String,
+    pub(super) command: String,
+    pub(super) generated_by: String,
+    pub(super) sections: Vec<Section>,
 }
 
 impl Report {
-    /// A page without sections.
+    /// A page without sections. The lead is what the reader should know first, in one paragraph.
     pub fn new(title: impl Into<String>, lead: impl Into<String>) -> Self {
         Self { title: title.into(), lead: lead.into(), ..Self::default() }
     }
 
-    /// Sets the command line that made the report.
+    /// Sets the command line that made the report; empty for none.
     pub fn command(self, command: impl Into<String>) -> Self {
         Self { command: command.into(), ..self }
     }
@@ -46,18 +41,12 @@ impl Report {
 #[derive(Debug, Clone, Default)]
 #[must_use]
 pub struct Section {
-    /// The heading.
-    pub heading: String,
-    /// Paragraphs of plain text.
-    pub text: Vec<String>,
-    /// Name that links lead to; empty for a number.
-    pub id: String,
-    /// Tables, one below the other.
-    pub tables: Vec<Table>,
-    /// Figures, one below the other.
-    pub figures: Vec<Illustration>,
-    /// Remarks and warnings, set off from the text.
-    pub notes: Vec<Note>,
+    pub(super) heading: String,
+    pub(super) text: Vec<String>,
+    pub(super) id: String,
+    pub(super) tables: Vec<Table>,
+    pub(super) figures: Vec<Illustration>,
+    pub(super) notes: Vec<Note>,
 }
 
 impl Section {
@@ -72,7 +61,7 @@ impl Section {
         self
     }
 
-    /// Sets the name that links lead to: small letters, digits, `.`, `-` and `_`.
+    /// Sets the name that links lead to, instead of a number: small letters, digits, `.`, `-` and `_`.
     pub fn id(self, id: impl Into<String>) -> Self {
         Self { id: id.into(), ..self }
     }
@@ -111,20 +100,18 @@ impl Section {
 
 /// A figure in a report.
 #[derive(Debug, Clone)]
-pub struct Illustration {
+pub(super) struct Illustration {
     /// An SVG element, copied into the page as it is: without scripts and links.
     pub svg: String,
     /// The data of an interactive chart, see [`Drawing::chart`].
     pub chart: Option<String>,
-    /// Text below the figure.
     pub caption: String,
 }
 
 /// A remark, set off from the text.
 #[derive(Debug, Clone)]
-pub struct Note {
+pub(super) struct Note {
     /// Whether the reader should doubt a number.
     pub is_warning: bool,
-    /// What it says, as plain text.
     pub text: String,
 }

@@ -142,22 +142,21 @@ impl Diagram {
             self.ways.iter().map(|orbits| self.xs.iter().copied().zip(orbits.iter().map(gain)).collect()).collect();
         let [from, to] = path.range;
         let panel = |title: &str, label: &str, height: f64| {
-            Panel::new(title, path.axis, label).x_range(from, to).height(height).share_x_with_next()
+            Panel::new(title, path.axis, label).x_range(from, to).height(height)
         };
         let dots = |index: usize| {
             let label = if index == 2 { "followed downwards, where that differs" } else { WAYS[index] };
             Series::points(label, &clouds[index]).style(Style::Dots).color(index)
         };
         let displacement = "z_M - z_m (mm)";
-        let mut output = panel("(c)", "<U> (kV/s)", 160.0);
-        output.share_x_with_next = false;
+        let output = panel("(c)", "<U> (kV/s)", 160.0);
         let output = (0..WAYS.len()).rev().fold(output, |panel, index| {
             panel.series(Series::points(WAYS[index], &gains[index]).style(Style::Dots).color(index))
         });
         let figure = Figure::new("Bifurcation diagram")
             .caption("Relative displacement once a period, and average voltage gain, over a parameter.")
-            .panel(panel("(a)", displacement, 240.0).series(dots(0)))
-            .panel(panel("(b)", displacement, 240.0).series(dots(1)).series(dots(2)))
+            .panel(panel("(a)", displacement, 240.0).share_x_with_next().series(dots(0)))
+            .panel(panel("(b)", displacement, 240.0).share_x_with_next().series(dots(1)).series(dots(2)))
             .panel(output);
         let caption = format!(
             "{} Relative displacement at the start of each period, when the cylinder is at the end of its swing: \

@@ -112,9 +112,6 @@ pub enum ValueError {
     /// The value lies outside its bounds.
     #[error("{variable} = {found} is out of range: allowed is {allowed}")]
     Range { variable: String, found: String, allowed: String },
-    /// The value is of another type than its variable.
-    #[error("{variable} is of type {wanted}, not {found}")]
-    Type { variable: String, wanted: &'static str, found: &'static str },
 }
 
 fn list(names: &[String]) -> String {
