@@ -24,50 +24,56 @@ impl fmt::Display for Interface {
     }
 }
 
-/// State of an instance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[repr(u8)]
-pub enum CallState {
+macro_rules! call_states {
+    ($($(#[$doc:meta])* $state:ident $name:literal $bit:ident;)*) => {
+        /// State of an instance.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        #[repr(u8)]
+        pub enum CallState {
+            $($(#[$doc])* $state,)*
+        }
+
+        impl CallState {
+            /// All states, in the order of their numbers.
+            pub const ALL: [Self; 11] = [$(Self::$state,)*];
+        }
+
+        impl fmt::Display for CallState {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$state => $name,)* })
+            }
+        }
+
+        $(const $bit: u16 = CallState::$state.bit();)*
+    };
+}
+
+call_states! {
     /// After `fmi2Instantiate` or `fmi2Reset`.
-    Instantiated,
+    Instantiated "instantiated" INST;
     /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
-    InitializationMode,
+    InitializationMode "initializationMode" INIT;
     /// Initialised, between two steps.
-    StepComplete,
+    StepComplete "stepComplete" DONE;
     /// An asynchronous step is under way. No instance of this exporter ever is here.
-    StepInProgress,
+    StepInProgress "stepInProgress" BUSY;
     /// The last step was discarded.
-    StepFailed,
+    StepFailed "stepFailed" FAIL;
     /// The last step was cancelled. No instance of this exporter ever is here.
-    StepCanceled,
+    StepCanceled "stepCanceled" CANC;
     /// After `fmi2Terminate`.
-    Terminated,
+    Terminated "terminated" TERM;
     /// After any call that returned `fmi2Error`.
-    Error,
+    Error "error" ERR;
     /// After a call that returned `fmi2Fatal`.
-    Fatal,
+    Fatal "fatal" FATAL;
     /// Model exchange: initialised, at an event.
-    EventMode,
+    EventMode "eventMode" EVENT;
     /// Model exchange: between events.
-    ContinuousTimeMode,
+    ContinuousTimeMode "continuousTimeMode" CONT;
 }
 
 impl CallState {
-    /// All states, in the order of their numbers.
-    pub const ALL: [Self; 11] = [
-        Self::Instantiated,
-        Self::InitializationMode,
-        Self::StepComplete,
-        Self::StepInProgress,
-        Self::StepFailed,
-        Self::StepCanceled,
-        Self::Terminated,
-        Self::Error,
-        Self::Fatal,
-        Self::EventMode,
-        Self::ContinuousTimeMode,
-    ];
-
     const fn bit(self) -> u16 {
         1 << self as u8
     }
@@ -76,24 +82,6 @@ impl CallState {
     /// [`Slave::update`](crate::Slave::update).
     pub(crate) const fn is_before_initialization(self) -> bool {
         matches!(self, Self::Instantiated | Self::InitializationMode)
-    }
-}
-
-impl fmt::Display for CallState {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Instantiated => "instantiated",
-            Self::InitializationMode => "initializationMode",
-            Self::StepComplete => "stepComplete",
-            Self::StepInProgress => "stepInProgress",
-            Self::StepFailed => "stepFailed",
-            Self::StepCanceled => "stepCanceled",
-            Self::Terminated => "terminated",
-            Self::Error => "error",
-            Self::Fatal => "fatal",
-            Self::EventMode => "eventMode",
-            Self::ContinuousTimeMode => "continuousTimeMode",
-        })
     }
 }
 
@@ -108,17 +96,6 @@ pub enum Legality {
     Illegal,
 }
 
-const INST: u16 = CallState::Instantiated.bit();
-const INIT: u16 = CallState::InitializationMode.bit();
-const DONE: u16 = CallState::StepComplete.bit();
-const BUSY: u16 = CallState::StepInProgress.bit();
-const FAIL: u16 = CallState::StepFailed.bit();
-const CANC: u16 = CallState::StepCanceled.bit();
-const TERM: u16 = CallState::Terminated.bit();
-const ERR: u16 = CallState::Error.bit();
-const FATAL: u16 = CallState::Fatal.bit();
-const EVENT: u16 = CallState::EventMode.bit();
-const CONT: u16 = CallState::ContinuousTimeMode.bit();
 const NONE: u16 = 0;
 const BOTH: Option<Interface> = None;
 const ME: Option<Interface> = Some(Interface::ModelExchange);

@@ -83,7 +83,6 @@ mod call_state;
 mod check;
 mod error;
 pub mod ffi;
-mod fingerprint;
 mod fnv;
 mod guid;
 mod info;
@@ -98,6 +97,7 @@ mod references;
 mod resource;
 mod serialize;
 mod slave;
+#[cfg(feature = "model-description")]
 mod units;
 mod variable;
 
@@ -112,10 +112,8 @@ pub use logger::{LogCategory, Logger};
 pub use model_description::{DescriptionError, model_description};
 #[cfg(feature = "model-description")]
 pub use references::changed_references;
-pub use resource::{ResourceError, resource_path};
 pub use serialize::{StateError, StateReader, StateWriter};
 pub use slave::{EventOutcome, Experiment, Slave};
-pub use units::{BaseUnit, base_unit};
 pub use variable::{
     BooleanSpec, Causality, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial, IntegerSpec, Kind,
     PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat,

@@ -1,10 +1,8 @@
 //! The resource location that an importer hands to `fmi2Instantiate`.
 
-use std::path::PathBuf;
-
-/// Why a resource location is no path.
+/// Why a resource location is none.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ResourceError {
+pub(crate) enum ResourceError {
     /// Not a file on this machine.
     #[error("resource location {0:?} is no file URI; file:///path and file:/path are understood")]
     NoFileUri(String),
@@ -13,50 +11,30 @@ pub enum ResourceError {
     BadEncoding(String),
 }
 
-/// The path behind a resource location: `file:///path` as the standard has it, `file:/path` and
-/// `file://localhost/path` as importers write it, percent-encoding decoded.
-///
-/// # Errors
-/// If it is no file URI, or badly encoded.
-pub fn resource_path(uri: &str) -> Result<PathBuf, ResourceError> {
-    let no_file = || ResourceError::NoFileUri(uri.to_owned());
-    let scheme = uri.get(..5).ok_or_else(no_file)?;
-    if !scheme.eq_ignore_ascii_case("file:") {
-        return Err(no_file());
-    }
-    let rest = &uri[5..];
-    let path = match rest.strip_prefix("//") {
+/// Whether it is `file:///path` as the standard has it, `file:/path` or `file://localhost/path` as importers write it.
+pub(crate) fn check_resource_location(uri: &str) -> Result<(), ResourceError> {
+    let rest = uri.split_at_checked(5).filter(|(scheme, _)| scheme.eq_ignore_ascii_case("file:"));
+    let path = rest.map(|(_, rest)| match rest.strip_prefix("//") {
         None => rest,
         Some(authority) => authority.strip_prefix("localhost").unwrap_or(authority),
-    };
-    if !path.starts_with('/') {
-        return Err(no_file());
-    }
-    let path = percent_decode(path).ok_or_else(|| ResourceError::BadEncoding(uri.to_owned()))?;
-    Ok(PathBuf::from(without_drive_slash(&path)))
-}
-
-/// `/C:/fmu` is `C:/fmu` on Windows.
-fn without_drive_slash(path: &str) -> &str {
-    match path.as_bytes() {
-        [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => &path[1..],
-        _ => path,
+    });
+    match path.filter(|path| path.starts_with('/')) {
+        None => Err(ResourceError::NoFileUri(uri.to_owned())),
+        Some(path) if is_percent_encoded(path) => Ok(()),
+        Some(_) => Err(ResourceError::BadEncoding(uri.to_owned())),
     }
 }
 
-fn percent_decode(text: &str) -> Option<String> {
-    let mut bytes = text.bytes();
-    let mut decoded = Vec::with_capacity(text.len());
-    while let Some(byte) = bytes.next() {
-        if byte == b'%' {
-            let mut digit = || char::from(bytes.next()?).to_digit(16);
-            let (high, low) = (digit()?, digit()?);
-            decoded.push(u8::try_from(high * 16 + low).ok()?);
-        } else {
-            decoded.push(byte);
-        }
+fn is_percent_encoded(text: &str) -> bool {
+    let mut parts = text.split('%');
+    let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
+    for part in parts {
+        let Some((hex, rest)) = part.split_at_checked(2) else { return false };
+        let Some(byte) = u8::from_str_radix(hex, 16).ok().filter(|_| !hex.starts_with('+')) else { return false };
+        bytes.push(byte);
+        bytes.extend(rest.as_bytes());
     }
-    String::from_utf8(decoded).ok()
+    String::from_utf8(bytes).is_ok()
 }
 
 #[cfg(test)]
@@ -65,25 +43,19 @@ mod tests {
 
     #[test]
     fn the_spellings_of_importers_are_understood() {
-        let cases = [
-            ("file:///tmp/fmu/resources", "/tmp/fmu/resources"),
-            ("file:/tmp/fmu/resources", "/tmp/fmu/resources"),
-            ("file://localhost/tmp/a", "/tmp/a"),
-            ("FILE:///tmp/a%20b%C3%A9", "/tmp/a b\u{e9}"),
-            ("file:///C:/fmu", "C:/fmu"),
-        ];
-        for (uri, path) in cases {
-            assert_eq!(resource_path(uri), Ok(PathBuf::from(path)), "{uri}");
+        for path in ["///tmp/fmu/resources", "/tmp/fmu", "//localhost/tmp/a", "///tmp/a%20b%C3%A9", "///C:/fmu"] {
+            assert_eq!(check_resource_location(&format!("file:{path}")), Ok(()), "{path}");
         }
+        assert_eq!(check_resource_location("FILE:///tmp"), Ok(()));
     }
 
     #[test]
     fn what_is_no_file_is_refused() {
         for uri in ["", "file", "file:", "/tmp", "http://host/a", "file://host/a", "file:a", "f\u{e9}le:/a"] {
-            assert!(matches!(resource_path(uri), Err(ResourceError::NoFileUri(_))), "{uri}");
+            assert!(matches!(check_resource_location(uri), Err(ResourceError::NoFileUri(_))), "{uri}");
         }
-        for uri in ["file:///a%2", "file:///a%zz", "file:///a%FF", "file:///%"] {
-            assert!(matches!(resource_path(uri), Err(ResourceError::BadEncoding(_))), "{uri}");
+        for uri in ["file:///a%2", "file:///a%zz", "file:///a%+f", "file:///a%FF", "file:///%"] {
+            assert!(matches!(check_resource_location(uri), Err(ResourceError::BadEncoding(_))), "{uri}");
         }
     }
 }

@@ -2,16 +2,16 @@
 
 /// A unit as a product of powers of SI base units: `value_in_base = factor * value`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BaseUnit {
+pub(crate) struct BaseUnit {
     /// Exponents of kg, m, s, A, K, mol, cd and rad, in the order of [`BaseUnit::NAMES`].
-    pub exponents: [i8; 8],
+    pub(crate) exponents: [i8; 8],
     /// What one of the unit is in base units.
-    pub factor: f64,
+    pub(crate) factor: f64,
 }
 
 impl BaseUnit {
     /// Names of the base units, in the order in which the schema lists them.
-    pub const NAMES: [&'static str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
+    pub(crate) const NAMES: [&'static str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 }
 
 const fn unit(kg: i8, m: i8, s: i8, a: i8) -> BaseUnit {
@@ -69,7 +69,7 @@ const UNITS: &[(&str, BaseUnit)] = &[
 
 /// What a unit is in SI base units; `None` if this crate does not know, as for `N/m^n` with a real `n`. Such a
 /// unit is still written to `modelDescription.xml`, where its base unit is left open.
-pub fn base_unit(name: &str) -> Option<BaseUnit> {
+pub(crate) fn base_unit(name: &str) -> Option<BaseUnit> {
     let found = UNITS.iter().find(|(known, _)| *known == name);
     found.map(|(_, unit)| *unit)
 }

@@ -4,7 +4,7 @@ use super::{Fmu, Handle, text};
 use crate::instance::Instance;
 use crate::logger::Logger;
 use crate::panics::{guard, panic_message};
-use crate::resource::resource_path;
+use crate::resource::check_resource_location;
 use crate::slave::Slave;
 use core::ptr::null_mut;
 use core::sync::atomic::Ordering;
@@ -78,13 +78,10 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
         return Err(format!("fmuGUID = {given:?}; this FMU has {own_guid}"));
     }
     // Nothing is read from there, so an odd location is worth a warning at most.
-    let location = request.resources.map(|uri| uri.map(resource_path));
-    match location {
+    match request.resources.map(|uri| uri.map(check_resource_location)) {
         Some(Ok(Err(e))) => logger.warning(format_args!("fmi2Instantiate: {e}")),
-        Some(Err(reason)) => {
-            logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}"));
-        }
-        None | Some(Ok(Ok(_))) => {}
+        Some(Err(reason)) => logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}")),
+        None | Some(Ok(Ok(()))) => {}
     }
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();

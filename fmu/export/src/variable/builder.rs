@@ -144,85 +144,54 @@ impl<M> Variable<M> {
     }
 }
 
-/// Constructors of Integer, Boolean, String and enumeration variables. Inputs and outputs are discrete.
-impl<M> Variable<M> {
-    /// A fixed Integer parameter.
-    pub const fn integer_parameter(name: &'static str, start: i32, description: &'static str) -> Integer<M, Settable> {
-        declare(PARAMETER, name, description, integer(Some(start)))
-    }
+macro_rules! constructors {
+    ($($row:ident($spec:expr)
+        $parameter:ident $parameter_doc:literal $input:ident $input_doc:literal $output:ident $output_doc:literal
+        ($($of:ident: $of_type:ty)?) $start:ident: $start_type:ty;)*) => {
+        /// Constructors of Integer, Boolean, String and enumeration variables. Inputs and outputs are discrete.
+        impl<M> Variable<M> {$(
+            #[doc = $parameter_doc]
+            pub const fn $parameter(
+                name: &'static str,
+                $($of: $of_type,)?
+                $start: $start_type,
+                description: &'static str,
+            ) -> $row<M, Settable> {
+                declare(PARAMETER, name, description, $spec($($of,)? Some($start)))
+            }
 
-    /// An Integer input.
-    pub const fn integer_input(name: &'static str, start: i32, description: &'static str) -> Integer<M, Settable> {
-        declare(DISCRETE_INPUT, name, description, integer(Some(start)))
-    }
+            #[doc = $input_doc]
+            pub const fn $input(
+                name: &'static str,
+                $($of: $of_type,)?
+                $start: $start_type,
+                description: &'static str,
+            ) -> $row<M, Settable> {
+                declare(DISCRETE_INPUT, name, description, $spec($($of,)? Some($start)))
+            }
 
-    /// An Integer output.
-    pub const fn integer_output(name: &'static str, description: &'static str) -> Integer<M, ReadOnly> {
-        declare(DISCRETE_OUTPUT, name, description, integer(None))
-    }
-
-    /// A fixed Boolean parameter.
-    pub const fn boolean_parameter(name: &'static str, start: bool, description: &'static str) -> Boolean<M, Settable> {
-        declare(PARAMETER, name, description, boolean(Some(start)))
-    }
-
-    /// A Boolean input.
-    pub const fn boolean_input(name: &'static str, start: bool, description: &'static str) -> Boolean<M, Settable> {
-        declare(DISCRETE_INPUT, name, description, boolean(Some(start)))
-    }
-
-    /// A Boolean output.
-    pub const fn boolean_output(name: &'static str, description: &'static str) -> Boolean<M, ReadOnly> {
-        declare(DISCRETE_OUTPUT, name, description, boolean(None))
-    }
-
-    /// A fixed String parameter.
-    pub const fn string_parameter(
-        name: &'static str,
-        start: &'static str,
-        description: &'static str,
-    ) -> Text<M, Settable> {
-        declare(PARAMETER, name, description, text(Some(start)))
-    }
-
-    /// A String input.
-    pub const fn string_input(name: &'static str, start: &'static str, description: &'static str) -> Text<M, Settable> {
-        declare(DISCRETE_INPUT, name, description, text(Some(start)))
-    }
-
-    /// A String output.
-    pub const fn string_output(name: &'static str, description: &'static str) -> Text<M, ReadOnly> {
-        declare(DISCRETE_OUTPUT, name, description, text(None))
-    }
-
-    /// A fixed parameter that chooses an item; `start` is its number, from 1.
-    pub const fn enumeration_parameter(
-        name: &'static str,
-        of: &'static EnumerationType,
-        start: i32,
-        description: &'static str,
-    ) -> Enumeration<M, Settable> {
-        declare(PARAMETER, name, description, enumeration(of, Some(start)))
-    }
-
-    /// An input that chooses an item; `start` is its number, from 1.
-    pub const fn enumeration_input(
-        name: &'static str,
-        of: &'static EnumerationType,
-        start: i32,
-        description: &'static str,
-    ) -> Enumeration<M, Settable> {
-        declare(DISCRETE_INPUT, name, description, enumeration(of, Some(start)))
-    }
-
-    /// An output that tells an item.
-    pub const fn enumeration_output(
-        name: &'static str,
-        of: &'static EnumerationType,
-        description: &'static str,
-    ) -> Enumeration<M, ReadOnly> {
-        declare(DISCRETE_OUTPUT, name, description, enumeration(of, None))
-    }
+            #[doc = $output_doc]
+            pub const fn $output(
+                name: &'static str,
+                $($of: $of_type,)?
+                description: &'static str,
+            ) -> $row<M, ReadOnly> {
+                declare(DISCRETE_OUTPUT, name, description, $spec($($of,)? None))
+            }
+        )*}
+    };
+}
+constructors! {
+    Integer(integer) integer_parameter "A fixed Integer parameter." integer_input "An Integer input."
+        integer_output "An Integer output." () start: i32;
+    Boolean(boolean) boolean_parameter "A fixed Boolean parameter." boolean_input "A Boolean input."
+        boolean_output "A Boolean output." () start: bool;
+    Text(text) string_parameter "A fixed String parameter." string_input "A String input."
+        string_output "A String output." () start: &'static str;
+    Enumeration(enumeration)
+        enumeration_parameter "A fixed parameter that chooses an item; `start` is its number, from 1."
+        enumeration_input "An input that chooses an item; `start` is its number, from 1."
+        enumeration_output "An output that tells an item." (of: &'static EnumerationType) start: i32;
 }
 
 /// Refinements of any variable.
@@ -311,14 +280,6 @@ impl<M> Declaration<RealSpec<M>, Settable> {
         self.spec.input_derivatives = Some((max_order, set));
         self
     }
-
-    /// Finishes the row with its accessors.
-    pub const fn access(mut self, get: fn(&M) -> f64, set: fn(&mut M, f64)) -> Variable<M> {
-        self.spec.get = get;
-        self.spec.set = Some(set);
-        let kind = Kind::Real(self.spec);
-        self.finish(kind)
-    }
 }
 
 impl<M> Declaration<RealSpec<M>, ReadOnly> {
@@ -345,13 +306,6 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
     pub const fn reinit(mut self) -> Self {
         self.reinit = true;
         self
-    }
-
-    /// Finishes the row with its getter.
-    pub const fn get(mut self, get: fn(&M) -> f64) -> Variable<M> {
-        self.spec.get = get;
-        let kind = Kind::Real(self.spec);
-        self.finish(kind)
     }
 }
 
@@ -393,6 +347,7 @@ macro_rules! finishers {
     )*};
 }
 finishers! {
+    RealSpec Real f64, f64;
     IntegerSpec Integer i32, i32;
     BooleanSpec Boolean bool, bool;
     StringSpec String String, &str;
