@@ -6,7 +6,6 @@
 
 mod harvesting;
 mod slave;
-mod state;
 mod variables;
 
 pub use harvesting::Harvesting;

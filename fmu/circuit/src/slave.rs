@@ -1,7 +1,7 @@
 //! The circuit behind the functions of FMI.
 
 use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
-use videg_circuit::{Circuit, Settings};
+use videg_circuit::{Circuit, Error, Settings, State};
 
 use crate::harvesting::{Harvesting, REST_CAPACITANCE, handed_over};
 use crate::variables::VARIABLES;
@@ -54,12 +54,32 @@ impl Slave for Harvesting {
         Ok(())
     }
 
+    /// Parameters, inputs and, once it has a state of its own, the circuit.
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
-        self.write(out)
+        // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
+        let circuit = self.circuit().filter(|circuit| *circuit.parameters() == self.settings.parameters());
+        out.put_parameters(self)?;
+        out.put(&(self.capacitance, self.rate, circuit.map(Circuit::state)))
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        Self::read_from(from)
+        let mut slave = Self::new();
+        from.take_parameters(&mut slave)?;
+        let state: Option<State>;
+        (slave.capacitance, slave.rate, state) = from.take()?;
+        let mut values = slave.capacitance.into_iter().chain(slave.rate.into_iter().flatten());
+        if let Some(bad) = values.find(|value| !value.is_finite()) {
+            return Err(StateError::Invalid(format!("a capacitance or its rate is {bad}")));
+        }
+        if let Some(state) = state {
+            let invalid = |error: Error| StateError::Invalid(error.to_string());
+            let mut circuit = Circuit::new(slave.settings.parameters(), state.capacitance).map_err(invalid)?;
+            circuit.restore(&state).map_err(invalid)?;
+            slave.circuit = Ok(circuit);
+        } else {
+            slave.update();
+        }
+        Ok(slave)
     }
 }
 
