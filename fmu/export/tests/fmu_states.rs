@@ -66,12 +66,10 @@ fn states_stay_what_they_were_whatever_is_saved_restored_overwritten_and_freed_m
     const ROUNDS: u32 = if cfg!(miri) { 100 } else { 3000 };
     let host = Host::initialized();
     let mut held: Vec<(fmi2FMUstate, f64, _)> = Vec::new();
-    let (mut time, mut random) = (0.0, 1_u64);
+    let (mut time, mut random) = (0.0, fmu_host::Random::seeded(1));
     for round in 0..ROUNDS {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let choice = usize::try_from(random >> 33).unwrap();
-        let k = choice / 8 % held.len().max(1);
-        match choice % 8 {
+        let k = random.below(held.len());
+        match random.below(8) {
             0 | 1 => held.push((host.save(), time, fingerprint(&host))),
             2 if !held.is_empty() => {
                 let token = held[k].0;

@@ -5,7 +5,7 @@ mod initial;
 mod parameters;
 
 use fmu_export::{Variable, concat};
-use videg_model::{Energies, Side};
+use videg_model::Side;
 
 use crate::harvester::Harvester;
 use initial::{BALL, DRIVE, FILM, FORCE_LAW, IMPACT, OPTIONS};
@@ -55,26 +55,25 @@ static CALCULATED: [V; 4] = [
     .get(|slave| slave.parameters.travel()),
 ];
 
+macro_rules! voltage {
+    ($index:literal, $which:literal) => {
+        V::input(
+            VOLTAGES[$index],
+            "V",
+            2000.0,
+            concat!("U_DE: voltage across the ", $which, " membrane; acts with contact.electrostaticFeedback"),
+        )
+        .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[$index] = rate)
+        .access(|slave| slave.voltages[$index], |slave, voltage| slave.voltages[$index] = voltage)
+    };
+}
+
 static INPUTS: [V; 3] = [
     V::input(FORCE, "N", 0.0, "Force on the cylinder, added to the built-in excitation of Eq. (7); with its first derivative set it runs on over the step and stays at the value reached")
         .input_derivatives(1, |slave, _order, value| slave.external_force_rate = value)
         .access(|slave| slave.external_force, |slave, force| slave.external_force = force),
-    V::input(
-        VOLTAGES[0],
-        "V",
-        2000.0,
-        "U_DE: voltage across the left membrane; acts with contact.electrostaticFeedback",
-    )
-    .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[0] = rate)
-    .access(|slave| slave.voltages[0], |slave, voltage| slave.voltages[0] = voltage),
-    V::input(
-        VOLTAGES[1],
-        "V",
-        2000.0,
-        "U_DE: voltage across the right membrane; acts with contact.electrostaticFeedback",
-    )
-    .input_derivatives(1, |slave, _order, rate| slave.voltage_rates[1] = rate)
-    .access(|slave| slave.voltages[1], |slave, voltage| slave.voltages[1] = voltage),
+    voltage!(0, "left"),
+    voltage!(1, "right"),
 ];
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
@@ -83,19 +82,23 @@ static INPUTS: [V; 3] = [
 // step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
 // it all the same.
 
-/// The outputs of the membrane at one side, and the names of the three. They depend on time and past impacts only.
+/// The outputs of the membrane at one side. They depend on time and past impacts only.
 macro_rules! membrane_outputs {
-    ($side:expr, $capacitance:literal, $deflection:literal, $area_ratio:literal, $which:literal) => {
+    ($side:expr, $which:literal) => {
         [
-            V::output($capacitance, "F", concat!("C: capacitance of the ", $which, " membrane, Eq. (1)"))
-                .nominal(1e-11)
-                .output_derivatives(1, |slave, _order| slave.read(|model| model.capacitance_rate($side)))
-                .depends_on(&[])
-                .initially_depends_on(&[FILM])
-                .partial_derivative(change!(capacitance[$side.index()]))
-                .get(|slave| slave.read(|model| model.capacitance($side))),
             V::output(
-                $deflection,
+                concat!($which, ".capacitance"),
+                "F",
+                concat!("C: capacitance of the ", $which, " membrane, Eq. (1)"),
+            )
+            .nominal(1e-11)
+            .output_derivatives(1, |slave, _order| slave.read(|model| model.capacitance_rate($side)))
+            .depends_on(&[])
+            .initially_depends_on(&[FILM])
+            .partial_derivative(change!(capacitance[$side.index()]))
+            .get(|slave| slave.read(|model| model.capacitance($side))),
+            V::output(
+                concat!($which, ".deflection"),
                 "m",
                 concat!(
                     "x: deflection of the ",
@@ -110,7 +113,7 @@ macro_rules! membrane_outputs {
             .partial_derivative(change!(deflection[$side.index()]))
             .get(|slave| slave.read(|model| model.deflection($side).value)),
             V::output(
-                $area_ratio,
+                concat!($which, ".areaRatio"),
                 "1",
                 concat!("A_3 / A_2: area of the ", $which, " membrane over its flat area, Eq. (3)"),
             )
@@ -122,9 +125,8 @@ macro_rules! membrane_outputs {
     };
 }
 
-static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left.capacitance", "left.deflection", "left.areaRatio", "left");
-static RIGHT: [V; 3] =
-    membrane_outputs!(Side::Right, "right.capacitance", "right.deflection", "right.areaRatio", "right");
+static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left");
+static RIGHT: [V; 3] = membrane_outputs!(Side::Right, "right");
 
 /// The continuous states.
 pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
@@ -222,88 +224,72 @@ static EVENTS: [V; 8] = [
         .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
 ];
 
-/// Reads one of the energies.
-fn energy(slave: &Harvester, value: fn(&Energies) -> f64) -> f64 {
-    slave.read(|model| value(&model.energies()))
+/// Books of the mechanical energy: name, what is read of the model's, typical magnitude, dependencies at a communication point and
+/// at the start.
+macro_rules! energies {
+    ($($name:literal $field:ident $nominal:literal [$($now:literal),*] [$($initially:expr),*] $description:literal;)*) => {
+        [$(V::output($name, "J", $description)
+            .nominal($nominal)
+            .depends_on(&[$($now),*])
+            .initially_depends_on(&[$($initially),*])
+            .partial_derivative(change!(energies.$field))
+            .get(|slave| slave.read(|model| model.energies().$field))),*]
+    };
 }
 
-/// The books of the mechanical energy.
-static ENERGIES: [V; 8] = [
-    V::output("energy.kinetic", "J", "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical")
-        .nominal(1e-4)
-        .depends_on(&["cylinder.velocity", "ball.velocity"])
-        .initially_depends_on(&[IMPACT, BALL])
-        .partial_derivative(change!(energies.ball))
-        .get(|slave| energy(slave, |e| e.ball)),
-    V::output("energy.cylinderKinetic", "J", "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction")
-        .nominal(1e-3)
-        .depends_on(&["cylinder.velocity"])
-        .initially_depends_on(&[&["cylinder.mass", "initial.cylinderVelocity"]])
-        .partial_derivative(change!(energies.cylinder))
-        .get(|slave| energy(slave, |e| e.cylinder)),
-    V::output("energy.elastic", "J", "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law")
-        .nominal(1e-4)
-        .depends_on(&[])
-        .initially_depends_on(&[])
-        .partial_derivative(change!(energies.elastic))
-        .get(|slave| energy(slave, |e| e.elastic)),
-    V::output("energy.impactLoss", "J", "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact")
-        .nominal(1e-4)
-        .depends_on(&[])
-        .initially_depends_on(&[IMPACT, BALL])
-        .partial_derivative(change!(energies.impact_loss))
-        .get(|slave| energy(slave, |e| e.impact_loss)),
-    V::output("energy.excitation", "J", "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction")
-        .nominal(1e-3)
-        .depends_on(&["cylinder.velocity"])
-        .initially_depends_on(&[])
-        .partial_derivative(change!(energies.excitation))
-        .get(|slave| energy(slave, |e| e.excitation)),
-    V::output("energy.electrical", "J", "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC")
-        .nominal(1e-6)
-        .depends_on(&[])
-        .initially_depends_on(&[])
-        .partial_derivative(change!(energies.electrical))
-        .get(|slave| energy(slave, |e| e.electrical)),
-    V::output("energy.wall", "J", "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed")
-        .nominal(1e-4)
-        .depends_on(&["cylinder.velocity"])
-        .initially_depends_on(&[IMPACT, BALL])
-        .partial_derivative(change!(energies.wall))
-        .get(|slave| energy(slave, |e| e.wall)),
-    V::output("contact.time", "s", "Time in contact since the start under the compliant law; impacts of the impulsive law take none")
-        .depends_on(&[])
-        .initially_depends_on(&[])
-        // Impacts of the impulsive law take no time.
-        .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
-        .get(|slave| slave.read(videg_model::Harvester::contact_time)),
-];
+static ENERGIES: [V; 7] = energies! {
+    "energy.kinetic" ball 1e-4 ["cylinder.velocity", "ball.velocity"] [IMPACT, BALL]
+        "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical";
+    "energy.cylinderKinetic" cylinder 1e-3 ["cylinder.velocity"] [&["cylinder.mass", "initial.cylinderVelocity"]]
+        "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction";
+    "energy.elastic" elastic 1e-4 [] []
+        "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law";
+    "energy.impactLoss" impact_loss 1e-4 [] [IMPACT, BALL]
+        "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact";
+    "energy.excitation" excitation 1e-3 ["cylinder.velocity"] []
+        "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction";
+    "energy.electrical" electrical 1e-6 [] []
+        "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC";
+    "energy.wall" wall 1e-4 ["cylinder.velocity"] [IMPACT, BALL]
+        "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed";
+};
+
+static CONTACT_TIME: [V; 1] = [V::output(
+    "contact.time",
+    "s",
+    "Time in contact since the start under the compliant law; impacts of the impulsive law take none",
+)
+.depends_on(&[])
+.initially_depends_on(&[])
+// Impacts of the impulsive law take no time.
+.partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
+.get(|slave| slave.read(videg_model::Harvester::contact_time))];
 
 /// What the film of a membrane bears. `U` is the voltage at the communication point.
 macro_rules! membrane_loads {
-    ($side:expr, $field:literal, $stretch:literal, $voltage:literal, $which:literal) => {
+    ($side:expr, $which:literal) => {
         [
             V::output(
-                $field,
+                concat!($which, ".electricField"),
                 "V/m",
                 concat!(
                     "U / h_3: electric field in the ",
                     $which,
                     " membrane, Table 1; U is ",
-                    $voltage,
-                    ", which does not follow biasVoltage"
+                    $which,
+                    ".voltage, which does not follow biasVoltage"
                 ),
             )
             .nominal(1e7)
-            .depends_on(&[$voltage])
-            .initially_depends_on(&[&[$voltage, "membrane.initialThickness", "membrane.prestretch"]])
+            .depends_on(&[concat!($which, ".voltage")])
+            .initially_depends_on(&[&[concat!($which, ".voltage"), "membrane.initialThickness", "membrane.prestretch"]])
             .partial_derivative(|slave, known| slave.partial(known, |change| change.field($side)))
             .get(|slave| {
                 let voltage = slave.voltages[$side.index()];
                 slave.read(|model| model.membrane().field(model.deflection($side).value, voltage))
             }),
             V::output(
-                $stretch,
+                concat!($which, ".stretch"),
                 "1",
                 concat!(
                     "lambda sqrt(A_3 / A_2): stretch of the ",
@@ -319,9 +305,8 @@ macro_rules! membrane_loads {
     };
 }
 
-static LEFT_LOADS: [V; 2] = membrane_loads!(Side::Left, "left.electricField", "left.stretch", "left.voltage", "left");
-static RIGHT_LOADS: [V; 2] =
-    membrane_loads!(Side::Right, "right.electricField", "right.stretch", "right.voltage", "right");
+static LEFT_LOADS: [V; 2] = membrane_loads!(Side::Left, "left");
+static RIGHT_LOADS: [V; 2] = membrane_loads!(Side::Right, "right");
 
 /// Time derivatives of the continuous states, for model exchange.
 static DERIVATIVES: [V; 4] = [
@@ -396,6 +381,7 @@ const COUNT: usize = PARAMETERS.len()
     + MOTION.len()
     + EVENTS.len()
     + ENERGIES.len()
+    + CONTACT_TIME.len()
     + LEFT_LOADS.len()
     + RIGHT_LOADS.len()
     + DERIVATIVES.len()
@@ -412,6 +398,7 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &MOTION,
     &EVENTS,
     &ENERGIES,
+    &CONTACT_TIME,
     &LEFT_LOADS,
     &RIGHT_LOADS,
     &DERIVATIVES,

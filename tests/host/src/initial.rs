@@ -17,12 +17,6 @@ fn knowns<S: Slave>() -> impl Iterator<Item = &'static Variable<S>> {
     S::variables().iter().filter(is_known)
 }
 
-/// A number from 0 to 1.
-#[allow(clippy::cast_precision_loss)]
-fn portion(random: &mut Random) -> f64 {
-    random.below(1 << 52) as f64 * 0.5_f64.powi(52)
-}
-
 /// Sets a variable that is known to another value: a Real to one that differs by a random factor or, if it may be
 /// zero, to one of its `size`.
 #[allow(clippy::expect_used)] // as in a test
@@ -30,7 +24,7 @@ fn change<S>(row: &Variable<S>, slave: &mut S, size: f64, random: &mut Random) {
     let number = |random: &mut Random, bound| i32::try_from(random.below(bound)).unwrap_or_default();
     match row.kind() {
         Kind::Real(spec) => {
-            let (present, sign) = ((spec.get)(slave), 2.0 * portion(random) - 1.0);
+            let (present, sign) = ((spec.get)(slave), random.between(-1.0, 1.0));
             let factor = (sign * random.pick(&[0.03, 0.3, 2.0])).exp();
             let may_be_zero = spec.min <= 0.0 && (present == 0.0 || random.once_in(4));
             let moved = if may_be_zero { sign * size } else { present * factor };

@@ -54,6 +54,12 @@ impl Random {
         self.below(times) == 0
     }
 
+    /// A Real between `low` and `high`.
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 * 0.5_f64.powi(53))
+    }
+
     /// One of these.
     pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len())]
