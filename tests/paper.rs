@@ -315,17 +315,6 @@ fn inelastic_starts_lead_to_a_motion_or_its_mirror_image() {
     }
 }
 
-/// Debug prints numbers without losing a bit.
-#[test]
-#[ignore = "slow"]
-fn the_same_bytes_come_out_again() {
-    for name in ["fig10", "fig13", "tuning", "dynamics"] {
-        let [first, second] = [make(name), make(name)].map(|artefact| format!("{artefact:?}"));
-        assert!(first == second, "{name}");
-    }
-    assert!(format!("{:?}", TABLE_2.sheets) == format!("{:?}", make("table2").sheets));
-}
-
 /// Two orders of the same noisy runs are two ways of dividing them among threads.
 #[test]
 fn a_run_does_not_depend_on_its_neighbours() {

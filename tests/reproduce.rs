@@ -157,7 +157,7 @@ fn without_ngspice_only_the_crosscheck_by_name_fails() {
 #[ignore = "slow"]
 fn the_same_command_gives_the_same_bytes_of_data_on_any_number_of_cores() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
-    let items = ["fig11", "fig16", "table1", "--quick"];
+    let items = ["table1", "table2", "fig10", "fig11", "fig16", "tuning", "dynamics", "--quick"];
     let cores = std::thread::available_parallelism().unwrap().get();
     made(folders[0].path(), &items);
     // One core, where the system can be asked for it.
