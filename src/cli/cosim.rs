@@ -18,7 +18,7 @@ use crate::cosim::{
 use crate::scenario::Scenario;
 use videg_system::atomic_file;
 
-/// Values of the circuit that nobody set: not the start values of its FMU.
+/// Default values of the circuit. They differ from the start values of its FMU.
 const DEFAULTS: &str = "Defaults: supply.voltage is biasVoltage and zener.voltage is supply.voltage, as in the paper; storage.voltage \
     is the voltage with the largest net gain over the impacts, from a run of the mechanics ahead. The FMU HarvestingCircuit \
     alone has fixed start values.";

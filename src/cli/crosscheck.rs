@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use serde::Serialize;
 use videg_circuit::names;
 
@@ -23,11 +24,11 @@ pub struct Arguments {
     #[command(flatten)]
     run: RunOptions,
     /// Release element, as --set release=
-    #[arg(long, value_enum)]
-    release: Option<ReleaseName>,
+    #[arg(long, value_parser = items(RELEASES))]
+    release: Option<String>,
     /// Connection of the membranes, as --set topology=
-    #[arg(long, value_enum)]
-    topology: Option<TopologyName>,
+    #[arg(long, value_parser = items(TOPOLOGIES))]
+    topology: Option<String>,
     /// Also compute the net gain over the voltage of release and the load resistance
     #[arg(long)]
     sweep: bool,
@@ -36,32 +37,26 @@ pub struct Arguments {
     export: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum ReleaseName {
-    /// A Zener diode in series with the load
-    Zener,
-    /// An ideal switch
-    Switch,
-    /// A diode into a storage in place of the load
-    Storage,
-}
+/// Names of values with their help.
+type Items = &'static [(&'static str, &'static str)];
 
-#[derive(Clone, Copy, ValueEnum)]
-#[value(rename_all = "camelCase")]
-enum TopologyName {
-    /// Both membranes on one node
-    SharedNode,
-    /// A diode and a release element for each membrane
-    Isolated,
+const RELEASES: Items = &[
+    ("zener", "A Zener diode in series with the load"),
+    ("switch", "An ideal switch"),
+    ("storage", "A diode into a storage in place of the load"),
+];
+const TOPOLOGIES: Items =
+    &[("sharedNode", "Both membranes on one node"), ("isolated", "A diode and a release element for each membrane")];
+
+fn items(items: Items) -> PossibleValuesParser {
+    items.iter().map(|(name, help)| PossibleValue::new(*name).help(*help)).collect::<Vec<_>>().into()
 }
 
 impl Arguments {
     /// The options that are settings by another name.
     fn settings(&self) -> Vec<Setting> {
-        let release = self.release.and_then(|name| name.to_possible_value()).map(|value| (names::RELEASE, value));
-        let topology = self.topology.and_then(|name| name.to_possible_value()).map(|value| (names::TOPOLOGY, value));
-        let setting = |(name, value): (&str, clap::builder::PossibleValue)| Setting::new(name, value.get_name());
-        release.into_iter().chain(topology).map(setting).collect()
+        let options = [(names::RELEASE, &self.release), (names::TOPOLOGY, &self.topology)];
+        options.into_iter().filter_map(|(name, value)| Some(Setting::new(name, value.as_ref()?))).collect()
     }
 }
 

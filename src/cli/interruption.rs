@@ -52,7 +52,7 @@ pub struct Interruption {
 }
 
 impl Interruption {
-    /// Waits for signals from here on. A second one ends the process at once, whatever that leaves; so does the first where
+    /// Waits for signals from here on. A second one ends the process at once, without cleaning up; so does the first where
     /// the system gives no thread to wait.
     pub fn watch(&self) -> anyhow::Result<()> {
         let watched = self.clone();

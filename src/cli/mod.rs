@@ -1,9 +1,9 @@
 //! The command-line tool: one verb a file.
 //!
 //! Data goes to stdout, messages and progress to stderr. Exit codes: 0 done; 1 checked, and a check failed; 2 could not
-//! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal. A reader of either
-//! that has gone changes none of them.
-// `output` and `message` write on both: these macros panic if a reader has gone.
+//! run, with one line on stderr that says why; 128 and its number: ended early and in order by a signal. A closed stdout or
+//! stderr changes none of them.
+// `output` and `message` write on both: these macros panic if the reader has closed them.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod completions;

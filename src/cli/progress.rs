@@ -55,7 +55,7 @@ pub struct ItemBar {
 }
 
 impl ItemBar {
-    /// A bar for so many items.
+    /// A bar for this number of items.
     pub fn new(items: usize) -> Self {
         let bar = styled("{prefix} {msg} [{bar:30}] {pos}/{len}, {elapsed}");
         Self { bar: ticking(bar, Duration::from_millis(500)), items, begun: AtomicUsize::new(0) }

@@ -139,10 +139,15 @@ impl Reproduction<'_> {
         Ok(())
     }
 
+    fn subfolder(&self, name: &str) -> anyhow::Result<PathBuf> {
+        let folder = self.folder.join(name);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        Ok(folder)
+    }
+
     /// Fig. 14 coupled with the paper's circuit and with better ones.
     fn audit(&mut self, fmu: &Fmu) -> anyhow::Result<()> {
-        let folder = self.folder.join(AUDIT);
-        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let folder = self.subfolder(AUDIT)?;
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let cosimulation = Cosimulation::new(&Options::new(fmu, &scenario))?;
@@ -172,17 +177,11 @@ impl Reproduction<'_> {
                 return Ok(());
             }
         };
-        let folder = self.folder.join(CROSSCHECK);
-        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let folder = self.subfolder(CROSSCHECK)?;
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let program = packaging::program()?;
-        let options = crosscheck::Options {
-            harvester: fmu,
-            scenario: &scenario,
-            ngspice: &ngspice,
-            program: &program,
-            sweep: false,
-        };
+        let (scenario, ngspice, program) = (&scenario, &ngspice, &program);
+        let options = crosscheck::Options { harvester: fmu, scenario, ngspice, program, sweep: false };
         let found = crosscheck::run(&options, progress)?;
         self.solvers_disagree = !found.passed();
         let (files, figures) = crosscheck::files::write(&folder, &found)?;

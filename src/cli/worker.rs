@@ -23,7 +23,7 @@ pub fn run_ngspice() -> anyhow::Result<Exit> {
     unless_gone(live::serve(replies)).context("the process that couples ngspice is gone")
 }
 
-/// A worker whose client has gone in the middle of a reply ends without a message.
+/// A worker ends without a message if its client ends during a reply.
 fn unless_gone(served: io::Result<()>) -> io::Result<Exit> {
     match served {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),

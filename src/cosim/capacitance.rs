@@ -9,7 +9,7 @@ impl CapacitanceTable {
     /// the largest pulse so far. Outside the pulses it keeps no points.
     ///
     /// # Errors
-    /// What the FMU says; an `error` outside `1e-9` to `0.1`; more than [`Self::MAX_ROWS`] rows.
+    /// Errors of the FMU; an `error` outside `1e-9` to `0.1`; more than [`Self::MAX_ROWS`] rows.
     pub fn from_harvester(harvester: &mut HarvesterFmu, until: f64, error: f64) -> Result<Self, NgspiceError> {
         if !(1e-9..=0.1).contains(&error) {
             let value = error.to_string();

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::CosimError;
 
-/// Signals that the subsystems exchange for a step. The harvester gets extrapolated voltages, from the plain method those
-/// at the communication point.
+/// Signals that the subsystems exchange for a step. The harvester gets the voltages extrapolated; under the plain method it
+/// gets those of the communication point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {

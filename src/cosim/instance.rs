@@ -4,7 +4,7 @@ use super::CosimError;
 use fmu_import::{Fmu, FmuState, Instance};
 
 /// References to the variables called `names`.
-pub(super) fn references<const N: usize>(fmu: &Fmu, names: [&str; N]) -> Result<[u32; N], CosimError> {
+pub fn references<const N: usize>(fmu: &Fmu, names: [&str; N]) -> Result<[u32; N], CosimError> {
     let mut references = [0; N];
     for (reference, name) in references.iter_mut().zip(names) {
         *reference = fmu.description().variable(name)?.value_reference;
@@ -13,7 +13,7 @@ pub(super) fn references<const N: usize>(fmu: &Fmu, names: [&str; N]) -> Result<
 }
 
 /// Values of real variables.
-pub(super) fn read<const N: usize>(instance: &Instance, references: &[u32; N]) -> Result<[f64; N], CosimError> {
+pub fn read<const N: usize>(instance: &Instance, references: &[u32; N]) -> Result<[f64; N], CosimError> {
     let mut values = [0.0; N];
     instance.get_real(references, &mut values)?;
     Ok(values)

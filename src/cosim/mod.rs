@@ -32,6 +32,7 @@ pub use coupling::{Coupling, CouplingSummary, Method};
 pub use embedded::EmbeddedCircuit;
 pub use error::CosimError;
 pub use harvester::{HarvesterFmu, HarvesterSample};
+pub(crate) use instance::{read, references};
 pub use master::{Master, Observer, Outcome, Row};
 pub use ngspice::NgspiceCircuit;
 pub(crate) use ratios::{CapacitanceRatios, best_release_voltage};

@@ -70,7 +70,7 @@ pub struct Results {
     pub balance: Option<EnergyBalance>,
     /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C.
     pub cycle_charge: f64,
-    /// What the user should know before believing the numbers.
+    /// Warnings about the validity of the numbers.
     pub warnings: Vec<String>,
     /// What a figure shows.
     pub trace: Trace,
@@ -79,7 +79,7 @@ pub struct Results {
 /// Runs the co-simulation.
 ///
 /// # Errors
-/// A setting that neither harvester nor circuit takes; what a subsystem says.
+/// A setting that neither harvester nor circuit takes; errors of a subsystem.
 pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Results, CosimError> {
     Cosimulation::new(options)?.run(&mut (), progress)
 }

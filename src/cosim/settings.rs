@@ -1,4 +1,4 @@
-//! Settings by name: those of the harvester, those of the circuit, and the values of the circuit that nobody set.
+//! Settings by name: those of the harvester, those of the circuit, and defaults of the circuit.
 
 use fmu_import::{ModelDescription, nearest_name};
 use videg_circuit::{Choice, Settings, names};

@@ -141,7 +141,7 @@ pub struct QuantityCheck {
 }
 
 impl QuantityCheck {
-    /// A quantity of which nothing but the values is known.
+    /// A quantity with its values alone.
     pub fn new(name: impl Into<String>, unit: &'static str, values: Values) -> Self {
         Self { name: name.into(), unit, analytic: None, values, agreement: None, claim: None }
     }

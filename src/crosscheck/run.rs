@@ -65,7 +65,7 @@ pub struct Crosscheck {
     pub repeats: Vec<Repeat>,
     /// The conclusion in words.
     pub conclusion: Vec<String>,
-    /// What the user should know before believing the numbers.
+    /// Warnings about the validity of the numbers.
     pub warnings: Vec<String>,
 }
 

@@ -66,7 +66,7 @@ impl Solvers<'_> {
         Ok(JobResult { waveforms: run.waveforms, rows, stop, repeats })
     }
 
-    /// Runs the circuit of `settings` over `table` in `solver`, whatever diodes the settings choose, as far as the solver
+    /// Runs the circuit of `settings` over `table` in `solver`, with the diodes of the solver, as far as the solver
     /// gets; `progress` gets the part that is done.
     pub fn run(
         &self,

@@ -6,7 +6,7 @@ use super::stroboscope::{Orbit, Start, Stroboscope, periods};
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Figure, HeatMap, Panel, Scale, Table};
 
-/// Periods that pass, and that are looked at then.
+/// Periods of the transient, and periods that are sampled after it.
 const TRANSIENT: u32 = 200;
 const TAKEN: u32 = 32;
 /// Largest relative velocity at the start, m/s.

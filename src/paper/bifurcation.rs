@@ -5,7 +5,7 @@ use super::stroboscope::{Orbit, Start, Stroboscope, periods};
 use super::{Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Column, Figure, Panel, Series, Style, Table};
 
-/// Periods that pass before the motion is looked at, and at whose ends it is looked at then.
+/// Periods of the transient, and periods after it at whose ends the motion is sampled.
 const TRANSIENT: u32 = 200;
 const TAKEN: u32 = 60;
 

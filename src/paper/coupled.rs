@@ -143,7 +143,7 @@ impl Driven {
         self.ratios.iter().map(gain).sum::<f64>() / self.time
     }
 
-    /// The voltage, V, at which that is largest.
+    /// The voltage, V, with the largest net gain of a quick release.
     pub fn best_voltage(&self, idle: f64) -> f64 {
         let ratio = formulas::best_release_ratio(self.ratios.clone());
         formulas::best_release_voltage(self.bias_voltage, 1.0 + idle, ratio + idle)

@@ -154,7 +154,7 @@ fn finding(half: &Half, curve: &Curve) -> Finding {
         .reason(reason)
 }
 
-/// Number of neighbouring points of which the later lies lower and the intervals do not overlap.
+/// Number of neighbouring points at which the mean falls and the intervals do not overlap.
 fn falls(points: &[(f64, Summary)]) -> usize {
     points.windows(2).filter(|pair| pair[1].1.interval[1] < pair[0].1.interval[0]).count()
 }

@@ -25,7 +25,7 @@ const KINDS: [Kind; 3] = [
 const PANELS: [(Topology, &str); 2] =
     [(Topology::Isolated, "(a) isolated membranes"), (Topology::SharedNode, "(b) the paper's circuit: shared node")];
 
-/// A circuit on its way through the cycle.
+/// A circuit that goes through the cycle.
 struct Kind {
     topology: Topology,
     release: Release,

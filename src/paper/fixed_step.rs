@@ -42,7 +42,7 @@ pub(super) struct FixedStep {
 }
 
 impl FixedStep {
-    /// Balls that start with `velocities`, m/s, to be followed by a `step`, s. One that starts beyond a membrane is put on it.
+    /// Balls that start with `velocities`, m/s, to be followed by a `step`, s. One that starts beyond a membrane starts on it.
     pub(super) fn new(parameters: &Parameters, velocities: &[f64], step: f64) -> Self {
         let p = *parameters;
         let half = p.travel() / 2.0;

@@ -3,15 +3,15 @@
 use super::stroboscope::{Flash, Orbit, Start, Stroboscope};
 use super::{PaperError, Study, excitation::Cylinder};
 
-/// Distance, m, to which the neighbour is brought back after each period.
+/// Distance, m, of the neighbour at the start of each period.
 const DISTANCE: f64 = 1e-9;
 /// Distance, m, below which nothing but rounding is left of it.
 const NOTHING: f64 = 1e-17;
 
 /// The largest Lyapunov exponent, 1/s, along `periods` that go on from the end of `orbit`: the mean growth, by
-/// logarithm, of the distance to a neighbour, which is brought back along its direction after each period (Benettin's
-/// method). Above 0 the motion is chaotic, below 0 it takes its neighbours in. Where `orbit` rests on a membrane at the
-/// start of a period its neighbour is put there, too.
+/// logarithm, of the distance to a neighbour, which is scaled back along its direction after each period (Benettin's
+/// method). Above 0 the motion is chaotic, below 0 its neighbours approach it. Where `orbit` rests on a membrane at the
+/// start of a period its neighbour starts there, too.
 pub fn exponent(
     study: &Study<'_>,
     cylinder: &Cylinder,
@@ -36,7 +36,7 @@ pub fn exponent(
         let now = [neighbour.displacement - flash.displacement, (neighbour.velocity - flash.velocity) * scale];
         let distance = now[0].hypot(now[1]);
         sum += (distance.max(NOTHING) / DISTANCE).ln();
-        // A neighbour that is gone starts anew in the old direction.
+        // A neighbour at no distance starts again in the old direction.
         if distance > NOTHING {
             apart = now.map(|part| part * DISTANCE / distance);
         }

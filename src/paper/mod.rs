@@ -61,7 +61,7 @@ pub struct Item {
     pub make: Make,
 }
 
-/// Makes the items whose names are `wanted`, each when the iterator comes to it. The observer of the `study` hears of each.
+/// Makes the items whose names are `wanted`, lazily. The observer of the `study` follows each.
 pub fn reproduce<'a>(
     study: &'a Study<'_>,
     wanted: impl Fn(&str) -> bool + 'a,

@@ -88,7 +88,7 @@ impl SawTooth {
         4.0 * self.frequency * (self.half_travel + self.turning_point())
     }
 
-    /// Settings that start the FMU at the impact on the right membrane, with the ball already on its way.
+    /// Settings that start the FMU at the impact on the right membrane, with the ball moving away from it.
     pub(super) fn at_impact(&self) -> Vec<Setting> {
         let position = self.turning_point();
         let phase = if self.phase == Phase::Paper { 0.0 } else { PI };

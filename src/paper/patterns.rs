@@ -44,8 +44,8 @@ impl Pattern {
     }
 }
 
-/// Mean length of the rows of impacts of which each is weaker than the one before; those at the ends, which may be cut,
-/// do not count. NaN if there are no others.
+/// Mean length of the rows of impacts that weaken from one to the next. The first and the last row may be cut and do not
+/// count. NaN without others.
 pub(super) fn mean_falling_row(impacts: &[Impact]) -> f64 {
     let rises = impacts.windows(2).enumerate().filter(|(_, pair)| pair[1].gain > pair[0].gain);
     let rises: Vec<usize> = rises.map(|(index, _)| index).collect();

@@ -59,7 +59,7 @@ pub(super) struct Impact {
     pub(super) displacement: f64,
 }
 
-/// A run, as far as it was looked at.
+/// Samples and impacts of a run.
 #[derive(Debug, Clone)]
 pub(super) struct Recording {
     /// By ascending time: on a grid, at the knots of C(t), and right before and at each impact.

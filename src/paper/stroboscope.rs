@@ -16,7 +16,7 @@ pub struct Flash {
     pub gain: f64,
 }
 
-/// A harvester that is looked at once a period.
+/// A harvester that is sampled once a period.
 pub struct Stroboscope<'a> {
     study: &'a Study<'a>,
     instance: Instance,

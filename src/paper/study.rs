@@ -1,7 +1,7 @@
 //! The harvester FMU of the items, and runs of it on all cores.
 
 use super::PaperError;
-use crate::cosim::{Averages, Gains};
+use crate::cosim::{Averages, Gains, read, references};
 use crate::progress::Progress;
 use crate::scenario::{Request, Setting};
 use crate::threads;
@@ -72,11 +72,7 @@ impl Study<'_> {
 
     /// Values of variables of an instance, in the order of `names`.
     pub(super) fn reals<const N: usize>(&self, instance: &Instance, names: [&str; N]) -> Result<[f64; N], PaperError> {
-        let reference = |name: &&str| Ok(self.fmu.description().variable(name)?.value_reference);
-        let references = names.iter().map(reference).collect::<Result<Vec<_>, PaperError>>()?;
-        let mut values = [0.0; N];
-        instance.get_real(&references, &mut values)?;
-        Ok(values)
+        Ok(read(instance, &references(self.fmu, names)?)?)
     }
 
     /// `z_M - z_m`, m, and its rate, m/s.
@@ -94,7 +90,7 @@ impl Study<'_> {
         Ok(Gains { voltage, energy, impacts: impacts[0] })
     }
 
-    /// Does `work` for each of `tasks` on all cores; results in the order of the tasks, whoever did them. The error is that of
+    /// Does `work` for each of `tasks` on all cores; results are in the order of the tasks. The error is that of
     /// the first task that failed.
     pub(super) fn each<T: Sync, R: Send>(
         &self,

@@ -28,7 +28,7 @@ pub struct Results {
     pub mechanics: MechanicsSummary,
     /// How long the membranes were deflected, and how far.
     pub contacts: Contacts,
-    /// What the user should know before believing the numbers.
+    /// Warnings about the validity of the numbers.
     pub warnings: Vec<String>,
     /// What a figure shows.
     pub trace: Trace,
@@ -37,7 +37,7 @@ pub struct Results {
 /// Runs the harvester alone.
 ///
 /// # Errors
-/// A setting that neither harvester nor circuit takes; what the FMU says.
+/// A setting that neither harvester nor circuit takes; errors of the FMU.
 pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Results, CosimError> {
     Simulation::new(options)?.run(&mut (), progress)
 }

@@ -8,11 +8,11 @@ use crate::scenario::{Scenario, Setting};
 /// The variable that the option sets.
 const VARIABLE: &str = "contact.law";
 
-/// Laws to choose from.
+/// Laws to choose from. The number is that of the item of `contact.law`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Law {
     /// An impact takes no time, Eqs. (10) and (11)
-    Impulsive,
+    Impulsive = 1,
     /// The membrane is a nonlinear spring with losses
     Compliant,
     /// Both laws, side by side
@@ -33,26 +33,16 @@ impl Law {
     pub fn setting(self) -> Setting {
         Setting::new(VARIABLE, self.name())
     }
-
-    /// Whether `value` of `contact.law`, a name or a number, means this law.
-    fn is(self, value: &str) -> bool {
-        match self {
-            Self::Impulsive => ["impulsive", "1"].contains(&value),
-            Self::Compliant => ["compliant", "2"].contains(&value),
-            Self::Both => false,
-        }
-    }
 }
 
-/// The scenario of the options under `law`; with both laws, their common part.
-///
-/// # Errors
-/// Whatever in the options makes no sense, or settings that ask for another law.
+/// The scenario of the options under `law`; with both laws, their common part. Settings that ask for another law are an
+/// error.
 pub fn scenario(law: Option<Law>, options: &RunOptions) -> anyhow::Result<Scenario> {
     let scenario = options.scenario()?;
     let Some(law) = law else { return Ok(scenario) };
+    let is_law = |value: &str| law != Law::Both && (value == law.name() || value == (law as u8).to_string());
     match scenario.settings.iter().rfind(|setting| setting.name == VARIABLE) {
-        Some(set) if !law.is(&set.value) => {
+        Some(set) if !is_law(&set.value) => {
             let (name, place, value) = (law.name(), set.place(), &set.value);
             anyhow::bail!("--law {name}: {place} = {value} says otherwise; leave one of the two out")
         }

@@ -197,7 +197,7 @@ fn extremes(impacts: &[Impact]) -> [f64; 2] {
 /// How a motion repeats.
 struct Period {
     cycles: u32,
-    /// Largest difference of `z_M - z_m` after so many cycles, m.
+    /// Largest difference of `z_M - z_m` after this number of cycles, m.
     difference: f64,
 }
 

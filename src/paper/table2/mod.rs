@@ -23,7 +23,7 @@ enum Motion {
     Damped(f64),
     /// An orbit that nearby starts leave.
     Unstable,
-    /// r = 1: one distribution whatever the start.
+    /// r = 1: one distribution for all starts.
     Chaotic,
 }
 
