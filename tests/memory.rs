@@ -9,19 +9,17 @@ mod instance;
 use std::path::{Path, PathBuf};
 
 use fmu_host::{Fmu, Functions, Instance, abi};
-use fmu_import::Logging;
+use fmu_import::{Archive, Logging};
 use videg::package::{Options, build_all};
 
 /// The libraries of both FMUs with their model descriptions, unpacked into `folder`.
 fn libraries(folder: &Path) -> Vec<(PathBuf, String)> {
     let unpack = |archive: PathBuf| {
         let name = archive.file_stem().unwrap().to_str().unwrap().to_owned();
-        let mut archive = zip::ZipArchive::new(std::fs::File::open(archive).unwrap()).unwrap();
+        let unpacked = Archive::open(&archive).unwrap().unpack().unwrap();
         let library = folder.join(format!("{name}.so"));
-        let mut file = std::fs::File::create(&library).unwrap();
-        std::io::copy(&mut archive.by_name(&format!("binaries/linux64/{name}.so")).unwrap(), &mut file).unwrap();
-        let description = std::io::read_to_string(archive.by_name("modelDescription.xml").unwrap()).unwrap();
-        (library, description)
+        std::fs::copy(unpacked.path().join(format!("binaries/linux64/{name}.so")), &library).unwrap();
+        (library, std::fs::read_to_string(unpacked.path().join("modelDescription.xml")).unwrap())
     };
     let options = Options { output: Some(folder.to_owned()), ..Options::default() };
     build_all(&options).unwrap().into_iter().map(unpack).collect()

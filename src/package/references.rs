@@ -24,6 +24,6 @@ pub(super) fn add(identifier: &str, entries: &mut Entries) {
         _ => return,
     };
     for (name, text) in files {
-        entries.add(&format!("{FOLDER}/{name}"), text.replace("\r\n", "\n"));
+        entries.add(&format!("{FOLDER}/{name}"), *text);
     }
 }

@@ -119,8 +119,9 @@ impl CaseFile {
     }
 
     fn of(layout: Layout) -> Result<Self, String> {
-        let mut settings = Vec::new();
-        flatten("", &layout.set, &mut settings)?;
+        let set = dotted("", &layout.set, |_| false).into_iter();
+        let settings = set.map(|(name, value)| Ok(Setting::new(&*name, value_text(&name, value)?)));
+        let settings = settings.collect::<Result<_, String>>()?;
         let Layout { case, name, description, until, step, window, .. } = layout;
         Ok(Self { path: None, case, name, description, until, step, window, settings })
     }
@@ -156,25 +157,23 @@ pub(crate) fn toml_error(error: &toml::de::Error) -> String {
     error.to_string().lines().filter_map(shown).collect::<Vec<_>>().join(": ")
 }
 
-/// Turns nested tables back into dotted names.
-fn flatten(prefix: &str, table: &Table, settings: &mut Vec<Setting>) -> Result<(), String> {
-    for (key, value) in table {
+/// The values in nested tables, by dotted names; tables that are values are known by `is_value`.
+pub(crate) fn dotted<'a>(prefix: &str, table: &'a Table, is_value: fn(&Table) -> bool) -> Vec<(String, &'a Value)> {
+    let entries = table.iter().flat_map(|(key, value)| {
         let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
-        if let Value::Table(inner) = value {
-            flatten(&name, inner, settings)?;
-            continue;
+        match value {
+            Value::Table(inner) if !is_value(inner) => dotted(&name, inner, is_value),
+            _ => vec![(name, value)],
         }
-        let value = value_text(&name, value)?;
-        settings.push(Setting::new(name, value));
-    }
-    Ok(())
+    });
+    entries.collect()
 }
 
 /// A value of the variable called `name`, as a user types it on the command line.
 ///
 /// # Errors
 /// If no variable can have it.
-pub fn value_text(name: &str, value: &Value) -> Result<String, String> {
+pub(crate) fn value_text(name: &str, value: &Value) -> Result<String, String> {
     match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(number) => Ok(number.to_string()),

@@ -7,8 +7,8 @@ mod preset;
 mod times;
 
 pub(crate) use characters::{check as check_characters, with_plain_ends};
-pub use file::{CaseFile, value_text};
-pub(crate) use file::{read_file, toml_error};
+pub use file::CaseFile;
+pub(crate) use file::{dotted, read_file, toml_error, value_text};
 pub use origin::Origin;
 pub use times::check_proposed_step;
 

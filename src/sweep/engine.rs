@@ -164,8 +164,7 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
         |instance, (variable, value)| instance.set_value(variable.value_reference, value),
     )?;
     instance.exit_initialization_mode()?;
-    let gains = if sweep.averages { Some(GainReferences::of(fmu)?) } else { None };
-    let mut slave = Slave { instance, gains };
+    let mut slave = Slave { instance, has_gains: sweep.averages };
     let end = if sweep.record.is_empty() { sweep.times.window[1] } else { sweep.times.until };
     let averages = sweep.times.drive(&mut slave, end)?;
     let recorded = sweep.record.iter().map(|variable| slave.instance.get_by_name(&variable.name));
@@ -178,21 +177,8 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
 
 struct Slave {
     instance: Instance,
-    gains: Option<GainReferences>,
-}
-
-/// Value references of the sums.
-struct GainReferences {
-    sums: [u32; 2],
-    impacts: u32,
-}
-
-impl GainReferences {
-    fn of(fmu: &Fmu) -> Result<Self, FmiError> {
-        let reference = |name| fmu.description().variable(name).map(|variable| variable.value_reference);
-        let [voltage, energy, impacts] = GAINS;
-        Ok(Self { sums: [reference(voltage)?, reference(energy)?], impacts: reference(impacts)? })
-    }
+    /// Whether the FMU has the variables [`GAINS`].
+    has_gains: bool,
 }
 
 impl Driven for Slave {
@@ -203,11 +189,17 @@ impl Driven for Slave {
     }
 
     fn gains(&self) -> Result<Gains, FmiError> {
-        let Some(GainReferences { sums, impacts }) = &self.gains else { return Ok(Gains::default()) };
-        let (mut values, mut count) = ([0.0; 2], [0]);
-        self.instance.get_real(sums, &mut values)?;
-        self.instance.get_integer(&[*impacts], &mut count)?;
-        Ok(Gains { voltage: values[0], energy: values[1], impacts: count[0] })
+        if !self.has_gains {
+            return Ok(Gains::default());
+        }
+        let [voltage, energy, impacts] = GAINS.map(|name| self.instance.get_by_name(name));
+        match (voltage?, energy?, impacts?) {
+            (Value::Real(voltage), Value::Real(energy), Value::Integer(impacts)) => {
+                Ok(Gains { voltage, energy, impacts })
+            }
+            // The sweep has seen that they are of these types.
+            _ => Ok(Gains::default()),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::SweepError;
-use crate::scenario::Origin;
+use crate::scenario::{Origin, dotted, value_text};
 
 /// A variable and the values that it takes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -81,9 +81,13 @@ impl Vary {
     /// # Errors
     /// An entry that is neither a list nor a range, by its name.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
-        let mut all = Vec::new();
-        flatten("", table, &mut all)?;
-        Ok(all)
+        // Values are a list or a table: a table whose `from` is neither is a range.
+        let is_range = |table: &Table| table.get("from").is_some_and(|from| !from.is_table() && !from.is_array());
+        let all = dotted("", table, is_range).into_iter().map(|(name, value)| {
+            let spread = spread(&name, value)?;
+            Ok(Self { name, spread, origin: Origin::Option })
+        });
+        all.collect()
     }
 }
 
@@ -102,34 +106,22 @@ fn list(text: &str) -> Spread {
     Spread::List { values: text.split(',').map(|value| value.trim().to_owned()).collect() }
 }
 
-/// Turns nested tables back into dotted names.
-fn flatten(prefix: &str, table: &Table, all: &mut Vec<Vary>) -> Result<(), String> {
-    for (key, value) in table {
-        let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
-        let spread = match value {
-            // Values are a list or a table: a table whose `from` is neither is a range.
-            Value::Table(range) if range.get("from").is_some_and(|from| !from.is_table() && !from.is_array()) => {
-                let read = Range::deserialize(range.clone()).map_err(|error| format!("vary.{name}: {error}"))?;
-                Spread::Range(read)
-            }
-            Value::Table(inner) => {
-                flatten(&name, inner, all)?;
-                continue;
-            }
-            Value::Array(values) => {
-                let values = values.iter().map(|value| crate::scenario::value_text(&name, value));
-                Spread::List { values: values.collect::<Result<_, _>>()? }
-            }
-            other => {
-                let kind = other.type_str();
-                return Err(format!(
-                    "vary.{name} is of type {kind}: a list or {{ from, to, count, scale }} is expected"
-                ));
-            }
-        };
-        all.push(Vary { name, spread, origin: Origin::Option });
+/// Reads the values of the variable called `name`: a list or a range.
+fn spread(name: &str, value: &Value) -> Result<Spread, String> {
+    match value {
+        Value::Table(range) => {
+            let read = Range::deserialize(range.clone()).map_err(|error| format!("vary.{name}: {error}"))?;
+            Ok(Spread::Range(read))
+        }
+        Value::Array(values) => {
+            let values = values.iter().map(|value| value_text(name, value));
+            Ok(Spread::List { values: values.collect::<Result<_, _>>()? })
+        }
+        other => {
+            let kind = other.type_str();
+            Err(format!("vary.{name} is of type {kind}: a list or {{ from, to, count, scale }} is expected"))
+        }
     }
-    Ok(())
 }
 
 #[cfg(test)]

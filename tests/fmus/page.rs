@@ -91,18 +91,3 @@ fn equations(about: &str) -> String {
     }
     found.join(", ")
 }
-
-#[test]
-fn symbols_and_places_are_told_from_words() {
-    assert_eq!(symbol("R_2 = lambda R_1: radius"), Some("R_2 = lambda R_1"));
-    assert_eq!(symbol("z_M'(0): position"), Some("z_M'(0)"));
-    assert_eq!(symbol("lambda sqrt(A_3 / A_2): stretch"), Some("lambda sqrt(A_3 / A_2)"));
-    assert_eq!(symbol("U_out: voltage across the load"), Some("U_out"));
-    assert_eq!(symbol("Seed of the phase noise: equal seeds"), None);
-    assert_eq!(symbol("Current through the load"), None);
-    assert_eq!(equations("a jump, Eqs. (12) and (13)"), "Eqs. (12) and (13)");
-    assert_eq!(equations("abs(v) before, Eq. (10); 0 before the first"), "Eq. (10)");
-    assert_eq!(equations("Fig. 8(a), and as of Section 4.1"), "Fig. 8(a), Section 4.1");
-    assert_eq!(equations("at least U_in, Section 4.1"), "Section 4.1");
-    assert_eq!(equations("nothing"), "");
-}

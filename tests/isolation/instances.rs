@@ -1,4 +1,5 @@
-//! Instances through the library: what is told of an FMU that falls, hangs, takes too much or answers nonsense.
+//! Instances through the library: what is told of an FMU that falls, hangs, takes too much or answers nonsense. The table of
+//! `docs/hostile-inputs.md`, which `tests/hostile` checks, has each way to end a process with its message.
 
 use std::path::PathBuf;
 use std::sync::mpsc;
@@ -60,22 +61,6 @@ fn a_crash_names_fmu_call_time_signal_and_what_was_logged() {
 }
 
 #[test]
-fn whatever_ends_the_process_of_an_fmu_in_a_step_is_told() {
-    for (step, told) in [
-        ("exit(0);", "ended its process (exit status: 0"),
-        ("for (;;) memset(malloc(1 << 20), 1, 1 << 20);", "(signal: 11 (SIGSEGV); memory limit 1024 MiB)"),
-        ("for (int i = 0; i < 64; ++i) close(i); pause();", "closed the pipes of its process, which was ended"),
-        (
-            "for (int i = 3; i < 64; ++i) write(i, \"\\xff\\xff\\xff\\xff garbage\", 12); pause();",
-            "(what it sent: a message of 4294967295 bytes is announced, allowed are",
-        ),
-    ] {
-        let text = end_in_step(&[&format!("STEP={step}")]);
-        assert!(text.contains(told), "{text}");
-    }
-}
-
-#[test]
 fn a_copy_that_the_fmu_makes_of_its_process_neither_answers_nor_listens() {
     let (_folder, fmu) = toy(&["STEP=if (!fork()) time = 1000;"]);
     let mut instance = initialised(&fmu);
@@ -94,27 +79,6 @@ fn a_call_without_end_is_ended_at_the_time_limit() {
     let error = initialised(&fmu).do_step(0.0, 1.0).unwrap_err().to_string();
     assert!(error.contains("fmi2DoStep of 'toy' at t = 0 s took longer than the time limit of 3 s"), "{error}");
     assert!(error.contains("the FMU had logged: again"), "{error}");
-}
-
-#[test]
-fn a_library_that_falls_while_it_is_loaded_takes_down_its_process_only() {
-    let (_folder, path) = archive(&["LOADING=abort();"]);
-    let error = Fmu::open_isolated(&path, &isolation()).unwrap_err().to_string();
-    assert!(error.contains("toy.fmu: loading the library ended its process (signal: 6 (SIGABRT)"), "{error}");
-}
-
-#[test]
-fn falls_while_it_is_instantiated_freed_and_unloaded_are_told() {
-    let (_folder, fmu) = toy(&["INSTANTIATE=raise(SIGILL);"]);
-    let error = fmu.instantiate("toy", Logging::default()).unwrap_err().to_string();
-    assert!(error.contains("fmi2Instantiate of 'toy' ended its process (signal: 4 (SIGILL)"), "{error}");
-    let (_folder, fmu) = toy(&["FREE=raise(SIGFPE);"]);
-    let error = initialised(&fmu).free().unwrap_err().to_string();
-    assert!(error.contains("fmi2FreeInstance of 'toy' at t = 0 s ended its process (signal: 8 (SIGFPE)"), "{error}");
-    drop(initialised(&fmu)); // tells nobody, and harms nobody
-    let (_folder, fmu) = toy(&["UNLOADING=abort();"]);
-    let error = initialised(&fmu).free().unwrap_err().to_string();
-    assert!(error.contains("unloading the library of 'toy' at t = 0 s ended its process (signal: 6"), "{error}");
 }
 
 #[test]

@@ -155,21 +155,3 @@ fn a_merge_on_a_full_disk_names_the_file_and_gives_the_same_bytes_once_there_is_
     assert!(shards.iter().map(|shard| files(shard)).eq(before), "the shards were changed");
     println!("{hits} merges failed or were killed");
 }
-
-#[test]
-fn shards_of_another_version_are_not_merged() {
-    let guard = tempfile::tempdir().unwrap();
-    let (shards, merged) = (shards(guard.path(), 6), guard.path().join("merged"));
-    for shard in &shards {
-        let path = shard.join("sweep.json");
-        let document = std::fs::read_to_string(&path).unwrap();
-        let version = concat!("\"videg\": \"", env!("CARGO_PKG_VERSION"), "\"");
-        assert!(document.contains(version), "{document}");
-        std::fs::write(&path, document.replace(version, "\"videg\": \"0.0.9\"")).unwrap();
-    }
-    let output = merge(&shards, &merged).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    let expected = concat!("it is of videg 0.0.9, and this is ", env!("CARGO_PKG_VERSION"), "; merge it with that");
-    assert!(output.status.code() == Some(2) && said.contains(expected), "{said}");
-    assert!(files(&merged).is_empty(), "something was written");
-}

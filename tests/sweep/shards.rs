@@ -62,6 +62,12 @@ fn shards_that_do_not_make_a_whole_are_refused() {
     );
     let message = refused(&[&one, &empty]);
     assert!(message.contains("cannot read") && message.contains("sweep.json"), "{message}");
+    let document = fs::read_to_string(foreign.join("sweep.json")).unwrap();
+    let version = concat!("\"videg\": \"", env!("CARGO_PKG_VERSION"), "\"");
+    fs::write(foreign.join("sweep.json"), document.replace(version, "\"videg\": \"0.0.9\"")).unwrap();
+    let message = refused(&[&foreign]);
+    let versions = concat!("it is of videg 0.0.9, and this is ", env!("CARGO_PKG_VERSION"), "; merge it with that");
+    assert!(message.contains(versions), "{message}");
     let text = fs::read_to_string(two.join("sweep.2-of-3.csv")).unwrap();
     fs::write(two.join("sweep.2-of-3.csv"), text.replace("\n3,", "\n4,")).unwrap();
     let message = refused(&[&one, &two, &three]);
