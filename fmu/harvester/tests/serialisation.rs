@@ -4,10 +4,9 @@
 mod common;
 
 use VibroImpactHarvester::Harvester;
-use common::{fresh, get, initialized, outputs, set, step};
-use fmu_export::{Logger, Slave, StateError, StateReader, StateWriter};
+use common::{choose, fresh, get, initialized, outputs, row, set, step};
+use fmu_export::{Kind, Logger, Slave, StateError, StateReader, StateWriter};
 use std::process::Command;
-use videg_model::{Case, Parameters};
 
 /// Noise on, r = 0.6, at the paper's size.
 const NOISY: &[(&str, f64)] = &[("excitation.phaseNoise", 0.7), ("excitation.noiseHold", 1e-3)];
@@ -71,16 +70,26 @@ fn a_restored_slave_goes_on_to_the_last_bit_with_noise_and_in_the_middle_of_puls
 }
 
 #[test]
-fn a_restored_slave_still_rests() {
-    // Chatters and rests for a part of each cycle.
-    let parameters = (Case::find("table3-2hz").expect("a case").parameters)();
-    let reals: Vec<_> = Parameters::TABLE.iter().map(|quantity| (quantity.name, (quantity.get)(&parameters))).collect();
-    let at_rest = |time: &f64| get(&run_to(&reals, *time), "contact.resting") == 1.0;
-    let times: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).filter(at_rest).take(10).collect();
-    assert!(!times.is_empty(), "the case is chosen because the ball rests");
-    for time in times {
-        assert_goes_on_alike(&reals, time);
+fn a_contact_of_the_compliant_law_goes_on_to_the_last_bit() {
+    let mut original = fresh(&[("initial.ballVelocity", 0.3)]);
+    choose(&mut original, "contact.law", 2);
+    for name in ["contact.electrostaticFeedback", "contact.reaction"] {
+        let Kind::Boolean(option) = row(name).kind() else { unreachable!() };
+        option.set.expect("a setter")(&mut original, true);
     }
+    original.update();
+    original.initialize(&Logger::silent()).expect("valid parameters");
+    let mut pressed = 0;
+    for k in 0..300_u32 {
+        let time = 0.003 * f64::from(k);
+        set(&mut original, "left.voltage", 1000.0 + 10.0 * f64::from(k % 7));
+        let mut copy = restored(&bytes(&original)).expect("a state");
+        step(&mut original, time, 0.003);
+        step(&mut copy, time, 0.003);
+        assert_eq!(outputs(&copy), outputs(&original), "from {time} s");
+        pressed += u32::from(get(&original, "left.deflection") + get(&original, "right.deflection") > 0.0);
+    }
+    assert!(pressed > 10, "{pressed} of 300 states lie in a contact");
 }
 
 #[test]
@@ -99,7 +108,7 @@ fn a_state_before_initialisation_keeps_what_was_set_even_if_it_is_contradictory(
 #[test]
 fn a_derivative_of_the_input_that_waits_for_the_next_step_is_part_of_the_state() {
     let mut original = run_to(&[], 0.3);
-    let fmu_export::Kind::Real(spec) = common::row("externalForce").kind() else { unreachable!() };
+    let Kind::Real(spec) = row("externalForce").kind() else { unreachable!() };
     spec.input_derivatives.expect("derivatives").1(&mut original, 1, 0.4);
     let mut copy = restored(&bytes(&original)).expect("a state");
     assert_eq!(go_on(&mut copy, 0.3), go_on(&mut original, 0.3));

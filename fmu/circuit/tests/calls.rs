@@ -1,7 +1,10 @@
-//! Values and arguments that make no sense, one by one: a status and a line in the log, never a crash.
+//! Calls of the FMU as it is exported: values and arguments that make no sense, one by one, and random sequences.
 
 use HarvestingCircuit as _; // links its C functions
-use fmu_host::{Fmu, hostile, linked_functions};
+use fmu_host::{Fmu, hostile, linked_functions, run};
+
+/// Random sequences of up to 32 calls each; some seconds without optimisation.
+const SEQUENCES: u64 = 50_000;
 
 #[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn fmu() -> Fmu {
@@ -17,4 +20,11 @@ fn no_variable_takes_what_is_no_number_but_infinity_where_it_has_a_meaning() {
 #[test]
 fn no_argument_takes_what_is_no_number() {
     hostile::arguments(&fmu()).unwrap();
+}
+
+#[test]
+fn random_call_sequences_go_as_the_tables_say() {
+    let census = run(&fmu(), 0..SEQUENCES).unwrap();
+    let [ok, warning, _, error, fatal] = census.statuses;
+    assert!(ok > 1000 && warning == 0 && error > 1000 && fatal == 0, "{:?}", census.statuses);
 }

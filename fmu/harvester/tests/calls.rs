@@ -1,9 +1,12 @@
-//! Values and arguments that make no sense, one by one: a status and a line in the log, never a crash.
+//! Calls of the FMU as it is exported: values and arguments that make no sense, one by one, and random sequences.
 
 mod common;
 
-use fmu_export::{Logger, Severity, Slave};
-use fmu_host::{Fmu, hostile, linked_functions};
+use fmu_export::{Kind, Logger, Severity, Slave};
+use fmu_host::{Fmu, hostile, linked_functions, run};
+
+/// Random sequences of up to 32 calls each; some seconds without optimisation.
+const SEQUENCES: u64 = 50_000;
 
 #[allow(clippy::unwrap_used)] // a helper fails a test, too
 fn fmu() -> Fmu {
@@ -45,4 +48,23 @@ fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {
     compliant.initialize(&Logger::silent()).unwrap();
     let error = compliant.do_step(0.0, 1e4, &Logger::silent()).unwrap_err().to_string();
     assert!(error.ends_with("at most 9765.625 s, 10000000 times excitation.noiseHold"), "{error}");
+}
+
+#[test]
+fn model_exchange_and_directional_derivatives_are_refused_under_the_compliant_law() {
+    let mut slave = common::fresh(&[]);
+    common::choose(&mut slave, "contact.law", 2);
+    slave.update();
+    slave.initialize(&Logger::silent()).unwrap();
+    let Kind::Real(ball) = common::row("ball.position").kind() else { panic!("no Real") };
+    assert!(ball.partial_derivative.unwrap()(&slave, common::row("externalForce")).is_nan());
+    let error = slave.place(0.0, None).unwrap_err().to_string();
+    assert!(error.starts_with("contact.law = compliant cannot be run by model exchange"), "{error}");
+}
+
+#[test]
+fn random_call_sequences_go_as_the_tables_say() {
+    let census = run(&fmu(), 0..SEQUENCES).unwrap();
+    let [ok, warning, discard, error, fatal] = census.statuses;
+    assert!(ok > 1000 && warning > 0 && error > 1000 && fatal == 0 && discard > 0, "{:?}", census.statuses);
 }
