@@ -38,7 +38,7 @@ const PART_OF_STEP: f64 = 0.1;
 /// How far two communication points may differ and still be the same, s: by 2.4e-7 of the time or of 1 s, if that is more,
 /// but at most by a tenth of the step. Masters count time as `n * h`, as a sum, in integer nanoseconds or in single
 /// precision; a difference that could be a step of its own is never accepted, unless it is rounding in double precision.
-pub(crate) fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
+fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
     let magnitude = a.abs().max(b.abs());
     (TIME_ROUNDING * magnitude).max((SINGLE_PRECISION * magnitude.max(1.0)).min(PART_OF_STEP * step))
 }
@@ -219,20 +219,4 @@ fn check_order<S: Slave>(variable: &Variable<S>, order: i32, highest: u32) -> Ca
         value: format!("derivative of order {order}"),
         bound: format!("allowed: 1 to {highest}"),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::time_tolerance;
-
-    #[test]
-    fn the_tolerance_takes_rounding_and_the_clocks_of_masters_but_no_step() {
-        assert!(time_tolerance(0.3, 0.1 + 0.2, 0.1) > 1e-16);
-        assert!(time_tolerance(100.0, 100.0, 1e-5) >= 0.5e-9, "nanoseconds");
-        assert_eq!(time_tolerance(100.0, 99.9, 0.01), 100.0 * f64::from(2.0 * f32::EPSILON), "single precision");
-        for step in [1e-12, 1e-6, 1e-3] {
-            assert_eq!(time_tolerance(1.0, 1.0, step), (0.1 * step).min(f64::from(2.0 * f32::EPSILON)));
-        }
-        assert!(time_tolerance(0.0, 0.0, 1e-3) <= 1e-6);
-    }
 }
