@@ -90,9 +90,13 @@ impl CouplingSummary {
     }
 }
 
-/// The work of the mechanics as both sides sum it, J.
+/// Steps of a run, and the work of the mechanics as both sides sum it, J.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Books {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps tried and undone.
+    pub rejected: u64,
     /// By the circuit.
     pub circuit: f64,
     /// By the harvester.
@@ -109,14 +113,14 @@ impl Books {
         self.moved += by_circuit.abs();
     }
 
-    /// The sums beside the number of steps done and undone.
-    pub(super) fn summary(&self, coupling: &Coupling, steps: u64, rejected: u64) -> CouplingSummary {
+    /// The sums under `coupling`.
+    pub(super) fn summary(&self, coupling: &Coupling) -> CouplingSummary {
         let residual = self.circuit - self.harvester;
         CouplingSummary {
             master: coupling.method,
             tolerance: coupling.tolerance,
-            steps,
-            rejected,
+            steps: self.steps,
+            rejected: self.rejected,
             circuit_work: self.circuit,
             harvester_work: self.harvester,
             residual,

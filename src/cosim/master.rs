@@ -56,8 +56,6 @@ pub struct Master {
     coupling: Coupling,
     control: Option<StepControl>,
     books: Books,
-    steps: u64,
-    rejected: u64,
 }
 
 /// A communication point with the data for the next step.
@@ -100,18 +98,8 @@ impl Master {
         }
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
         let control = coupling.tolerance.map(|tolerance| StepControl::new(tolerance, scenario.step));
-        let scenario = scenario.clone();
-        Ok(Self {
-            harvester,
-            circuits,
-            schedule,
-            scenario,
-            coupling,
-            control,
-            books: Books::default(),
-            steps: 0,
-            rejected: 0,
-        })
+        let (scenario, books) = (scenario.clone(), Books::default());
+        Ok(Self { harvester, circuits, schedule, scenario, coupling, control, books })
     }
 
     /// Runs to the end, showing each communication point to `observers`.
@@ -150,7 +138,7 @@ impl Master {
             voltage_gain: point.harvester.voltage_gain(),
             energy_eq13: point.harvester.energy_eq13(),
         };
-        let coupling = self.books.summary(&self.coupling, self.steps, self.rejected);
+        let coupling = self.books.summary(&self.coupling);
         let balance = energies
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
@@ -185,7 +173,7 @@ impl Master {
         let knot = from.harvester.next_knot();
         let Some(mut control) = self.control else {
             let knot = if self.coupling.method == Method::Plain { f64::INFINITY } else { knot };
-            self.steps += 1;
+            self.books.steps += 1;
             return self.step(from, self.schedule.next(from.time, knot));
         };
         self.save()?;
@@ -198,10 +186,10 @@ impl Master {
             let shortest = next <= self.schedule.within(from.time, 0.0, knot);
             if control.accepts(to.step, error) || shortest {
                 self.control = Some(control);
-                self.steps += 1;
+                self.books.steps += 1;
                 return Ok(to);
             }
-            self.rejected += 1;
+            self.books.rejected += 1;
             self.restore()?;
         }
     }

@@ -6,7 +6,7 @@ use super::CircuitSample;
 use crate::ngspice::Waveforms;
 
 /// The mechanics: impacts and their gains by the paper's equations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct MechanicsSummary {
     /// Impacts of the run.
     pub impacts: i32,

@@ -265,14 +265,7 @@ mod tests {
         let left: Vec<f64> = time.iter().map(|&t| 15e-12 * bump(t).max(bump(t - 0.4))).collect();
         let right = vec![15e-12; time.len()];
         let impact = |time| MembraneImpact { time, side: 0, ratio: 1.4 };
-        let summary = MechanicsSummary {
-            impacts: 2,
-            events: 2,
-            average_voltage_gain: 0.0,
-            average_power_eq13: 0.0,
-            voltage_gain: 0.0,
-            energy_eq13: 0.0,
-        };
+        let summary = MechanicsSummary { impacts: 2, events: 2, ..MechanicsSummary::default() };
         MechanicalRun {
             table: CapacitanceTable::new(&time, &left, &right).unwrap(),
             summary,

@@ -10,12 +10,12 @@ use videg_report::{Figure, Panel, Series, Style, Table};
 
 /// A stage in numbers, SI.
 struct Stage {
-    radius: Option<f64>,
+    /// NaN where the membrane is no disc.
+    radius: f64,
     area: f64,
     thickness: f64,
     capacitance: f64,
     voltage: f64,
-    charge: f64,
 }
 
 /// Makes the table.
@@ -26,7 +26,7 @@ pub(super) fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
         Finding::new("Section 2.2", quantity, "mm", videg).printed(paper).agrees_if((videg - paper).abs() < 1e-9)
     };
     let findings = vec![
-        printed("R_2 = lambda R_1", 6.3, 1e3 * second.radius.unwrap_or(f64::NAN)),
+        printed("R_2 = lambda R_1", 6.3, 1e3 * second.radius),
         printed("h_2 = h_1 / lambda^2", 0.25, 1e3 * second.thickness),
         Finding::new("Table 1", "largest U_DE4 of fig14, Eq. (12)", "V", fourth.voltage)
             .reason("the paper's table has symbols only"),
@@ -71,33 +71,32 @@ fn stages(study: &Study<'_>) -> Result<[Stage; 4], PaperError> {
         ],
     )?;
     let peak = peak::stage_3(study)?;
-    let stage = |radius: Option<f64>, area: f64, thickness: f64, capacitance: f64, voltage: f64| Stage {
+    let (a1, a2) = (PI * r1 * r1, PI * r2 * r2);
+    let stages = [
+        [r1, a1, h1, VACUUM_PERMITTIVITY * permittivity * a1 / h1, 0.0],
+        [r2, a2, h2, c2, bias],
+        [f64::NAN, peak.area_ratio * a2, h2 / peak.area_ratio, peak.capacitance, bias],
+        [r2, a2, h2, c2, peak.capacitance / c2 * bias],
+    ];
+    Ok(stages.map(|[radius, area, thickness, capacitance, voltage]| Stage {
         radius,
         area,
         thickness,
         capacitance,
         voltage,
-        charge: capacitance * voltage,
-    };
-    let (a1, a2) = (PI * r1 * r1, PI * r2 * r2);
-    Ok([
-        stage(Some(r1), a1, h1, VACUUM_PERMITTIVITY * permittivity * a1 / h1, 0.0),
-        stage(Some(r2), a2, h2, c2, bias),
-        stage(None, peak.area_ratio * a2, h2 / peak.area_ratio, peak.capacitance, bias),
-        stage(Some(r2), a2, h2, c2, peak.capacitance / c2 * bias),
-    ])
+    }))
 }
 
 /// A heading with unit, and the value under it.
 type StageColumn = (&'static str, fn(&Stage) -> f64);
 
 const COLUMNS: [StageColumn; 6] = [
-    ("radius (mm)", |s| 1e3 * s.radius.unwrap_or(f64::NAN)),
+    ("radius (mm)", |s| 1e3 * s.radius),
     ("area (mm^2)", |s| 1e6 * s.area),
     ("thickness (mm)", |s| 1e3 * s.thickness),
     ("capacitance (pF)", |s| 1e12 * s.capacitance),
     ("voltage (V)", |s| s.voltage),
-    ("charge (nC)", |s| 1e9 * s.charge),
+    ("charge (nC)", |s| 1e9 * (s.capacitance * s.voltage)),
 ];
 
 fn table(stages: &[Stage; 4]) -> Table {
