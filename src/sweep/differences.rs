@@ -7,30 +7,11 @@ use serde_json::{Map, Value};
 const LONGEST: usize = 80;
 const MOST: usize = 8;
 
-/// A setting that differs.
-pub(super) struct Difference {
-    /// The setting, as a user types it.
-    what: String,
-    /// Its value in the one document.
-    there: String,
-    /// Its value in the other.
-    here: String,
-}
-
-impl Difference {
-    /// For a user who asks for another sweep than is there.
-    pub fn was_is(&self) -> String {
-        format!("{} was {}, is {}", self.what, self.there, self.here)
-    }
-
-    /// For a user who has both.
-    pub fn is_not(&self) -> String {
-        format!("{} is {}, not {}", self.what, self.here, self.there)
-    }
-}
+/// A setting that differs, as a user types it, with its values in the one document and in the other.
+type Difference = [String; 3];
 
 /// The differences of two documents of sweeps, each in the words of `said`.
-pub(super) fn told(there: &str, here: &str, said: fn(&Difference) -> String) -> String {
+pub(super) fn told(there: &str, here: &str, said: impl Fn(&Difference) -> String) -> String {
     let found = differences(there, here);
     let shown = found.iter().take(MOST).map(said);
     let more = found.len().checked_sub(MOST).filter(|more| *more > 0).map(|more| format!("and {more} more"));
@@ -44,7 +25,7 @@ fn differences(there: &str, here: &str) -> Vec<Difference> {
     let read = |text| serde_json::from_str::<Map<String, Value>>(text).ok();
     let (Some(there), Some(here)) = (read(there), read(here)) else {
         let [there, here] = ["no document of a sweep", "one"].map(str::to_owned);
-        return vec![Difference { what: "sweep.json".to_owned(), there, here }];
+        return vec![["sweep.json".to_owned(), there, here]];
     };
     let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
     let differ = keys.filter(|key| there.get(*key) != here.get(*key));
@@ -68,7 +49,7 @@ fn of_key(key: &str, there: Option<&Value>, here: Option<&Value>) -> Vec<Differe
             return found;
         }
     }
-    vec![Difference { what, there: shown(there), here: shown(here) }]
+    vec![[what, shown(there), shown(here)]]
 }
 
 /// The differences between lists of things with names.
@@ -80,7 +61,7 @@ fn of_named(what: &str, there: &[Value], here: &[Value]) -> Vec<Difference> {
         let name = item.get("name")?;
         let (there, here) = (found(there, name), found(here, name));
         let what = format!("{what} {}", shown(Some(name)));
-        (there != here).then(|| Difference { what, there: shown(there.as_ref()), here: shown(here.as_ref()) })
+        (there != here).then(|| [what, shown(there.as_ref()), shown(here.as_ref())])
     });
     differences.collect()
 }
@@ -182,7 +163,7 @@ mod tests {
             ),
             ("{", "{}", "sweep.json was no document of a sweep, is one"),
         ] {
-            assert_eq!(told(there, here, Difference::was_is), expected);
+            assert_eq!(told(there, here, |[what, was, is]| format!("{what} was {was}, is {is}")), expected);
         }
     }
 
@@ -192,7 +173,7 @@ mod tests {
             let one = |k: usize| format!("{{\"name\": \"p{k}\", \"value\": \"{}\"}}", value.repeat(1000));
             format!("{{\"settings\": [{}]}}", (0..100).map(one).collect::<Vec<_>>().join(","))
         };
-        let said = told(&settings("1"), &settings("2"), Difference::is_not);
+        let said = told(&settings("1"), &settings("2"), |[what, there, here]| format!("{what} is {here}, not {there}"));
         assert!(said.starts_with("--set p0 is 2222") && said.ends_with("; and 92 more") && said.len() < 1700, "{said}");
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::differences::{Difference, told};
+use super::differences::told;
 use super::document::{DOCUMENT, identity};
 use super::files::{remove, rename, write_synced};
 use super::unfinished::{Unfinished, complete_name, unfinished};
@@ -69,7 +69,7 @@ pub(super) fn check_document(folder: &Path, document: &str) -> Result<(), SweepE
 }
 
 fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError {
-    let differences = told(there, here, Difference::was_is);
+    let differences = told(there, here, |[what, was, is]| format!("{what} was {was}, is {is}"));
     let reason = format!("it belongs to another sweep: {differences}; {way_out}");
     SweepError::content(&folder.join(DOCUMENT), reason)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::differences::{Difference, told};
+use super::differences::told;
 use super::document::{self, DOCUMENT, Kept};
 use super::folder::{self, RESULTS};
 use super::run::Report;
@@ -71,7 +71,8 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
             None => first = Some(text),
             Some(first) if *first == text => {}
             Some(first) => {
-                let (other, differences) = (folders[0].display(), told(first, &text, Difference::is_not));
+                let differences = told(first, &text, |[what, there, here]| format!("{what} is {here}, not {there}"));
+                let other = folders[0].display();
                 let reason = format!("it belongs to another sweep than {other}: {differences}");
                 return Err(SweepError::content(&path, reason));
             }
