@@ -123,11 +123,11 @@ impl CapacitanceTable {
 
     /// Last rows of pieces of at least `length`, s, but for the last one, which may be half as long.
     pub(super) fn pieces(&self, length: f64) -> Vec<usize> {
-        let (mut ends, mut due, until) = (Vec::new(), length, self.until());
+        let (mut ends, mut earliest, until) = (Vec::new(), length, self.until());
         for (row, &time) in self.time.iter().enumerate() {
-            if time >= due && until - time >= 0.5 * length {
+            if time >= earliest && until - time >= 0.5 * length {
                 ends.push(row);
-                due = time + length;
+                earliest = time + length;
             }
         }
         ends.push(self.len().saturating_sub(1));

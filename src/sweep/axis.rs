@@ -188,8 +188,8 @@ fn ranged(variable: &Variable, range: &Range) -> Result<Values, String> {
 fn integers(range: &Range) -> Result<Values, String> {
     let Range { from, to, count, scale } = *range;
     #[allow(clippy::cast_possible_truncation)] // compared with what it was
-    let whole = |number: f64| Some(number as i32).filter(|whole| f64::from(*whole) == number);
-    let (Some(from), Some(to)) = (whole(from), whole(to)) else {
+    let integer = |number: f64| Some(number as i32).filter(|integer| f64::from(*integer) == number);
+    let (Some(from), Some(to)) = (integer(from), integer(to)) else {
         return Err(format!("an Integer takes whole numbers of 32 bits, not from {from} to {to}"));
     };
     if scale == Scale::Log {

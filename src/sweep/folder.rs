@@ -89,9 +89,9 @@ fn results(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
     let entries = std::fs::read_dir(folder).map_err(SweepError::file("read", folder))?;
     let is_result = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let whole = complete_name(&name);
+        let complete = complete_name(&name);
         let is_named = |name: &str| name == RESULTS || Shard::of_file_name(name).is_some();
-        is_named(whole.unwrap_or(&name)) && (whole.is_none() || path.metadata().is_ok_and(|file| file.len() > 0))
+        is_named(complete.unwrap_or(&name)) && (complete.is_none() || path.metadata().is_ok_and(|file| file.len() > 0))
     };
     Ok(entries.flatten().map(|entry| entry.path()).filter(is_result).collect())
 }

@@ -32,9 +32,7 @@ fn ngspice() -> Option<Ngspice> {
 }
 
 fn harvester_fmu() -> Fmu {
-    let folder = tempfile::tempdir().unwrap();
-    let paths = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap();
-    Fmu::open(&paths[0]).unwrap()
+    Fmu::open(&build_all(&Options::default()).unwrap()[0]).unwrap()
 }
 
 fn scenario(case: &str, until: f64) -> Scenario {
