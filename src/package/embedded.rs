@@ -54,9 +54,9 @@ fn has_library(archive: &[u8], library: &[u8]) -> bool {
     entries.names().any(|name| name.starts_with("binaries/") && entries.bytes(name) == Some(library))
 }
 
-/// Whether the program is outside of a source tree, none was named, and no other targets are asked for.
+/// Whether the program is outside of a source tree and no other targets are asked for.
 fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
-    around_program.is_none() && options.workspace.is_none() && options.targets.is_empty()
+    around_program.is_none() && options.targets.is_empty()
 }
 
 /// The archives with the added libraries, which replace those inside.
@@ -149,10 +149,8 @@ mod tests {
 
     #[test]
     fn a_source_tree_or_a_target_comes_before_what_is_inside() {
-        let tree = Path::new("tree");
         assert!(takes_embedded(&Options::default(), None));
-        assert!(!takes_embedded(&Options::default(), Some(tree)));
-        assert!(!takes_embedded(&Options { workspace: Some(tree.to_path_buf()), ..Options::default() }, None));
+        assert!(!takes_embedded(&Options::default(), Some(Path::new("tree"))));
         assert!(!takes_embedded(&Options { targets: vec!["win64".to_owned()], ..Options::default() }, None));
     }
 }

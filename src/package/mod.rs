@@ -70,8 +70,6 @@ pub const NO_BUILD: &str = "VIDEG_NO_BUILD";
 pub struct Options {
     /// Folder of the archives.
     pub output: Option<PathBuf>,
-    /// Root of the source tree; found if not given.
-    pub workspace: Option<PathBuf>,
     /// Whether Cargo may be run.
     pub build: bool,
     /// Take the libraries beside the running program as they are, if there are any, even if the source tree has changed since.
@@ -89,15 +87,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
-        Self {
-            output: None,
-            workspace: None,
-            build,
-            as_is: false,
-            targets: Vec::new(),
-            added: Vec::new(),
-            progress: |_| {},
-        }
+        Self { output: None, build, as_is: false, targets: Vec::new(), added: Vec::new(), progress: |_| {} }
     }
 }
 
@@ -140,7 +130,7 @@ fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     if let Some(archives) = embedded::archives(options) {
         return Ok((embedded::with_added(archives, &options.added)?, output(None)));
     }
-    let workspace = options.workspace.clone().or_else(locate::workspace);
+    let workspace = locate::workspace();
     let workspace = workspace.as_deref();
     let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();

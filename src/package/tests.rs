@@ -69,11 +69,9 @@ fn a_description_of_another_model_is_refused() {
 
 #[test]
 fn without_libraries_the_error_says_where_it_looked_and_why_nothing_was_built() {
-    let tree = tree();
-    let workspace = Some(tree.path().to_path_buf());
     // A target that nobody builds, lest its libraries lie about.
     let targets = vec!["i586-pc-windows-msvc".to_owned()];
-    let options = Options { workspace, build: false, targets, ..Options::default() };
+    let options = Options { build: false, targets, ..Options::default() };
     let error = build_all(&options).unwrap_err();
     assert!(matches!(error, PackageError::NoLibrary { .. }), "{error}");
     let text = error.to_string();
