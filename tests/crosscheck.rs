@@ -110,7 +110,7 @@ fn random_circuits_run_to_their_end_and_agree() {
         let arguments = draw::arguments(2026, index);
         let all: Vec<_> = ["crosscheck", "--json"].into_iter().chain(arguments.iter().map(String::as_str)).collect();
         let found = videg(folder.path(), &all, &[]);
-        assert_eq!(draw::verdict(&found), draw::Verdict::Agrees, "{}", arguments.join(" "));
+        assert_eq!(draw::outcome(&found), draw::Outcome::Agrees, "{}", arguments.join(" "));
         assert_eq!(draw::repeated(&found), Vec::<String>::new(), "{}", arguments.join(" "));
     }
 }
@@ -234,7 +234,7 @@ fn where_ngspice_stops_all_solvers_are_reported_up_to_there_and_open_claims_name
     }
     assert_eq!(supply["agreement"]["agree"], true, "{supply}");
     let reasons: Vec<_> = stopped.iter().map(|stop| stop["reason"].as_str().unwrap()).collect();
-    assert_eq!(draw::verdict(&output), draw::Verdict::GaveUp(reasons.join("; ")));
+    assert_eq!(draw::outcome(&output), draw::Outcome::GaveUp(reasons.join("; ")));
     let times: Vec<_> = found["solvers"].as_array().unwrap().iter().map(|solver| solver["reached"].clone()).collect();
     assert_eq!(times, [1.5.into(), 1.5.into(), main["reached"].clone(), 1.5.into()]);
     let said = said(&output);

@@ -32,7 +32,7 @@ pub fn arguments(seed: u64, index: u64) -> Vec<String> {
 
 /// What a crosscheck comes to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Outcome {
     /// ngspice ran to the end, and all solvers agree.
     Agrees,
     /// ngspice ran to the end, and some do not.
@@ -43,20 +43,18 @@ pub enum Verdict {
     Broke(String),
 }
 
-impl Verdict {}
-
 /// What a crosscheck with `--json` has come to.
-pub fn verdict(output: &Output) -> Verdict {
+pub fn outcome(output: &Output) -> Outcome {
     let Ok(found) = serde_json::from_slice::<Value>(&output.stdout) else {
         let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-        return Verdict::Broke(format!("{}: {said}", output.status));
+        return Outcome::Broke(format!("{}: {said}", output.status));
     };
     let (stopped, disagree) = (texts(&found["stopped"], "reason"), failed(&found));
     match (output.status.code(), stopped.is_empty(), disagree.is_empty()) {
-        (Some(0), true, true) => Verdict::Agrees,
-        (Some(1), _, false) => Verdict::Disagrees(disagree.join("; ")),
-        (Some(1), false, true) => Verdict::GaveUp(stopped.join("; ")),
-        _ => Verdict::Broke(format!("{}, which its report does not explain", output.status)),
+        (Some(0), true, true) => Outcome::Agrees,
+        (Some(1), _, false) => Outcome::Disagrees(disagree.join("; ")),
+        (Some(1), false, true) => Outcome::GaveUp(stopped.join("; ")),
+        _ => Outcome::Broke(format!("{}, which its report does not explain", output.status)),
     }
 }
 

@@ -10,24 +10,24 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use anyhow::Context as _;
-use draw::Verdict;
+use draw::Outcome;
 
 /// What a run has come to, and what was changed on the way.
 struct Ran {
-    verdict: Verdict,
+    outcome: Outcome,
     repeated: Vec<String>,
     /// The check that uses up most of its tolerance.
     closest: Option<(f64, String)>,
 }
 
 impl Ran {
-    /// The verdict as a word, and what is wrong.
+    /// The outcome as a word, and what is wrong.
     fn words(&self) -> (&'static str, &str) {
-        match &self.verdict {
-            Verdict::Agrees => ("agrees", ""),
-            Verdict::Disagrees(reason) => ("DISAGREES", reason),
-            Verdict::GaveUp(reason) => ("gave up", reason),
-            Verdict::Broke(reason) => ("BROKE", reason),
+        match &self.outcome {
+            Outcome::Agrees => ("agrees", ""),
+            Outcome::Disagrees(reason) => ("DISAGREES", reason),
+            Outcome::GaveUp(reason) => ("gave up", reason),
+            Outcome::Broke(reason) => ("BROKE", reason),
         }
     }
 }
@@ -63,7 +63,7 @@ fn main() -> anyhow::Result<ExitCode> {
 fn run(program: &Path, folder: &Path, arguments: &[String]) -> std::io::Result<Ran> {
     let output =
         Command::new(program).args(["crosscheck", "--json", "--output"]).arg(folder).args(arguments).output()?;
-    Ok(Ran { verdict: draw::verdict(&output), repeated: draw::repeated(&output), closest: draw::closest(&output) })
+    Ok(Ran { outcome: draw::outcome(&output), repeated: draw::repeated(&output), closest: draw::closest(&output) })
 }
 
 fn show(index: u64, arguments: &[String], found: &Ran) {

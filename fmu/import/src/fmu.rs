@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 
-use super::archive::{Archive, Limits};
+use super::archive::Archive;
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
 use super::instance::Instance;
@@ -24,21 +24,13 @@ pub struct Fmu {
 }
 
 impl Fmu {
-    /// Opens an FMU with the default limits: reads it, unpacks it into a temporary folder and loads its library.
+    /// Opens an FMU: reads it, unpacks it into a temporary folder and loads its library.
     /// Loading runs code of the FMU.
     ///
     /// # Errors
     /// When the archive is broken or unsafe, the description unusable, or the library missing or of another interface.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        Self::open_with(path, Limits::default())
-    }
-
-    /// As [`Fmu::open`], with other limits.
-    ///
-    /// # Errors
-    /// As [`Fmu::open`].
-    pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
-        Self::load(path.as_ref(), limits, |_, _| None)
+        Self::load(path.as_ref(), |_, _| None)
     }
 
     /// As [`Fmu::open`], but each instance runs in a process of its own.
@@ -60,11 +52,11 @@ impl Fmu {
         is_trusted: impl FnOnce(&str, &Path) -> bool,
     ) -> Result<Self> {
         let decide = |identifier: &str, library: &Path| (!is_trusted(identifier, library)).then(|| isolation.clone());
-        Self::load(path.as_ref(), Limits::default(), decide)
+        Self::load(path.as_ref(), decide)
     }
 
-    fn load(path: &Path, limits: Limits, decide: impl FnOnce(&str, &Path) -> Option<Isolation>) -> Result<Self> {
-        let mut archive = Archive::open_with(path, limits)?;
+    fn load(path: &Path, decide: impl FnOnce(&str, &Path) -> Option<Isolation>) -> Result<Self> {
+        let mut archive = Archive::open(path)?;
         let description = archive.description()?;
         let identifier = &description.co_simulation.model_identifier;
         let entry = library::entry_name(HOST_PLATFORM, identifier);

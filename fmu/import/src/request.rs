@@ -8,98 +8,37 @@ use serde::{Deserialize, Serialize};
 /// An array: the caller's, or in a worker its own.
 type Array<'a, T> = Cow<'a, [T]>;
 
-/// A function with its arguments. States are addresses, or in messages to a worker numbers; 0 is none.
+/// A function with its arguments; the first three are for workers alone. States are addresses, or in messages to a worker numbers;
+/// 0 is none.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request<'a> {
-    /// Makes the instance of a worker.
-    Instantiate {
-        name: CString,
-        guid: CString,
-        resources: CString,
-        debug: bool,
-    },
-    /// Frees it.
+    Instantiate { name: CString, guid: CString, resources: CString, debug: bool },
     Free,
-    /// Unloads its library.
-    Unload,
-    SetDebugLogging {
-        on: bool,
-        categories: Array<'a, CString>,
-    },
-    SetupExperiment {
-        tolerance: Option<f64>,
-        start: f64,
-        stop: Option<f64>,
-    },
+    Unload, // the library
+    SetDebugLogging { on: bool, categories: Array<'a, CString> },
+    SetupExperiment { tolerance: Option<f64>, start: f64, stop: Option<f64> },
     EnterInitializationMode,
     ExitInitializationMode,
     Terminate,
     Reset,
-    DoStep {
-        time: f64,
-        step: f64,
-    },
-    GetReal {
-        references: Array<'a, u32>,
-    },
-    GetInteger {
-        references: Array<'a, u32>,
-    },
-    GetBoolean {
-        references: Array<'a, u32>,
-    },
-    GetString {
-        references: Array<'a, u32>,
-    },
-    SetReal {
-        references: Array<'a, u32>,
-        values: Array<'a, f64>,
-    },
-    SetInteger {
-        references: Array<'a, u32>,
-        values: Array<'a, i32>,
-    },
-    SetBoolean {
-        references: Array<'a, u32>,
-        values: Array<'a, i32>,
-    },
-    SetString {
-        references: Array<'a, u32>,
-        values: Array<'a, CString>,
-    },
-    SetInputDerivatives {
-        references: Array<'a, u32>,
-        orders: Array<'a, i32>,
-        values: Array<'a, f64>,
-    },
-    GetOutputDerivatives {
-        references: Array<'a, u32>,
-        orders: Array<'a, i32>,
-    },
-    DirectionalDerivative {
-        unknowns: Array<'a, u32>,
-        knowns: Array<'a, u32>,
-        seed: Array<'a, f64>,
-    },
-    GetState {
-        state: u64,
-    },
-    SetState {
-        state: u64,
-    },
-    FreeState {
-        state: u64,
-    },
-    StateSize {
-        state: u64,
-    },
-    SerializeState {
-        state: u64,
-        size: u64,
-    },
-    DeserializeState {
-        bytes: Array<'a, u8>,
-    },
+    DoStep { time: f64, step: f64 },
+    GetReal { references: Array<'a, u32> },
+    GetInteger { references: Array<'a, u32> },
+    GetBoolean { references: Array<'a, u32> },
+    GetString { references: Array<'a, u32> },
+    SetReal { references: Array<'a, u32>, values: Array<'a, f64> },
+    SetInteger { references: Array<'a, u32>, values: Array<'a, i32> },
+    SetBoolean { references: Array<'a, u32>, values: Array<'a, i32> },
+    SetString { references: Array<'a, u32>, values: Array<'a, CString> },
+    SetInputDerivatives { references: Array<'a, u32>, orders: Array<'a, i32>, values: Array<'a, f64> },
+    GetOutputDerivatives { references: Array<'a, u32>, orders: Array<'a, i32> },
+    DirectionalDerivative { unknowns: Array<'a, u32>, knowns: Array<'a, u32>, seed: Array<'a, f64> },
+    GetState { state: u64 },
+    SetState { state: u64 },
+    FreeState { state: u64 },
+    StateSize { state: u64 },
+    SerializeState { state: u64, size: u64 },
+    DeserializeState { bytes: Array<'a, u8> },
     LastSuccessfulTime,
     Terminated,
 }

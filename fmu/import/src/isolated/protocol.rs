@@ -112,8 +112,8 @@ impl Given {
         Self::Texts(texts.into_iter().flat_map(CString::into_bytes_with_nul).collect())
     }
 
-    /// Puts the values into `results`; whether they are of its kind, and as many.
-    pub fn put(self, results: Results<'_>) -> bool {
+    /// Stores the values in `results`; whether they are of its kind, and as many.
+    pub fn store(self, results: Results<'_>) -> bool {
         fn fill<T>(into: &mut [T], values: impl ExactSizeIterator<Item = T>) -> bool {
             let fits = values.len() == into.len();
             into.iter_mut().zip(values).for_each(|(place, value)| *place = value);
@@ -260,9 +260,9 @@ mod tests {
     fn values_of_another_kind_or_number_and_cut_texts_are_none() {
         let texts = vec![c"one".to_owned(), CString::default(), c"three".to_owned()];
         let mut found = vec![CString::default(); 3];
-        assert!(Given::texts(texts.clone()).put(Results::Texts(&mut found)));
+        assert!(Given::texts(texts.clone()).store(Results::Texts(&mut found)));
         assert_eq!(found, texts);
-        assert!(Given::texts(Vec::new()).put(Results::Texts(&mut [])));
+        assert!(Given::texts(Vec::new()).store(Results::Texts(&mut [])));
         for (given, results) in [
             (Given::texts(texts), Results::Texts(&mut found[..2])),
             (Given::Texts(b"one\0tw".to_vec()), Results::Texts(&mut [CString::default(), CString::default()])),
@@ -270,7 +270,7 @@ mod tests {
             (Given::Reals(vec![1.0]), Results::Integers(&mut [0])),
             (Given::Nothing, Results::Number(&mut 0)),
         ] {
-            assert!(!given.put(results));
+            assert!(!given.store(results));
         }
     }
 

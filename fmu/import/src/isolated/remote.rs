@@ -78,7 +78,7 @@ impl Remote {
     pub fn call(&self, request: &Request<'_>, results: Results<'_>) -> fmi2Status {
         let state = &mut *self.0.borrow_mut();
         let (status, given) = state.call(request);
-        if !is_done(status) || given.put(results) {
+        if !is_done(status) || given.store(results) {
             return status;
         }
         state.end(request, How::Garbled("something else than the values asked for".to_owned()))
