@@ -12,29 +12,19 @@ use videg_model::{Case, Harvester, ModelError, Parameters};
 /// Runs of which the median is taken.
 const REPETITIONS: usize = 5;
 
-/// What is counted.
-#[derive(Clone, Copy)]
-enum Unit {
-    Event,
-    Hold,
-}
-
 /// A row of the table.
 struct Row {
     varied: &'static str,
     value: String,
     count: u64,
-    unit: Unit,
+    /// What is counted.
+    unit: &'static str,
     seconds: f64,
 }
 
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { varied, value, count, seconds, .. } = self;
-        let unit = match self.unit {
-            Unit::Event => "event",
-            Unit::Hold => "hold interval",
-        };
+        let Self { varied, value, count, unit, seconds } = self;
         let each = 1e9 * seconds / *count as f64;
         write!(f, "| {varied} | {value} | {count} | {:.3} | {each:.2} per {unit} |", 1e3 * seconds)
     }
@@ -66,7 +56,7 @@ fn events(parameters: &Parameters, until: f64) -> Result<u64, ModelError> {
 
 fn row_of_events(varied: &'static str, value: String, p: &Parameters, until: f64) -> Result<Row, ModelError> {
     let (seconds, count) = timed(|| events(p, until))?;
-    Ok(Row { varied, value, count, unit: Unit::Event, seconds })
+    Ok(Row { varied, value, count, unit: "event", seconds })
 }
 
 fn over_simulated_time() -> impl Iterator<Item = Result<Row, ModelError>> {
@@ -124,7 +114,7 @@ fn row_of_holds(varied: &'static str, value: String, threads: usize, runs: i32) 
     let (seconds, ()) = timed(|| ensemble_on(threads, runs))?;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number of intervals
     let holds = (f64::from(runs) / noisy(0).noise_hold).round() as u64;
-    Ok(Row { varied, value, count: holds, unit: Unit::Hold, seconds })
+    Ok(Row { varied, value, count: holds, unit: "hold interval", seconds })
 }
 
 fn over_ensemble_size() -> impl Iterator<Item = Result<Row, ModelError>> {

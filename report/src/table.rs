@@ -4,14 +4,12 @@
 #[derive(Debug, Clone, Default)]
 #[must_use]
 pub struct Table {
-    /// From left to right.
-    pub columns: Vec<Column>,
-    /// From top to bottom.
-    pub rows: Vec<Vec<Cell>>,
+    pub(super) columns: Vec<Column>,
+    pub(super) rows: Vec<Vec<Cell>>,
 }
 
 impl Table {
-    /// A table without rows.
+    /// A table without rows; its columns from left to right.
     pub fn new(columns: impl IntoIterator<Item = Column>) -> Self {
         Self { columns: columns.into_iter().collect(), rows: Vec::new() }
     }
@@ -26,10 +24,8 @@ impl Table {
 /// A column of a table.
 #[derive(Debug, Clone)]
 pub struct Column {
-    /// The heading.
-    pub heading: String,
-    /// Whether its cells are set to the right, in figures of equal width.
-    pub is_number: bool,
+    pub(super) heading: String,
+    pub(super) is_number: bool,
 }
 
 impl Column {
@@ -38,7 +34,7 @@ impl Column {
         Self { heading: heading.into(), is_number: false }
     }
 
-    /// A column of numbers.
+    /// A column of numbers: set to the right, in figures of equal width.
     pub fn numbers(heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), is_number: true }
     }
@@ -47,12 +43,9 @@ impl Column {
 /// What stands in a row under one heading.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Cell {
-    /// Plain text.
-    pub text: String,
-    /// Set as a badge of this colour.
-    pub tone: Option<Tone>,
-    /// Links to the section of this id.
-    pub target: Option<String>,
+    pub(super) text: String,
+    pub(super) tone: Option<Tone>,
+    pub(super) target: Option<String>,
 }
 
 impl Cell {

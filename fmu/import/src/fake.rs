@@ -219,16 +219,20 @@ unsafe extern "C" fn get_real_status(c: fmi2Component, kind: fmi2StatusKind, val
     fmi2OK
 }
 
-unsafe extern "C" fn plain(_: fmi2Component) -> fmi2Status {
-    fmi2OK
+/// Functions that return a status and do nothing.
+macro_rules! only_status {
+    ($($name:ident($($argument:ty),*) = $status:expr;)*) => {
+        $(unsafe extern "C" fn $name($(_: $argument),*) -> fmi2Status { $status })*
+    };
+}
+only_status! {
+    plain(fmi2Component) = fmi2OK;
+    setup_experiment(fmi2Component, i32, f64, f64, i32, f64) = fmi2OK;
+    get_directional_derivative(fmi2Component, *const u32, usize, *const u32, usize, *const f64, *mut f64) = fmi2Error;
 }
 
 unsafe extern "C" fn reset(c: fmi2Component) -> fmi2Status {
     unsafe { of(c).reals = [0.0; 5] };
-    fmi2OK
-}
-
-unsafe extern "C" fn setup_experiment(_: fmi2Component, _: i32, _: f64, _: f64, _: i32, _: f64) -> fmi2Status {
     fmi2OK
 }
 
@@ -242,18 +246,6 @@ unsafe extern "C" fn set_debug_logging(
         unsafe { of(c).text = CStr::from_ptr(*names).to_owned() };
     }
     fmi2OK
-}
-
-unsafe extern "C" fn get_directional_derivative(
-    _: fmi2Component,
-    _: *const u32,
-    _: usize,
-    _: *const u32,
-    _: usize,
-    _: *const f64,
-    _: *mut f64,
-) -> fmi2Status {
-    fmi2Error
 }
 
 unsafe extern "C" fn no_status<T>(_: fmi2Component, _: fmi2StatusKind, _: *mut T) -> fmi2Status {

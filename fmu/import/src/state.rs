@@ -48,8 +48,7 @@ impl Instance {
     /// As [`Instance::save_state`], and when the older state belongs to another instance.
     pub fn save_state_into(&self, state: &mut FmuState) -> Result<()> {
         let name = "fmi2GetFMUstate";
-        self.require_state(name)?;
-        self.require_own(name, state)?;
+        self.require_state(name, state)?;
         self.core().call(&Request::GetState { state: state.state }, Results::Number(&mut state.state))
     }
 
@@ -59,8 +58,7 @@ impl Instance {
     /// As [`Instance::save_state_into`].
     pub fn restore_state(&mut self, state: &FmuState) -> Result<()> {
         let name = "fmi2SetFMUstate";
-        self.require_state(name)?;
-        self.require_own(name, state)?;
+        self.require_state(name, state)?;
         self.core().done(&Request::SetState { state: state.state })
     }
 
@@ -93,9 +91,10 @@ impl Instance {
         Ok(state)
     }
 
-    fn require_state(&self, function: &'static str) -> Result<()> {
+    fn require_state(&self, function: &'static str, state: &FmuState) -> Result<()> {
         let supported = self.description().co_simulation.can_get_and_set_fmu_state;
-        self.core().require(function, supported, "canGetAndSetFMUstate")
+        self.core().require(function, supported, "canGetAndSetFMUstate")?;
+        self.require_own(function, state)
     }
 
     fn require_serialization(&self, function: &'static str) -> Result<()> {

@@ -133,7 +133,7 @@ impl Process {
 
     /// Ends it; what became of it is `how`, or its own end where that comes first.
     fn end(&mut self, how: How) -> How {
-        if matches!(how, How::Silent) && self.farewell() {
+        if matches!(how, How::Silent) && matches!(self.group.wait(Some(FAREWELL)), Ok(true)) {
             return self.ended();
         }
         let _ = self.group.end();
@@ -143,11 +143,6 @@ impl Process {
     /// Its own end, and that of its group.
     fn ended(&mut self) -> How {
         self.group.end().map_or_else(|cause| How::Refused(cause.to_string()), How::Ended)
-    }
-
-    /// Whether a worker that has closed its pipes ends by itself.
-    fn farewell(&mut self) -> bool {
-        matches!(self.group.wait(Some(FAREWELL)), Ok(true))
     }
 
     /// The end of what it printed.
