@@ -58,13 +58,13 @@ impl Slave for Harvesting {
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
         let circuit = self.circuit().filter(|circuit| *circuit.parameters() == self.settings.parameters());
-        out.put_parameters(self)?;
-        out.put(&(self.capacitance, self.rate, circuit.map(Circuit::state)))
+        out.write_parameters(self)?;
+        out.write(&(self.capacitance, self.rate, circuit.map(Circuit::state)))
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         let mut slave = Self::new();
-        from.take_parameters(&mut slave)?;
+        from.read_parameters(&mut slave)?;
         let state: Option<State>;
         (slave.capacitance, slave.rate, state) = from.take()?;
         let mut values = slave.capacitance.into_iter().chain(slave.rate.into_iter().flatten());

@@ -106,7 +106,7 @@ static OUTPUTS: [V; 14] = outputs! {
 /// Number of variables.
 const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.len();
 
-/// The whole table; the value reference of a variable is its index.
+/// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS]);
 
 #[cfg(test)]

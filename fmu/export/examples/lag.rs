@@ -66,7 +66,7 @@ impl Slave for Lag {
     }
 
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
-        out.put(&[self.time_constant, self.initial_output, self.input, self.rate, self.output])
+        out.write(&[self.time_constant, self.initial_output, self.input, self.rate, self.output])
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {

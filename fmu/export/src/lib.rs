@@ -83,6 +83,7 @@ mod call_state;
 mod check;
 mod error;
 pub mod ffi;
+mod fingerprint;
 mod fnv;
 mod guid;
 mod info;
@@ -92,6 +93,7 @@ mod macros;
 #[cfg(feature = "model-description")]
 mod model_description;
 mod panics;
+mod parameters;
 #[cfg(feature = "model-description")]
 mod references;
 mod resource;

@@ -9,8 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::fnv::fnv64;
 use crate::guid::Guid;
-use crate::slave::Slave;
-use crate::variable::{AsBoolean, AsInteger, AsReal, Causality, Transfer, Variable};
 
 const MAGIC: [u8; 8] = *b"FMI2RsSt";
 const FORMAT: u32 = 2;
@@ -70,19 +68,9 @@ impl StateWriter {
     ///
     /// # Errors
     /// If the value is of a kind that cannot be written, such as a list of unknown length.
-    pub fn put(&mut self, value: &impl Serialize) -> Result<(), StateError> {
+    pub fn write(&mut self, value: &impl Serialize) -> Result<(), StateError> {
         self.bytes.extend(postcard::to_stdvec(value)?);
         Ok(())
-    }
-
-    /// Writes the parameters of a model in the order of its table: the Reals, then those that choose, count or switch.
-    ///
-    /// # Errors
-    /// As [`put`](Self::put).
-    pub fn put_parameters<S: Slave>(&mut self, slave: &S) -> Result<(), StateError> {
-        let reals: Vec<f64> = parameters().filter_map(|row| AsReal::get(row, slave)).collect();
-        let choices: Vec<i32> = parameters().filter_map(|row| choice(row, slave)).collect();
-        self.put(&(reals, choices))
     }
 
     /// What was written.
@@ -113,29 +101,6 @@ impl<'a> StateReader<'a> {
         Ok(value)
     }
 
-    /// Sets the parameters that [`StateWriter::put_parameters`] wrote. Reals are not checked.
-    ///
-    /// # Errors
-    /// As [`take`](Self::take), or if these are not as many parameters, or no choices.
-    pub fn take_parameters<S: Slave>(&mut self, slave: &mut S) -> Result<(), StateError> {
-        let (reals, choices): (Vec<f64>, Vec<i32>) = self.take()?;
-        let (mut reals, mut choices) = (reals.into_iter(), choices.into_iter());
-        let other_number = || StateError::Invalid("another number of parameters".to_owned());
-        for row in parameters::<S>() {
-            if AsReal::get(row, slave).is_some() {
-                AsReal::set(row, slave, reals.next().ok_or_else(other_number)?);
-            } else if choice(row, slave).is_some() {
-                let item = choices.next().ok_or_else(other_number)?;
-                AsInteger::set(row, slave, item);
-                AsBoolean::set(row, slave, item != 0);
-                if choice(row, slave) != Some(item) {
-                    return Err(StateError::Invalid(format!("{} = {item} is no choice", row.name())));
-                }
-            }
-        }
-        if reals.next().is_none() && choices.next().is_none() { Ok(()) } else { Err(other_number()) }
-    }
-
     /// Ends reading.
     ///
     /// # Errors
@@ -146,15 +111,6 @@ impl<'a> StateReader<'a> {
             left => Err(StateError::LeftOver(left)),
         }
     }
-}
-
-fn parameters<S: Slave>() -> impl Iterator<Item = &'static Variable<S>> {
-    S::variables().iter().filter(|row| row.causality() == Causality::Parameter)
-}
-
-/// An Integer, the item of an enumeration, or a Boolean as 0 or 1.
-fn choice<S: Slave>(row: &Variable<S>, slave: &S) -> Option<i32> {
-    AsInteger::get(row, slave).or_else(|| AsBoolean::get(row, slave))
 }
 
 /// Puts content into the envelope.
@@ -204,7 +160,7 @@ mod tests {
     fn what_is_written_is_read_back_bit_for_bit_and_nothing_else_is() {
         let value = (-0.0, vec![1.0, f64::INFINITY, 5e-324], Some(2.5), "a\0b".to_owned(), i64::MIN);
         let mut out = StateWriter::default();
-        out.put(&value).unwrap();
+        out.write(&value).unwrap();
         let bytes = out.into_bytes();
         let mut from = StateReader::new(&bytes);
         let found: (f64, Vec<f64>, Option<f64>, String, i64) = from.take().unwrap();
@@ -217,7 +173,7 @@ mod tests {
     #[test]
     fn a_count_beyond_the_bytes_is_refused_before_memory_is_taken() {
         let mut out = StateWriter::default();
-        out.put(&(u64::MAX / 8)).unwrap();
+        out.write(&(u64::MAX / 8)).unwrap();
         let bytes = out.into_bytes();
         assert!(matches!(StateReader::new(&bytes).take::<Vec<f64>>(), Err(StateError::Malformed(_))));
     }

@@ -126,7 +126,7 @@ pub trait Slave: Clone + Send + 'static {
     /// [`ModelInfo::can_serialize`] is set.
     ///
     /// # Errors
-    /// What [`StateWriter::put`] says.
+    /// What [`StateWriter::write`] says.
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         let _ = out;
         Err(StateError::Unsupported)

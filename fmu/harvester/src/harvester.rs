@@ -49,8 +49,8 @@ impl Harvester {
         self.model.as_ref().map_or(f64::NAN, value)
     }
 
-    /// A time, s, that the model foresees under the inputs as they are set, the largest double if there is none.
-    pub(crate) fn foresee(&self, time: impl FnOnce(&Model) -> Option<f64>) -> f64 {
+    /// A time, s, that the model predicts under the inputs as they are set, the largest double if there is none.
+    pub(crate) fn predicted(&self, time: impl FnOnce(&Model) -> Option<f64>) -> f64 {
         self.read(|model| time(self.pending(model).as_ref().unwrap_or(model)).unwrap_or(f64::MAX))
     }
 

@@ -34,7 +34,7 @@ enum Known {
 pub(crate) struct Change<'a> {
     slave: &'a Harvester,
     known: Known,
-    /// Of what the model shows, but for the times foreseen at the present point, which take a search; none if the
+    /// Of what the model shows, but for the predicted times at the present point, which take a search; none if the
     /// parameters contradict each other.
     model: Option<Sensitivities>,
 }
@@ -114,15 +114,15 @@ impl Change<'_> {
 
     /// Of the next impact (0) or knot (1), which `shown` reads, under the inputs as they are set.
     pub(crate) fn next(&self, which: usize, shown: fn(&Sensitivities) -> f64) -> f64 {
-        let foreseen = |read: &dyn Fn(&Model) -> f64| {
+        let predicted = |read: &dyn Fn(&Model) -> f64| {
             self.slave.read(|model| read(self.slave.pending(model).as_ref().unwrap_or(model)))
         };
         match self.known {
-            Known::Point([displacement, rate]) => foreseen(&|model| {
+            Known::Point([displacement, rate]) => predicted(&|model| {
                 let by = model.next_times_by_displacement()[which];
                 by[0] * displacement + by[1] * rate
             }),
-            Known::Force => foreseen(&|model| shown(&model.sensitivities())),
+            Known::Force => predicted(&|model| shown(&model.sensitivities())),
             Known::Voltage(_) | Known::Parameter(_) => self.shown(shown),
         }
     }

@@ -15,14 +15,14 @@ impl Harvester {
         let inputs: Inputs = (force, self.voltages, self.voltage_rates, self.start_time);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
         let model = self.model().filter(|model| *model.parameters() == self.parameters);
-        out.put_parameters(self)?;
-        out.put(&(inputs, self.placed, model.map(Model::snapshot)))
+        out.write_parameters(self)?;
+        out.write(&(inputs, self.placed, model.map(Model::snapshot)))
     }
 
     /// What [`Harvester::write`] wrote.
     pub(crate) fn read_from(from: &mut StateReader<'_>) -> Result<Self, StateError> {
         let mut slave = Self::new();
-        from.take_parameters(&mut slave)?;
+        from.read_parameters(&mut slave)?;
         let (inputs, placed, snapshot): (Inputs, bool, Option<Snapshot>) = from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
         // No Set lets these become infinite or NaN.

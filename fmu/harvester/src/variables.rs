@@ -78,7 +78,7 @@ static INPUTS: [V; 3] = [
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
 // Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
-// connections algebraic, but for the electric fields and the times foreseen, which drive nothing; how the force of a
+// connections algebraic, but for the electric fields and the predicted times, which drive nothing; how the force of a
 // step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
 // it all the same.
 
@@ -131,8 +131,8 @@ static RIGHT: [V; 3] = membrane_outputs!(Side::Right, "right");
 /// The continuous states.
 pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
 
-/// What the times foreseen depend on.
-const FORESEEN_FROM: [&str; 7] =
+/// What the predicted times depend on.
+const PREDICTED_FROM: [&str; 7] =
     ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", FORCE, VOLTAGES[0], VOLTAGES[1]];
 
 /// The continuous states, and what depends on them.
@@ -189,20 +189,20 @@ static EVENTS: [V; 8] = [
         "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a period)",
     )
     .discrete()
-    .depends_on(&FORESEEN_FROM)
+    .depends_on(&PREDICTED_FROM)
     .initially_depends_on(&[IMPACT, &[FORCE]])
     .partial_derivative(|slave, known| slave.partial(known, |change| change.next(0, |it| it.next_impact)))
-        .get(|slave| slave.foresee(videg_model::Harvester::next_impact)),
+        .get(|slave| slave.predicted(videg_model::Harvester::next_impact)),
     V::output(
         "pulse.nextKnot",
         "s",
         "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is foreseen",
     )
     .discrete()
-    .depends_on(&FORESEEN_FROM)
+    .depends_on(&PREDICTED_FROM)
     .initially_depends_on(&[IMPACT, BALL, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
     .partial_derivative(|slave, known| slave.partial(known, |change| change.next(1, |it| it.next_knot)))
-        .get(|slave| slave.foresee(videg_model::Harvester::next_knot)),
+        .get(|slave| slave.predicted(videg_model::Harvester::next_knot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])
@@ -387,7 +387,7 @@ const COUNT: usize = PARAMETERS.len()
     + DERIVATIVES.len()
     + TWINS.len();
 
-/// The whole table; the value reference of a variable is its index.
+/// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
     &PARAMETERS,
     &CHOICES,

@@ -81,8 +81,8 @@ functions! {
             let bound = format!("the state takes {} bytes", blob.len());
             return Err(CallError::BadArgument { argument: "size", value: size.to_string(), bound });
         }
-        let mut put = array_out(bytes.cast::<u8>(), blob.len(), "serializedState")?;
-        blob.into_iter().enumerate().for_each(|(k, byte)| put(k, byte));
+        let mut write = array_out(bytes.cast::<u8>(), blob.len(), "serializedState")?;
+        blob.into_iter().enumerate().for_each(|(k, byte)| write(k, byte));
         Ok(())
     };
     fmi2DeSerializeFMUstate DeSerializeFmuState(bytes: *const fmi2Byte, size: usize, state: *mut fmi2FMUstate) |i| {

@@ -154,7 +154,7 @@ impl<S: Slave> Instance<S> {
         &mut self,
         references: &[u32],
         orders: &[i32],
-        mut put: impl FnMut(usize, f64),
+        mut write: impl FnMut(usize, f64),
     ) -> Call {
         for (i, (&reference, &order)) in references.iter().zip(orders).enumerate() {
             let variable = variable::<S>(reference)?;
@@ -165,7 +165,7 @@ impl<S: Slave> Instance<S> {
                 return Err(no_derivatives(variable));
             };
             let order = check_order(variable, order, highest)?;
-            put(i, get(&self.core.model, order));
+            write(i, get(&self.core.model, order));
         }
         Ok(())
     }

@@ -18,7 +18,7 @@ impl<S: Slave> Instance<S> {
         unknowns: &[u32],
         knowns: &[u32],
         seeds: &[f64],
-        mut put: impl FnMut(usize, f64),
+        mut write: impl FnMut(usize, f64),
     ) -> Call {
         if !S::INFO.directional_derivatives {
             return Err(CallError::Unsupported("directional derivatives"));
@@ -38,7 +38,7 @@ impl<S: Slave> Instance<S> {
                     format!("there is no directional derivative of {} under these parameters", unknown.name());
                 return Err(SlaveError::error(message).into());
             }
-            put(i, sum);
+            write(i, sum);
         }
         Ok(())
     }

@@ -70,7 +70,7 @@ impl<S: Slave> Core<S> {
     fn write(&self, out: &mut StateWriter) -> Result<(), StateError> {
         let Self { ref model, state, exchange, time, experiment, dirty, last_step } = *self;
         let record: Record = (state, exchange, time, dirty, experiment, last_step);
-        out.put(&record)?;
+        out.write(&record)?;
         model.write_state(out)
     }
 

@@ -113,40 +113,40 @@ impl<S: Slave> Instance<S> {
     }
 
     /// `fmi2GetContinuousStates`
-    pub(crate) fn get_continuous_states(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
-        self.put_all(count, |(state, _), model| real(state, model), put)
+    pub(crate) fn get_continuous_states(&mut self, count: usize, write: impl FnMut(usize, f64)) -> Call {
+        self.write_all(count, |(state, _), model| real(state, model), write)
     }
 
     /// `fmi2GetDerivatives`
-    pub(crate) fn derivatives(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
-        self.put_all(count, |(_, derivative), model| real(derivative, model), put)
+    pub(crate) fn derivatives(&mut self, count: usize, write: impl FnMut(usize, f64)) -> Call {
+        self.write_all(count, |(_, derivative), model| real(derivative, model), write)
     }
 
     /// `fmi2GetNominalsOfContinuousStates`
-    pub(crate) fn nominals(&mut self, count: usize, put: impl FnMut(usize, f64)) -> Call {
+    pub(crate) fn nominals(&mut self, count: usize, write: impl FnMut(usize, f64)) -> Call {
         let nominal = |variable: &Variable<S>| if let Kind::Real(s) = variable.kind() { s.nominal } else { None };
-        self.put_all(count, |(state, _), _| nominal(state).unwrap_or(1.0), put)
+        self.write_all(count, |(state, _), _| nominal(state).unwrap_or(1.0), write)
     }
 
     /// `fmi2GetEventIndicators`
-    pub(crate) fn event_indicators(&mut self, count: usize, mut put: impl FnMut(usize, f64)) -> Call {
+    pub(crate) fn event_indicators(&mut self, count: usize, mut write: impl FnMut(usize, f64)) -> Call {
         check_count("ni", count, S::INFO.model_exchange.unwrap_or(0))?;
         self.update()?;
-        self.core.model.event_indicators().into_iter().take(count).enumerate().for_each(|(k, value)| put(k, value));
+        self.core.model.event_indicators().into_iter().take(count).enumerate().for_each(|(k, value)| write(k, value));
         Ok(())
     }
 
     /// Something of each continuous state and its derivative.
-    fn put_all(
+    fn write_all(
         &mut self,
         count: usize,
         value: impl Fn((&Variable<S>, &Variable<S>), &S) -> f64,
-        mut put: impl FnMut(usize, f64),
+        mut write: impl FnMut(usize, f64),
     ) -> Call {
         check_count("nx", count, states_and_derivatives(S::variables()).count())?;
         self.update()?;
         let pairs = states_and_derivatives(S::variables()).enumerate();
-        pairs.for_each(|(k, pair)| put(k, value(pair, &self.core.model)));
+        pairs.for_each(|(k, pair)| write(k, value(pair, &self.core.model)));
         Ok(())
     }
 }

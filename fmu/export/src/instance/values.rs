@@ -25,8 +25,8 @@ fn wrong_type<S: Slave>(reference: u32, wanted: &'static str) -> CallError {
 }
 
 impl<S: Slave> Instance<S> {
-    /// `fmi2GetReal` and its kin. `put` takes each value with its position in the call.
-    pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut put: impl FnMut(usize, T::Taken)) -> Call {
+    /// `fmi2GetReal` and its kin. `write` takes each value with its position in the call.
+    pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut write: impl FnMut(usize, T::Taken)) -> Call {
         self.update()?;
         for (i, &reference) in references.iter().enumerate() {
             let variable = variable::<S>(reference)?;
@@ -34,18 +34,18 @@ impl<S: Slave> Instance<S> {
             if variable.may_be_read(S::variables(), self.core.state) == Legality::Tolerated {
                 self.tolerate(variable, "read");
             }
-            put(i, value);
+            write(i, value);
         }
         Ok(())
     }
 
     /// `fmi2GetString`. The strings live in the instance until the next call of this function.
-    pub(crate) fn get_strings(&mut self, references: &[u32], mut put: impl FnMut(usize, *const c_char)) -> Call {
+    pub(crate) fn get_strings(&mut self, references: &[u32], mut write: impl FnMut(usize, *const c_char)) -> Call {
         let mut strings = Vec::with_capacity(references.len());
         self.get::<AsString>(references, |_, text| strings.push(c_string(&text)))?;
         self.strings = strings;
         for (i, string) in self.strings.iter().enumerate() {
-            put(i, string.as_ptr());
+            write(i, string.as_ptr());
         }
         Ok(())
     }

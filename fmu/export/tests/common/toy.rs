@@ -254,7 +254,7 @@ impl Slave for Toy {
 
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {
         self.fail_in("write");
-        out.put(self)
+        out.write(self)
     }
 
     fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {

@@ -9,12 +9,12 @@ use proptest::prelude::*;
 
 const FORCE: &str = "externalForce";
 
-/// Longest step, s: shorter than a period, which is as far as anything is foreseen.
+/// Longest step, s: shorter than a period, which is as far as anything is predicted.
 fn longest_step(frequency: f64) -> f64 {
     0.5 / frequency
 }
 
-/// Steps of a master that goes to the times foreseen, and no farther than `longest`, s, and sets this force anew at some of
+/// Steps of a master that goes to the predicted times, and no farther than `longest`, s, and sets this force anew at some of
 /// its steps. Impacts, rests and releases lie at the ends of steps.
 fn run(host: &Host, until: f64, longest: f64, force: impl Fn(u32) -> f64) -> Result<Tally, TestCaseError> {
     let (mut time, mut tally) = (0.0, Tally::default());
@@ -26,9 +26,9 @@ fn run(host: &Host, until: f64, longest: f64, force: impl Fn(u32) -> f64) -> Res
         if is_set {
             host.set(FORCE, force(step));
         }
-        let foreseen = host.get_all(&["impact.nextTime", "pulse.nextKnot"]);
-        prop_assert!(foreseen.iter().all(|next| *next > time), "{foreseen:?} at {time} s");
-        let next = foreseen[0].min(foreseen[1]).min(time + longest);
+        let predicted = host.get_all(&["impact.nextTime", "pulse.nextKnot"]);
+        prop_assert!(predicted.iter().all(|next| *next > time), "{predicted:?} at {time} s");
+        let next = predicted[0].min(predicted[1]).min(time + longest);
         let (before, rested) = (host.count("impact.count"), host.rests());
         if next - time > 1e-6 {
             check_step(host, time, next, is_set)?;
@@ -75,7 +75,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_impact_rest_or_release_lies_within_a_step_to_the_times_foreseen(
+    fn no_impact_rest_or_release_lies_within_a_step_to_the_predicted_times(
         frequency in 0.5..8.0_f64, amplitude in 0.3..5.0_f64, restitution in prop_oneof![Just(0.0), 0.0..0.95_f64],
         forces in prop::collection::vec(-2.0..2.0_f64, 5), place in prop_oneof![Just(0.0), -0.03..0.03_f64],
         velocity in -0.5..0.5_f64,
@@ -87,7 +87,7 @@ proptest! {
     }
 
     #[test]
-    fn under_phase_noise_neither_does_if_no_step_is_longer_than_what_is_foreseen(
+    fn under_phase_noise_neither_does_if_no_step_is_longer_than_what_is_predicted(
         frequency in 0.5..8.0_f64, amplitude in 0.3..5.0_f64, restitution in 0.0..0.95_f64,
         noise in 0.1..2.0_f64, exponent in -2.5..-0.1_f64, forces in prop::collection::vec(-2.0..2.0_f64, 5),
     ) {
@@ -100,7 +100,7 @@ proptest! {
     }
 
     #[test]
-    fn contacts_that_last_begin_and_end_where_they_are_foreseen(
+    fn contacts_that_last_begin_and_end_where_they_are_predicted(
         frequency in 1.0..6.0_f64, amplitude in 0.3..5.0_f64, restitution in 0.0..1.0_f64,
         forces in prop::collection::vec(-2.0..2.0_f64, 5),
     ) {
@@ -112,8 +112,8 @@ proptest! {
 }
 
 #[test]
-fn a_ball_without_rebound_meets_the_membranes_where_it_is_foreseen_while_it_rests() {
-    // It rests for part of each half period: a master that steps 0.1 s, but to the times foreseen, sees each impact.
+fn a_ball_without_rebound_meets_the_membranes_where_it_is_predicted_while_it_rests() {
+    // It rests for part of each half period: a master that steps 0.1 s, but to the predicted times, sees each impact.
     let host = Host::stepping(&settings(5.0, 3.0, 0.0));
     let tally = run(&host, 10.0, 0.1, |_| 0.0).unwrap();
     assert!(tally.impacts > 95 && tally.rests > 90, "{tally:?}");
@@ -145,7 +145,7 @@ fn while_the_ball_rests_the_next_impact_is_that_after_its_release() {
 }
 
 #[test]
-fn the_times_foreseen_follow_the_force_that_is_set_at_once() {
+fn the_predicted_times_follow_the_force_that_is_set_at_once() {
     let host = Host::stepping(&settings(2.0, 0.5, 0.6));
     host.step(0.0, 0.01);
     let free = host.get("impact.nextTime");
@@ -154,7 +154,7 @@ fn the_times_foreseen_follow_the_force_that_is_set_at_once() {
     assert!(pushed < free, "{pushed} {free}");
     host.step(0.01, 1e-4);
     assert!((host.get("impact.nextTime") - pushed).abs() < 1e-14);
-    // What is foreseen in between leaves no trace in what happens.
+    // What is predicted in between leaves no trace in what happens.
     let twin = Host::stepping(&settings(2.0, 0.5, 0.6));
     twin.step(0.0, 0.01);
     twin.set(FORCE, 3.0);
