@@ -8,12 +8,14 @@ use std::sync::Arc;
 
 use fmu_abi::{fmi2False, fmi2Fatal, fmi2Status};
 
+use super::component::{Arguments, Component, is_done};
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
+use super::isolated::Loss;
 use super::loaded::{Code, Loaded, c_string};
 use super::logging::{Environment, LogRecord, Logging};
 use super::request::{Request, Results};
-use super::slave::{Arguments, Component, Loss, Slave, is_done};
+use super::slave::Slave;
 
 /// A co-simulation slave. Freed on drop, unless the FMU has reported a fatal error.
 ///
@@ -141,7 +143,9 @@ impl Instance {
             Code::Here { functions, .. } => {
                 Component::new(functions, &arguments, &environment).map(|component| Slave::Here(Box::new(component)))
             }
-            Code::Isolated(pool) => pool.instantiate(&arguments, &environment)?,
+            Code::Isolated(pool) => {
+                pool.instantiate(&arguments, &environment)?.map(|remote| Slave::Isolated(Box::new(remote)))
+            }
         };
         let Some(slave) = slave else {
             let (guid, messages) = (loaded.description.guid.clone(), environment.last(0));

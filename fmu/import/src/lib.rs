@@ -38,6 +38,7 @@
 
 mod access;
 mod archive;
+mod component;
 mod description;
 mod error;
 mod fmu;

@@ -21,5 +21,5 @@ pub use bounds::{Bounds, Isolation, WORKER_VERB};
 pub use ending::Ending;
 pub(super) use pool::Pool;
 pub(super) use protocol::LONGEST_STATE;
-pub(super) use remote::Remote;
+pub(super) use remote::{Loss, Remote};
 pub use worker::serve;

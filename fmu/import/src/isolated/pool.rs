@@ -8,9 +8,9 @@ use super::ending::{Ending, How};
 use super::process::Process;
 use super::protocol::{Opening, Reply};
 use super::remote::Remote;
+use crate::component::Arguments;
 use crate::error::{FmiError, Result};
 use crate::logging::Environment;
-use crate::slave::{Arguments, Slave};
 
 /// Starts the workers of an FMU.
 pub(crate) struct Pool {
@@ -60,10 +60,10 @@ impl Pool {
     }
 
     /// Makes an instance in a worker of its own; none if the FMU refuses.
-    pub fn instantiate(&self, arguments: &Arguments<'_>, environment: &Arc<Environment>) -> Result<Option<Slave>> {
+    pub fn instantiate(&self, arguments: &Arguments<'_>, environment: &Arc<Environment>) -> Result<Option<Remote>> {
         let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
         let process = spare.map_or_else(|| self.start(), Ok)?;
         let remote = Remote::new(process, (&self.path, self.isolation.bounds), arguments, environment);
-        Ok(remote.map_err(FmiError::Isolated)?.map(|remote| Slave::Isolated(Box::new(remote))))
+        remote.map_err(FmiError::Isolated)
     }
 }

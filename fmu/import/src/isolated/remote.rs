@@ -11,9 +11,17 @@ use super::bounds::Bounds;
 use super::ending::{Ending, How};
 use super::process::Process;
 use super::protocol::Given;
+use crate::component::{Arguments, is_done};
 use crate::logging::{Environment, LogRecord};
 use crate::request::{Request, Results};
-use crate::slave::{Arguments, Loss, is_done};
+
+/// Why a call came back with `fmi2Fatal` though the FMU did not say so.
+pub(crate) enum Loss {
+    /// The process of the instance ended, in this call or an earlier one.
+    Ended(Box<Ending>),
+    /// It was not called: it had reported a fatal error before.
+    Over,
+}
 
 /// An instance in a worker.
 pub(crate) struct Remote(RefCell<State>);

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use fmu_abi::{fmi2Error, fmi2OK, fmi2Status};
 
 use super::protocol::{Given, LONGEST_STATE};
+use crate::component::{Arguments, Component, is_done};
 use crate::library::Functions;
 use crate::logging::Environment;
 use crate::request::{Request, Results};
-use crate::slave::{Arguments, Component, is_done};
 
 /// The result of a call: its status, and what else it gave.
 type Answer = (fmi2Status, Given);
