@@ -181,8 +181,8 @@ fn a_setting_of_another_law_is_refused() {
 #[test]
 fn what_the_impulsive_law_cannot_do_names_that_law() {
     let folder = tempfile::tempdir().unwrap();
-    let output = simulate(folder.path(), &["--law", "both", "--set", "contact.reaction=true"]);
-    assert_refused(&output, &["--law both, impulsive law: contact.reaction = true"]);
+    let output = simulate(folder.path(), &["--law", "both", "--set", "contact.electrostaticFeedback=true"]);
+    assert_refused(&output, &["--law both, impulsive law: contact.electrostaticFeedback = true"]);
 }
 
 /// The Maxwell force of the circuit's voltages acts under the compliant law: harvester and circuit book the same work, up to
@@ -195,4 +195,29 @@ fn a_co_simulation_under_the_compliant_law_with_feedback_keeps_its_books() {
     let found = json(&command.output().unwrap(), 0);
     assert!(number(&found, "impacts") > 0.0);
     assert!(number(&found["coupling"], "relative_residual").abs() < 1e-4, "{}", found["coupling"]);
+}
+
+/// The same of an inclined, suspended capsule with friction: all that moves energy is in the balance.
+#[test]
+fn a_co_simulation_of_an_inclined_suspended_rubbing_capsule_keeps_its_books() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = [
+        "contact.law=compliant",
+        "contact.electrostaticFeedback=true",
+        "cylinder.inclination=0.01",
+        "ball.friction=0.02",
+        "cylinder.suspensionStiffness=3",
+        "cylinder.suspensionDamping=0.01",
+    ];
+    let mut command = tool(["cosim", "--json", "--until", "5", "--adaptive", "1e-5", "--output"]);
+    command.arg(folder.path()).args(settings.iter().flat_map(|setting| ["--set", setting]));
+    let found = json(&command.output().unwrap(), 0);
+    let balance = |key: &str| number(&found["balance"], key);
+    assert!(number(&found, "impacts") > 5.0);
+    for moved in ["friction", "gravity", "suspension", "damping"] {
+        assert!(balance(moved) != 0.0, "{moved}");
+    }
+    assert!(balance("relative_residual") < 1e-5, "{}", found["balance"]);
+    let of_cylinder = ["cylinder_kinetic", "suspension", "damping"].map(balance).iter().sum::<f64>();
+    assert!((balance("excitation") - of_cylinder).abs() < 1e-12);
 }

@@ -96,6 +96,8 @@ pub(crate) enum Ending {
     Yield,
     /// Held: the push no longer withstands the unloading force.
     Recovery,
+    /// Below the largest deflection with friction: x' = 0.
+    Halt,
 }
 
 impl Contact {
@@ -142,6 +144,11 @@ impl Contact {
         if self.state.phase == Phase::Loading { self.state.largest.max(self.at(time).x) } else { self.state.largest }
     }
 
+    /// Way of the ball against friction from the start of the pass to `time`, s.
+    pub(crate) fn way(&self, time: f64) -> f64 {
+        (self.at(time).x - self.state.start.x).abs()
+    }
+
     /// Work on the ball from the start of the pass to `time`, s.
     pub(crate) fn work(&self, time: f64) -> Work {
         let Some((index, step)) = self.step_at(time) else { return Work::default() };
@@ -165,8 +172,14 @@ impl Contact {
         next.state.phase = match self.ending() {
             Ending::Cut => return Some(next),
             Ending::Separation => return None,
-            Ending::Return | Ending::Yield => Phase::Loading,
+            Ending::Return => Phase::Loading,
+            Ending::Yield if self.state.phase == Phase::Held => Phase::Loading,
+            Ending::Yield => Phase::Reloading,
             Ending::Recovery => Phase::Unloading,
+            Ending::Halt => {
+                next.state.start.v = 0.0;
+                next.phase_at_halt(law)
+            }
             Ending::Turn => {
                 next.state.start.v = 0.0;
                 next.phase_at_turn(law)
@@ -179,12 +192,26 @@ impl Contact {
     fn phase_at_turn(&self, law: &Law<'_>) -> Phase {
         let Point { time, x, .. } = self.state.start;
         let push = law.mass() * law.push(time, 0.0) + law.maxwell(time, 0.0, x);
-        if push < law.recovered() * law.loading(x) {
+        let friction = law.mass() * law.deceleration();
+        if push < law.recovered() * law.loading(x) - friction {
             Phase::Unloading
-        } else if push <= law.loading(x) {
+        } else if push <= law.loading(x) + friction {
             Phase::Held
         } else {
             Phase::Loading
+        }
+    }
+
+    /// Where a ball that friction has brought to a halt below the largest deflection goes.
+    fn phase_at_halt(&self, law: &Law<'_>) -> Phase {
+        let Point { time, x, .. } = self.state.start;
+        let excess = law.push(time, 0.0) + (law.maxwell(time, 0.0, x) - law.recovered() * law.loading(x)) / law.mass();
+        if excess.abs() <= law.deceleration() {
+            Phase::Stuck
+        } else if excess > 0.0 {
+            Phase::Reloading
+        } else {
+            Phase::Unloading
         }
     }
 
@@ -221,19 +248,28 @@ impl Contact {
         let fall = |series: Series, scale: f64, ending: Ending| {
             series.first_fall(scale).map(|place| (step.time(place), ending))
         };
+        let friction = law.deceleration();
         let crossings = match self.state.phase {
             Phase::Loading => [fall(step.rate, step.rate.bound(), Ending::Turn), None],
-            Phase::Unloading => {
+            Phase::Unloading | Phase::Reloading => {
                 let scale = step.deflection.bound() + self.state.largest;
                 let room = step.deflection.times(-1.0).plus(self.state.largest);
-                [fall(step.deflection, scale, Ending::Separation), fall(room, scale, Ending::Return)]
+                let separation = fall(step.deflection, scale, Ending::Separation);
+                let back = step.rate.times(self.state.phase.direction());
+                match self.state.phase {
+                    _ if friction == 0.0 => [separation, fall(room, scale, Ending::Return)],
+                    Phase::Unloading => [separation, fall(back, step.rate.bound(), Ending::Halt)],
+                    _ => [fall(room, scale, Ending::Return), fall(back, step.rate.bound(), Ending::Halt)],
+                }
             }
-            Phase::Held => {
-                let upper = law.loading(self.state.start.x) / law.mass();
-                let lower = law.recovered() * upper;
-                let scale = step.push.bound() + upper;
-                let excess = step.push.plus(-lower);
-                [fall(excess, scale, Ending::Recovery), fall(step.push.times(-1.0).plus(upper), scale, Ending::Yield)]
+            Phase::Held | Phase::Stuck => {
+                let lower = law.recovered() * law.loading(self.state.start.x) / law.mass();
+                let upper =
+                    if self.state.phase == Phase::Stuck { lower } else { law.loading(self.state.start.x) / law.mass() };
+                let scale = step.push.bound() + upper + friction;
+                let excess = step.push.plus(friction - lower);
+                let rest = step.push.times(-1.0).plus(upper + friction);
+                [fall(excess, scale, Ending::Recovery), fall(rest, scale, Ending::Yield)]
             }
         };
         crossings.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))

@@ -39,6 +39,43 @@ pub enum ModelError {
         /// Why.
         reason: &'static str,
     },
+    /// Contacts that take time and act back on a suspended cylinder.
+    #[error(
+        "contact.reaction = true and contact.law = compliant cannot be combined with cylinder.suspensionStiffness or \
+         cylinder.suspensionDamping above 0; allowed: contact.law = impulsive, or contact.reaction = false"
+    )]
+    SuspendedReaction,
+    /// A suspension where the motion is prescribed.
+    #[error(
+        "{name} = {value} {unit} needs excitation.kind = force: a shaker prescribes the motion, whatever holds the cylinder; \
+         allowed: 0"
+    )]
+    NeedsForce {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A suspension that is too fast to be followed.
+    #[error(
+        "{name} = {value} {unit} is too large for cylinder.mass = {mass} kg: its rate of {rate} 1/s is above {limit} 1/s"
+    )]
+    TooStiff {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// M, kg.
+        mass: f64,
+        /// sqrt(k / M) or c / M, 1/s.
+        rate: f64,
+        /// Its bound, 1/s.
+        limit: f64,
+    },
     /// A contact under a Maxwell force that goes deeper than any membrane.
     #[error(
         "at t = {time} s the membrane is pressed in by {deflection} m: with contact.electrostaticFeedback, at {voltage} V, \

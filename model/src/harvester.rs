@@ -18,11 +18,11 @@ use crate::accounting::ledger::{Ledger, Totals, Works};
 use crate::contact::Ramp;
 use crate::error::ModelError;
 use crate::membrane::Membrane;
-use crate::motion::cylinder::{CylinderMotion, Drive};
+use crate::motion::cylinder::Drive;
 use crate::motion::pulse::{PulseShape, Pulses};
 use crate::motion::{Ball, Forces, Motion, Start};
 use crate::noise::Noise;
-use crate::parameters::{OutsideGap, Parameters};
+use crate::parameters::Parameters;
 use crate::sensitivity::{Direction, Tangent, Tangential};
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
@@ -70,7 +70,7 @@ impl Harvester {
     /// phase noise, beyond 2^52 hold intervals.
     pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
         let mut harvester = Self::before_events(parameters, start)?;
-        harvester.begin_on_membrane();
+        harvester.begin();
         harvester.advance(start)?;
         Ok(harvester)
     }
@@ -85,7 +85,7 @@ impl Harvester {
         let mut harvester = Self::before_events(parameters, start)?;
         let xi = harvester.noise.xi(harvester.noise.sample);
         harvester.tangent = Tangent::along(parameters, start, force, direction, xi);
-        harvester.begin_on_membrane();
+        harvester.begin();
         harvester.advance(start)?;
         harvester.push(force, 0.0);
         Ok(harvester)
@@ -96,27 +96,26 @@ impl Harvester {
         p.validate()?;
         let noise = Noise::at_start(p, start)?;
         let drive = Drive::new(p, noise.phase(noise.sample), [0.0; 2]);
-        let cylinder = CylinderMotion::new(start, p.cylinder_position, p.cylinder_velocity, drive);
+        let cylinder = Start { time: start, position: p.cylinder_position, velocity: p.cylinder_velocity };
         let half = p.travel() / 2.0;
-        let position = match p.outside_gap {
-            OutsideGap::Free => p.ball_position,
-            OutsideGap::Project => p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half),
-        };
+        let position = p.initial_ball_position();
         let last = Start { time: start, position, velocity: p.ball_velocity };
         let projected = p.projected_side().map(|side| side.sign() * half);
         let displacement = projected.unwrap_or(p.cylinder_position - position);
         let relative = Start { time: start, position: displacement, velocity: p.cylinder_velocity - p.ball_velocity };
+        let slip = if p.friction > 0.0 { relative.velocity.signum() } else { 0.0 };
+        let works = Works { slide: [p.cylinder_position, displacement], ..Works::default() };
         let membrane = Membrane::new(p);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         Ok(Self {
             parameters: *p,
             membrane,
             time: start,
-            motion: Motion::new(p, cylinder, last, Ball::Free, relative),
+            motion: Motion::new(p, cylinder, drive, last, (Ball::Free, slip), relative),
             noise,
             voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             pulses: Pulses { shape, under_way: Default::default() },
-            ledger: Ledger::new(p, membrane.rest_capacitance, Totals::default(), Works::default()),
+            ledger: Ledger::new(p, membrane.rest_capacitance, Totals::default(), works),
             budget: Budget::new(p, 0.0, 0),
             tangent: Tangent::none(),
             calm_until: f64::NEG_INFINITY,

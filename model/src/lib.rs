@@ -39,5 +39,7 @@ pub use membrane::Membrane;
 pub use motion::Start;
 pub use motion::pulse::{Deflection, Pulse, PulseChange, PulseShape};
 pub use motion::side::Side;
-pub use parameters::{Choice, ContactLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY};
+pub use parameters::{
+    Choice, ContactLaw, ExcitationKind, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY,
+};
 pub use sensitivity::{Changes, Direction, GRAZING_SPEED, Sensitivities};

@@ -29,7 +29,7 @@ impl Membrane {
     pub fn new(parameters: &Parameters) -> Self {
         let (radius, thickness) = (parameters.membrane_radius(), parameters.membrane_thickness());
         let permittivity = VACUUM_PERMITTIVITY * parameters.relative_permittivity;
-        let Parameters { stiffness, stiffness_exponent: exponent, ball_mass, .. } = *parameters;
+        let Parameters { stiffness, stiffness_exponent: exponent, .. } = *parameters;
         Self {
             radius,
             thickness,
@@ -38,7 +38,7 @@ impl Membrane {
             ball_radius: parameters.ball_radius,
             rest_capacitance: membrane::capacitance(permittivity, radius, thickness),
             exponent,
-            deflection: force::deflection_constants(stiffness, exponent, ball_mass),
+            deflection: force::deflection_constants(stiffness, exponent, parameters.impact_mass()),
         }
     }
 

@@ -7,9 +7,12 @@ pub mod cylinder;
 mod events;
 pub mod flight;
 mod intervals;
+pub mod mount;
+mod pieces;
 pub mod pulse;
 mod search;
 pub mod side;
+pub mod suspended;
 
 pub use self::ball::{Ball, Start};
 pub use self::chatter::{Accuracy, Tail};
@@ -18,8 +21,9 @@ pub use self::events::{Prediction, Search};
 
 use self::cylinder::{CylinderMotion, CylinderState, Drive};
 use self::flight::Flight;
+use self::mount::{Load, Mount};
 use self::side::Side;
-use crate::contact::{Contact, Phase, Recoil};
+use crate::contact::{Contact, Recoil};
 use crate::paper::impact;
 use crate::parameters::{OutsideGap, Parameters};
 
@@ -31,10 +35,13 @@ pub struct Motion {
     /// Share of the relative motion in a contact that the cylinder makes.
     recoil_share: f64,
     accuracy: Accuracy,
+    pub mount: Mount,
     pub cylinder: CylinderMotion,
-    /// The ball at its last event: from there a free one goes straight on.
+    /// The ball at its last event: from there a free one has a constant acceleration.
     pub last: Start,
     pub ball: Ball,
+    /// Sign of dz' while friction acts on a ball that slides, else 0.
+    pub slip: f64,
     /// The free motion of the ball relative to the cylinder.
     pub flight: Flight,
     pub search: Search,
@@ -46,24 +53,51 @@ impl Clone for Motion {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Self { half_travel, restitution, recoil_share, accuracy, cylinder, last, ref ball, flight, search } =
-            *source;
+        let Self {
+            half_travel,
+            restitution,
+            recoil_share,
+            accuracy,
+            mount,
+            cylinder,
+            last,
+            ref ball,
+            slip,
+            flight,
+            search,
+        } = *source;
         self.ball.clone_from(ball);
         (self.half_travel, self.restitution, self.recoil_share) = (half_travel, restitution, recoil_share);
-        (self.accuracy, self.cylinder, self.last, self.flight, self.search) =
-            (accuracy, cylinder, last, flight, search);
+        (self.accuracy, self.mount, self.cylinder, self.last) = (accuracy, mount, cylinder, last);
+        (self.slip, self.flight, self.search) = (slip, flight, search);
     }
 }
 
 impl Motion {
-    /// The motion in which the ball is at `last` and the flight started with this dz, m, and rate, m/s, at `start`, s.
-    pub fn new(p: &Parameters, cylinder: CylinderMotion, last: Start, ball: Ball, relative: Start) -> Self {
-        let half_travel = p.travel() / 2.0;
+    /// The motion in which the ball is at `last`, and slides with this sign of dz', and the flight started with this dz, m, and
+    /// rate, m/s, at `start`, s. The cylinder is at `cylinder` under `drive`.
+    pub fn new(
+        p: &Parameters,
+        cylinder: Start,
+        drive: Drive,
+        last: Start,
+        (ball, slip): (Ball, f64),
+        relative: Start,
+    ) -> Self {
+        let (half_travel, mount) = (p.travel() / 2.0, Mount::new(p));
+        let load = Self::load_of(&mount, &ball, slip);
+        let cylinder = CylinderMotion::new(cylinder.time, cylinder.position, cylinder.velocity, drive, load);
         let motion = [relative.position, relative.velocity];
-        let flight = Flight::new(&cylinder, &cylinder.at(relative.time), motion, half_travel);
-        let (restitution, recoil_share) = (p.restitution, p.recoil_share());
+        let here = cylinder.at(relative.time);
+        let flight = Flight::new(&cylinder, &here, motion, half_travel, mount.relative(slip));
+        let (restitution, recoil_share, accuracy) = (p.restitution, p.recoil_share(), Accuracy::Exact);
         let search = Search::new();
-        Self { half_travel, restitution, recoil_share, accuracy: Accuracy::Exact, cylinder, last, ball, flight, search }
+        Self { half_travel, restitution, recoil_share, accuracy, mount, cylinder, last, ball, slip, flight, search }
+    }
+
+    /// What this `ball` does to the cylinder, under the compliant law besides the force of the contact.
+    fn load_of(mount: &Mount, ball: &Ball, slip: f64) -> Load {
+        if ball.is_carried() { mount.carrying() } else { mount.sliding(slip) }
     }
 
     /// From now on an integrator places the states: its future is not searched.
@@ -74,9 +108,9 @@ impl Motion {
     /// The membrane on which the ball rests, or which holds it at a deflection under the compliant law.
     pub fn resting(&self) -> Option<Side> {
         match &self.ball {
-            Ball::Free => None,
+            Ball::Free | Ball::Stuck => None,
             Ball::Resting(side) => Some(*side),
-            Ball::InContact(contact) => (contact.state.phase == Phase::Held).then_some(contact.state.side),
+            Ball::InContact(contact) => (contact.state.phase.is_at_rest()).then_some(contact.state.side),
         }
     }
 
@@ -101,6 +135,7 @@ impl Motion {
     pub fn relative_at(&self, time: f64) -> [f64; 2] {
         match &self.ball {
             Ball::Free => self.flight.at(time - self.flight.start),
+            Ball::Stuck => [self.flight.dz, 0.0],
             Ball::Resting(side) => [side.sign() * self.half_travel, 0.0],
             Ball::InContact(contact) => {
                 let (sign, point) = (contact.state.side.sign(), contact.at(time));
@@ -111,9 +146,12 @@ impl Motion {
 
     pub fn ball_position_at(&self, time: f64) -> f64 {
         match &self.ball {
-            Ball::Free => self.last.position + self.last.velocity * (time - self.last.time),
-            Ball::Resting(side) => self.cylinder.at(time).position - side.sign() * self.half_travel,
-            Ball::InContact(_) => {
+            Ball::Free => {
+                let Start { time: since, position, velocity } = self.last;
+                let elapsed = time - since;
+                position + (velocity + 0.5 * self.ball_acceleration() * elapsed) * elapsed
+            }
+            Ball::Stuck | Ball::Resting(_) | Ball::InContact(_) => {
                 let [dz, _] = self.relative_at(time);
                 self.cylinder_position_at(time) - dz
             }
@@ -122,12 +160,22 @@ impl Motion {
 
     pub fn ball_velocity_at(&self, time: f64) -> f64 {
         match &self.ball {
-            Ball::Free => self.last.velocity,
-            Ball::Resting(_) => self.cylinder.at(time).velocity,
+            Ball::Free => self.last.velocity + self.ball_acceleration() * (time - self.last.time),
+            Ball::Stuck | Ball::Resting(_) => self.cylinder.at(time).velocity,
             Ball::InContact(contact) => {
                 self.cylinder_velocity_at(time) - contact.state.side.sign() * contact.at(time).v
             }
         }
+    }
+
+    /// `z_M` and dz, m, at `time`, s.
+    pub fn slide_at(&self, time: f64) -> [f64; 2] {
+        [self.cylinder_position_at(time), self.relative_at(time)[0]]
+    }
+
+    /// `z_m''`, m/s^2, of a free ball.
+    pub fn ball_acceleration(&self) -> f64 {
+        0.0 - self.mount.relative(self.slip)
     }
 
     /// The drive as it is at `time`, s, for a motion that starts there.
@@ -147,32 +195,84 @@ impl Motion {
     /// rather than computed from positions and velocities, so that a ball on a membrane is there to the last bit, and
     /// leaves it as fast as it should, however far the cylinder has drifted and however fast it is.
     pub fn new_flight(&mut self, here: &CylinderState, motion: [f64; 2]) {
-        self.flight = Flight::new(&self.cylinder, here, motion, self.half_travel);
+        self.flight = Flight::new(&self.cylinder, here, motion, self.half_travel, self.mount.relative(self.slip));
         self.search = Search::new();
     }
 
-    /// The ball leaves the `wall` at `side` after an impact at relative `speed`, m/s: Eq. (11). Returns the relative speed, m/s.
-    pub fn rebound(&mut self, side: Side, speed: f64, wall: &CylinderState) -> f64 {
-        let rebound = impact::rebound(self.restitution, speed);
-        let dz = side.sign() * self.half_travel;
-        let velocity = impact::velocity_after(wall.velocity, side.sign(), rebound);
+    /// The ball slides with this sign of dz', or the cylinder carries it, from `here` on. Returns the cylinder with what the ball
+    /// then does to it; its velocity is that of `here`.
+    fn change_ball(&mut self, ball: Ball, slip: f64, here: &CylinderState) -> CylinderState {
+        let load = Self::load_of(&self.mount, &ball, slip);
+        (self.ball, self.slip) = (ball, slip);
+        if self.mount.ratio == 0.0 && !self.mount.is_suspended() {
+            return *here;
+        }
+        self.cylinder = self.cylinder.changed(here, self.drive_at(here.time), load);
+        self.cylinder.at(here.time)
+    }
+
+    /// dz'', m/s^2, of a ball without friction where the cylinder is `here`, if the ball does not act on it.
+    fn free_acceleration(&self, here: &CylinderState) -> f64 {
+        self.cylinder.unloaded(here.acceleration) + self.mount.incline
+    }
+
+    /// The ball leaves the `wall` at `side` after an impact at relative `speed`, m/s: Eq. (11). Returns the relative speed, m/s,
+    /// and the wall after the impact.
+    pub fn rebound(&mut self, side: Side, speed: f64, wall: &CylinderState) -> (f64, CylinderState) {
+        let (sign, rebound) = (side.sign(), impact::rebound(self.restitution, speed));
+        let wall = self.recoiled(wall, sign * (speed + rebound));
+        let slip = if self.mount.friction > 0.0 { -sign } else { 0.0 };
+        let wall = self.change_ball(Ball::Free, slip, &wall);
+        let dz = sign * self.half_travel;
+        let velocity = impact::velocity_after(wall.velocity, sign, rebound);
         self.last = Start { time: wall.time, position: wall.position - dz, velocity };
-        self.ball = Ball::Free;
-        self.new_flight(wall, [dz, -side.sign() * rebound]);
-        rebound
+        self.new_flight(&wall, [dz, -sign * rebound]);
+        (rebound, wall)
     }
 
-    /// From now on the ball rests on the membrane at `side`, on this `wall`.
-    pub fn rest(&mut self, side: Side, wall: &CylinderState) {
-        self.ball = Ball::Resting(side);
-        self.new_flight(wall, [side.sign() * self.half_travel, 0.0]);
+    /// The cylinder `here` after an impulse that takes `change`, m/s, from dz'.
+    fn recoiled(&self, here: &CylinderState, change: f64) -> CylinderState {
+        CylinderState { velocity: impact::wall_after(here.velocity, self.mount.ratio, change), ..*here }
     }
 
-    /// The wall lets the ball go at `time`, s. Where the flight begins is for the caller to say.
-    pub fn release(&mut self, time: f64) {
+    /// From now on the ball rests on the membrane at `side`, on this `wall`, which it was `slip`, m/s, faster than. Returns the wall
+    /// then.
+    pub fn rest(&mut self, side: Side, slip: f64, wall: &CylinderState) -> CylinderState {
+        let wall = self.recoiled(wall, -slip);
+        let wall = self.change_ball(Ball::Resting(side), 0.0, &wall);
+        self.new_flight(&wall, [side.sign() * self.half_travel, 0.0]);
+        wall
+    }
+
+    /// The wall lets the ball go at `time`, s, to slide with this sign of dz'. Where the flight begins is for the caller to
+    /// say.
+    pub fn release(&mut self, time: f64, slip: f64) {
         let (position, velocity) = (self.ball_position_at(time), self.ball_velocity_at(time));
         self.last = Start { time, position, velocity };
-        self.ball = Ball::Free;
+        let here = self.cylinder.at(time);
+        self.change_ball(Ball::Free, slip, &here);
+    }
+
+    /// A ball without relative velocity at `time`, s, not pressed on a membrane, goes on with this dz, m: friction holds it, or it
+    /// slides.
+    pub fn turn(&mut self, time: f64, dz: f64) {
+        let here = self.cylinder.at(time);
+        let slip = self.mount.start_of_slip(self.free_acceleration(&here));
+        let ball = if slip == 0.0 { Ball::Stuck } else { Ball::Free };
+        let here = self.change_ball(ball, slip, &here);
+        self.last = Start { time, position: here.position - dz, velocity: here.velocity };
+        self.new_flight(&here, [dz, 0.0]);
+    }
+
+    /// The sign of dz' with which a ball that the cylinder carries sets out at `time`, s.
+    pub fn departure(&self, time: f64) -> f64 {
+        if self.mount.friction == 0.0 {
+            return 0.0;
+        }
+        match &self.ball {
+            Ball::Resting(side) => -side.sign(),
+            _ => self.free_acceleration(&self.cylinder.at(time)).signum(),
+        }
     }
 }
 

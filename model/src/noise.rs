@@ -19,7 +19,7 @@ const MAX_START: f64 = 1e9;
 enum Passing {
     /// There is no noise.
     Never,
-    /// One by one: in a contact that lasts, with a Wiener process, under an integrator; and where they are longer than a
+    /// One by one: in a contact that lasts, with friction, reaction or suspension, with a Wiener process, under an integrator; and where they are longer than a
     /// window of the search, so that this costs nothing.
     Single,
     /// Many in one go.
@@ -68,6 +68,9 @@ impl Noise {
     pub fn new(p: &Parameters, sample: u64, walk: f64) -> Self {
         let is_fast = p.noise_model == NoiseModel::Held
             && p.contact_law == ContactLaw::Impulsive
+            && !p.reaction
+            && p.friction == 0.0
+            && !p.is_suspended()
             && p.noise_hold <= 1.0 / p.frequency;
         let passing = match (p.is_noisy(), is_fast) {
             (false, _) => Passing::Never,

@@ -1,8 +1,13 @@
 //! The parameters of the harvester: name, unit, start value, bounds and meaning of each, in two tables: real numbers, and
 //! choices.
 
+use core::f64::consts::FRAC_PI_2;
+
 use crate::error::ModelError;
 use crate::paper::{excitation, gap};
+
+/// Largest rate of a suspension, sqrt(k / M) or c / M, 1/s: it is followed in steps of about one over this.
+const MAX_RATE: f64 = 1e5;
 
 /// Vacuum permittivity, F/m (CODATA 2022). The paper rounds it to 8.85e-12.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
@@ -62,6 +67,8 @@ macro_rules! parameters {
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("`", $name, "` in ", $unit, ": ", $description)] pub $field: f64,)*
+            /// `excitation.kind`: what is prescribed.
+            pub excitation_kind: ExcitationKind,
             /// `excitation.seed`: seed of the phase noise.
             pub seed: i32,
             /// `excitation.noiseModel`: how the phase noise is read.
@@ -80,6 +87,7 @@ macro_rules! parameters {
             fn default() -> Self {
                 Self {
                     $($field: $start,)*
+                    excitation_kind: ExcitationKind::Force,
                     seed: 1,
                     noise_model: NoiseModel::Held,
                     outside_gap: OutsideGap::Project,
@@ -123,6 +131,21 @@ parameters! {
     ball_position: "initial.ballPosition", "m", 0.0, -1e3, 1e3, "z_m(0): position of the ball at the start, Section 4.2";
     ball_velocity: "initial.ballVelocity", "m/s", 0.0, -1e3, 1e3, "z_m'(0): velocity of the ball at the start, Section 4.2";
     bias_voltage: "biasVoltage", "V", 2000.0, 1e-3, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
+    inclination: "cylinder.inclination", "rad", 0.0, -FRAC_PI_2, FRAC_PI_2, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
+    gravity: "gravity", "m/s2", 9.806_65, 0.0, 1e3, "g: acceleration of gravity; acts along an inclined cylinder, and presses the ball on the cylinder for its friction";
+    friction: "ball.friction", "1", 0.0, 0.0, 10.0, "mu: coefficient of Coulomb friction between ball and cylinder, static and kinetic; 0 in the paper";
+    suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e12, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
+    suspension_damping: "cylinder.suspensionDamping", "N.s/m", 0.0, 0.0, 1e12, "c: damping of the cylinder's suspension; 0 in the paper";
+    acceleration: "excitation.acceleration", "m/s2", 0.0, 0.0, 1e6, "Amplitude of the cylinder's acceleration, if that is prescribed (excitation.kind = motion)";
+}
+
+/// What the excitation prescribes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExcitationKind {
+    /// The force on the cylinder, Eq. (7): the paper's.
+    Force,
+    /// The acceleration of the cylinder: a shaker moves it, whatever acts on it.
+    Motion,
 }
 
 /// How the phase noise of Section 5.2 is read.
@@ -161,7 +184,19 @@ impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
         Self::CONTACT_LAW,
         Self::ELECTROSTATIC_FEEDBACK,
         Self::REACTION,
+        Self::EXCITATION_KIND,
     ];
+
+    /// `excitation.kind`
+    pub const EXCITATION_KIND: Self = Self {
+        name: "excitation.kind",
+        start: 1,
+        description: "What is prescribed: the force on the cylinder, Eq. (7), or its acceleration, as a shaker does",
+        get: |p| if p.as_ref().excitation_kind == ExcitationKind::Force { 1 } else { 2 },
+        set: |p, item| {
+            p.as_mut().excitation_kind = if item == 1 { ExcitationKind::Force } else { ExcitationKind::Motion };
+        },
+    };
 
     /// `excitation.seed`
     pub const SEED: Self = Self {
@@ -213,8 +248,8 @@ impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
     pub const REACTION: Self = Self {
         name: "contact.reaction",
         start: 0,
-        description: "Contacts act back on the cylinder; needs contact.law = compliant. Section 3.2 neglects it: \
-                      m / M is small",
+        description: "The ball acts back on the cylinder, so that impacts keep the momentum; Section 3.2 neglects it: m / M is \
+                      small",
         get: |p| i32::from(p.as_ref().reaction),
         set: |p, on| p.as_mut().reaction = on != 0,
     };
@@ -257,11 +292,12 @@ impl Parameters {
     ///
     /// # Errors
     /// The first parameter that is not finite or out of bounds; `ball.travel` not positive; `membrane.radius` not
-    /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution); feedback or
-    /// reaction without the compliant law.
+    /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution); feedback without
+    /// the compliant law; a suspension beside a prescribed motion, or one too stiff for the cylinder's mass.
     pub fn validate(&self) -> Result<(), ModelError> {
         Self::TABLE.iter().try_for_each(|quantity| quantity.check(self))?;
         self.check_contact()?;
+        self.check_mount()?;
         exceeds("membrane.radius", self.membrane_radius(), "ball.radius", self.ball_radius)?;
         exceeds("ball.travel", self.travel(), "its lower bound", 0.0)
     }
@@ -269,17 +305,99 @@ impl Parameters {
     /// What an impact that takes no time cannot have.
     fn check_contact(&self) -> Result<(), ModelError> {
         if self.contact_law == ContactLaw::Compliant {
-            return Ok(());
+            return if self.reaction && self.is_suspended() { Err(ModelError::SuspendedReaction) } else { Ok(()) };
         }
         if self.electrostatic_feedback {
             let reason = "an impact that takes no time does no electrical work";
             return Err(ModelError::NeedsCompliantLaw { name: "contact.electrostaticFeedback", reason });
         }
-        if self.reaction {
-            let reason = "the impulsive law is the paper's, which neglects m / M";
-            return Err(ModelError::NeedsCompliantLaw { name: "contact.reaction", reason });
+        Ok(())
+    }
+
+    /// Where the ball is at the start, m: on the membrane that it is beyond, if it is put there.
+    pub fn initial_ball_position(&self) -> f64 {
+        let half = self.travel() / 2.0;
+        match self.outside_gap {
+            OutsideGap::Free => self.ball_position,
+            OutsideGap::Project => {
+                self.ball_position.clamp(self.cylinder_position - half, self.cylinder_position + half)
+            }
+        }
+    }
+
+    /// What a shaker that prescribes the motion leaves no room for, and a spring that is too stiff for the cylinder's mass.
+    fn check_mount(&self) -> Result<(), ModelError> {
+        let suspension = [
+            ("cylinder.suspensionStiffness", self.suspension_stiffness, "N/m"),
+            ("cylinder.suspensionDamping", self.suspension_damping, "N.s/m"),
+        ];
+        let is_driven = self.excitation_kind == ExcitationKind::Motion;
+        if let Some((name, value, unit)) = suspension.into_iter().find(|(_, value, _)| is_driven && *value > 0.0) {
+            return Err(ModelError::NeedsForce { name, value, unit });
+        }
+        let rates =
+            [(self.suspension_stiffness / self.cylinder_mass).sqrt(), self.suspension_damping / self.cylinder_mass];
+        for ((name, value, unit), rate) in suspension.into_iter().zip(rates) {
+            if rate > MAX_RATE {
+                return Err(ModelError::TooStiff {
+                    name,
+                    value,
+                    unit,
+                    mass: self.cylinder_mass,
+                    rate,
+                    limit: MAX_RATE,
+                });
+            }
         }
         Ok(())
+    }
+
+    /// Whether [`Harvester::sensitivities`](crate::Harvester::sensitivities) are known: under the impulsive law, without friction,
+    /// suspension and reaction.
+    pub fn has_sensitivities(&self) -> bool {
+        let is_plain = self.contact_law == ContactLaw::Impulsive && self.reaction_ratio() == 0.0;
+        is_plain && self.friction == 0.0 && !self.is_suspended()
+    }
+
+    /// Whether spring or damper hold the cylinder.
+    pub fn is_suspended(&self) -> bool {
+        self.suspension_stiffness > 0.0 || self.suspension_damping > 0.0
+    }
+
+    /// Amplitude of the harmonic part of the cylinder's acceleration, m/s^2: A / M, or what a shaker prescribes.
+    pub fn harmonic_acceleration(&self) -> f64 {
+        match self.excitation_kind {
+            ExcitationKind::Force => self.amplitude / self.cylinder_mass,
+            ExcitationKind::Motion => self.acceleration,
+        }
+    }
+
+    /// g sin(beta), m/s^2: the ball slides down an inclined cylinder, towards its left end if beta > 0.
+    pub fn incline(&self) -> f64 {
+        self.gravity * self.inclination.sin()
+    }
+
+    /// mu g cos(beta), m/s^2: the most that friction accelerates the ball.
+    pub fn friction_acceleration(&self) -> f64 {
+        self.friction * self.gravity * self.inclination.cos()
+    }
+
+    /// m / M if the ball acts back on the cylinder, else 0; nothing slows a shaker.
+    pub fn reaction_ratio(&self) -> f64 {
+        if self.reaction && self.excitation_kind == ExcitationKind::Force {
+            self.ball_mass / self.cylinder_mass
+        } else {
+            0.0
+        }
+    }
+
+    /// Mass, kg, whose kinetic energy at the relative speed a membrane takes up, Eq. (10): m, or m M / (m + M) if an impact keeps the
+    /// momentum.
+    pub(crate) fn impact_mass(&self) -> f64 {
+        match self.contact_law {
+            ContactLaw::Impulsive => self.ball_mass / (1.0 + self.reaction_ratio()),
+            ContactLaw::Compliant => self.ball_mass,
+        }
     }
 
     /// s = d + 2 w - 2 `r_b`, m: the largest distance that the ball moves inside the cylinder (Section 3.2).
@@ -297,9 +415,12 @@ impl Parameters {
         self.initial_thickness / (self.prestretch * self.prestretch)
     }
 
-    /// Amplitude of the cylinder's motion under the harmonic force, A / (M (2 pi f0)^2), m (Section 5.1).
+    /// Amplitude of a free cylinder's motion under the harmonic excitation, A / (M (2 pi f0)^2), m (Section 5.1).
     pub fn cylinder_amplitude(&self) -> f64 {
-        excitation::cylinder_amplitude(self.amplitude, self.cylinder_mass, self.frequency)
+        match self.excitation_kind {
+            ExcitationKind::Force => excitation::cylinder_amplitude(self.amplitude, self.cylinder_mass, self.frequency),
+            ExcitationKind::Motion => excitation::cylinder_amplitude(self.acceleration, 1.0, self.frequency),
+        }
     }
 
     /// gamma, the cylinder's amplitude over half the ball's travel, Eq. (16).

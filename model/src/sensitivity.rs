@@ -24,7 +24,7 @@ use crate::motion::cylinder::DriveChange;
 use crate::motion::pulse::PulseShape;
 use crate::motion::side::Side;
 use crate::noise::Noise;
-use crate::parameters::Parameters;
+use crate::parameters::{ExcitationKind, Parameters};
 
 /// Bound of the changes of the ball in SI units. Chaotic motion magnifies changes at each impact; beyond this they say
 /// nothing any more, but they stay finite.
@@ -63,6 +63,10 @@ impl Direction {
 pub struct ParameterChange {
     of: Parameters,
     half_travel: f64,
+    /// Of g sin(beta), m/s^2.
+    incline: f64,
+    /// Of the ball's position at the start, m.
+    start: f64,
     drive: DriveChange,
     membrane: MembraneChange,
     pub shape: ShapeChange,
@@ -138,13 +142,14 @@ pub struct Sensitivities {
 impl Tangent {
     /// No change at all, until somebody asks for one.
     pub fn none() -> Self {
-        Self { idle: true, push: 0.0, ..Self::of_force(0.0, 1.0) }
+        Self { idle: true, fresh: false, push: 0.0, changes: Changes::default(), parameters: None }
     }
 
     /// One more newton from `since`, s, on.
-    pub fn of_force(since: f64, cylinder_mass: f64) -> Self {
+    pub fn of_force(since: f64, p: &Parameters) -> Self {
         let changes = Changes { since, ..Changes::default() };
-        Self { idle: false, fresh: false, push: 1.0 / cylinder_mass, changes, parameters: None }
+        let push = if p.excitation_kind == ExcitationKind::Force { 1.0 / p.cylinder_mass } else { 0.0 };
+        Self { idle: false, fresh: false, push, changes, parameters: None }
     }
 
     /// A start at `since`, s, under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of the
@@ -152,11 +157,14 @@ impl Tangent {
     pub fn along(p: &Parameters, since: f64, force: f64, direction: &Direction, xi: f64) -> Self {
         let d = &direction.parameters;
         let heavier = d.cylinder_mass / p.cylinder_mass;
-        let drive = DriveChange {
-            amplitude: (d.amplitude - p.amplitude * heavier) / p.cylinder_mass,
-            frequency: d.frequency,
-            phase: d.phase + xi * d.phase_noise,
+        let (amplitude, push) = match p.excitation_kind {
+            ExcitationKind::Force => (
+                (d.amplitude - p.amplitude * heavier) / p.cylinder_mass,
+                (direction.force - force * heavier) / p.cylinder_mass,
+            ),
+            ExcitationKind::Motion => (d.acceleration, 0.0),
         };
+        let drive = DriveChange { amplitude, frequency: d.frequency, phase: d.phase + xi * d.phase_noise };
         let half_travel = d.travel() / 2.0;
         let displacement = match p.projected_side() {
             Some(side) => side.sign() * half_travel,
@@ -166,6 +174,8 @@ impl Tangent {
         let change = ParameterChange {
             of: *d,
             half_travel,
+            start: d.cylinder_position - displacement,
+            incline: d.gravity * p.inclination.sin() + p.gravity * p.inclination.cos() * d.inclination,
             drive,
             membrane: MembraneChange::new(p, d),
             shape: ShapeChange::new(&shape, d.stiffness_exponent, d.restitution),
@@ -174,7 +184,7 @@ impl Tangent {
         Self {
             idle: false,
             fresh: false,
-            push: (direction.force - force * heavier) / p.cylinder_mass,
+            push,
             changes: Changes { since, displacement, rate, ..Changes::default() },
             parameters: Some(change),
         }
@@ -187,6 +197,10 @@ impl Tangent {
 
     fn half_travel(&self) -> f64 {
         self.of(|change| change.half_travel)
+    }
+
+    fn incline(&self) -> f64 {
+        self.of(|change| change.incline)
     }
 
     fn membrane(&self) -> Option<&MembraneChange> {
@@ -221,6 +235,12 @@ impl Tangential<'_> {
         self.tangent.push + self.tangent.of(|change| self.motion.cylinder.acceleration_change(time, &change.drive))
     }
 
+    /// Of `z_m''` at `time`, s.
+    pub fn ball_acceleration_change(&self, time: f64) -> f64 {
+        let is_carried = self.motion.ball.support().is_some();
+        if is_carried { self.acceleration_change(time) } else { 0.0 - self.tangent.incline() }
+    }
+
     /// Of `z_M` - `z_m` and its rate at `time`, s: to its own digits, however large the changes of both bodies are.
     pub fn motion_change(&self, time: f64) -> [f64; 2] {
         if let Some(side) = self.motion.ball.support() {
@@ -230,7 +250,11 @@ impl Tangential<'_> {
         let last = self.motion.last.time;
         let (elapsed, pushed) = (time - last, time - since.max(last));
         let by_drive = self.tangent.parameters.map_or([0.0; 2], |change| self.motion_change_by_drive(time, &change));
-        [displacement + rate * elapsed + 0.5 * push * pushed * pushed + by_drive[0], rate + push * pushed + by_drive[1]]
+        let by_gravity = self.tangent.incline() * elapsed;
+        [
+            displacement + rate * elapsed + 0.5 * push * pushed * pushed + (by_drive[0] + 0.5 * by_gravity * elapsed),
+            rate + push * pushed + (by_drive[1] + by_gravity),
+        ]
     }
 
     /// What the harmonic force adds to them since the last event of the ball, which went on as fast as the cylinder then was.
@@ -265,7 +289,9 @@ impl Tangential<'_> {
     pub fn delay_after_release(&self, release: f64, side: Side, (time, hit, speed): (f64, Side, f64)) -> f64 {
         let ([from, velocity], [to, _]) = (self.cylinder_change(release), self.cylinder_change(time));
         let velocity = velocity + self.acceleration_before(release) * self.release_change(release);
-        let displacement = to - from - velocity * (time - release) + side.sign() * self.tangent.half_travel();
+        let elapsed = time - release;
+        let by_gravity = 0.5 * self.tangent.incline() * elapsed * elapsed;
+        let displacement = to - from - velocity * elapsed + by_gravity + side.sign() * self.tangent.half_travel();
         self.delay_by(displacement, hit, speed)
     }
 }

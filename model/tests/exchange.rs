@@ -1,7 +1,7 @@
 //! The differential equations with events, run by a plain integrator, against the exact motion.
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
-use videg_model::{Case, Harvester, ModelError, Parameters};
+use videg_model::{Case, ExcitationKind, Harvester, ModelError, Parameters};
 
 fn case(name: &str) -> Parameters {
     (Case::find(name).expect("a case").parameters)()
@@ -92,6 +92,28 @@ fn events_are_handled_once_and_leave_the_indicator_positive() {
     assert!(!harvester.handle_events().expect("nothing"));
     assert_eq!(harvester, after);
     assert!((harvester.ball_velocity() - (0.3 + 0.6 * 0.4)).abs() < 1e-15, "Eq. (11)");
+}
+
+#[test]
+fn an_integrator_follows_any_mount() {
+    let base = Parameters { ball_position: 0.005, ball_velocity: 0.1, ball_mass: 0.02, ..Parameters::default() };
+    let inclined = Parameters { inclination: 0.02, reaction: true, ..base };
+    let rubbing = Parameters { friction: 0.05, ..inclined };
+    let sticking = Parameters { friction: 0.5, amplitude: 0.8, ..inclined };
+    let suspended = Parameters { suspension_stiffness: 20.0, suspension_damping: 0.3, ..rubbing };
+    let driven = Parameters { excitation_kind: ExcitationKind::Motion, acceleration: 4.0, friction: 0.1, ..base };
+    for p in [inclined, rubbing, sticking, suspended, driven] {
+        let mut exact = Harvester::new(&p, 0.0).expect("parameters");
+        exact.advance(1.0).expect("a step");
+        let integrated = integrate(&p, 1.0, 2e-4);
+        assert_eq!(integrated.is_stuck(), exact.is_stuck());
+        for (found, expected) in integrated.states().into_iter().zip(exact.states()) {
+            assert!((found - expected).abs() < 1e-6, "{found}, {expected}: {p:?}");
+        }
+        let (found, expected) = (integrated.energies(), exact.energies());
+        let difference = (found.friction - expected.friction).abs();
+        assert!(difference < 1e-4 * (expected.friction + 1e-3), "{found:?}, {expected:?}: {p:?}");
+    }
 }
 
 #[test]

@@ -284,13 +284,15 @@ fn a_membrane_pressed_in_without_bound_keeps_a_capacitance() {
 fn both_membranes_serve_alike_whatever_is_extreme() {
     // The mirror image: every force and every start with the other sign.
     for (kind, p) in kinds().into_iter().filter(|(_, p)| p.phase_noise == 0.0) {
-        let start = Parameters { ball_velocity: 0.3, amplitude: 0.0, ..p };
-        let mirrored = Parameters { ball_velocity: -0.3, ..start };
+        let start = Parameters { ball_velocity: 0.3, amplitude: 0.0, acceleration: 0.0, ..p };
+        let mirrored = Parameters { ball_velocity: -0.3, inclination: -p.inclination, ..start };
         let [mut one, mut other] = [start, mirrored].map(|p| Harvester::new(&p, 0.0).unwrap());
         for time in [0.1, 0.5, 3.0] {
             one.advance(time).unwrap();
             other.advance(time).unwrap();
-            assert_eq!(one.capacitance(Side::Left), other.capacitance(Side::Right), "{kind}");
+            // The search for an impact starts where the harmonic force is steepest, which the mirror does not turn.
+            let [left, right] = [one.capacitance(Side::Left), other.capacitance(Side::Right)];
+            assert!((left / right - 1.0).abs() < 1e-14, "{kind}: {left}, {right}");
         }
     }
 }

@@ -60,9 +60,13 @@ pub fn coupling_lines(results: &Results) -> String {
 fn balance_line(balance: &EnergyBalance) -> String {
     let work = |joule: f64| significant(1e3 * joule, DIGITS);
     let EnergyBalance { wall, kinetic, elastic, impact_loss, converted, residual, relative_residual, .. } = *balance;
+    // What the paper's device does not have is named where it is.
+    let gravity = if balance.gravity == 0.0 { String::new() } else { format!(", gravity {}", work(balance.gravity)) };
+    let friction =
+        if balance.friction == 0.0 { String::new() } else { format!(" + friction {}", work(balance.friction)) };
     format!(
-        "balance: the walls gave {} mJ = kinetic {} + elastic {} + lost in impacts {} + to the circuit {} mJ; residual \
-         {residual:.1e} J, {relative_residual:.1e} of the energy moved",
+        "balance: the walls gave {}{gravity} mJ = kinetic {} + elastic {} + lost in impacts {}{friction} + to the circuit {} mJ; \
+         residual {residual:.1e} J, {relative_residual:.1e} of the energy moved",
         work(wall),
         work(kinetic),
         work(elastic),

@@ -9,16 +9,20 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! Under the compliant law there are none.
+//! There are none under the compliant law, with friction, with a suspension or with reaction, and none with respect to
+//! [`ONE_SIDED`] parameters.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
 //! work on the ball.
 
 use fmu_export::Variable;
-use videg_model::{ContactLaw, Direction, Energies, Harvester as Model, Parameters, Sensitivities, Side};
+use videg_model::{Direction, Energies, ExcitationKind, Harvester as Model, Parameters, Sensitivities, Side};
 
 use crate::harvester::Harvester;
 use crate::variables::{FORCE, STATES, VOLTAGES};
+
+/// Parameters that are 0 wherever changes are known, and at the lower bound there.
+pub const ONE_SIDED: [&str; 3] = ["ball.friction", "cylinder.suspensionStiffness", "cylinder.suspensionDamping"];
 
 /// What changes by one unit.
 enum Known {
@@ -27,7 +31,7 @@ enum Known {
     /// The force of the last step.
     Force,
     Voltage(Side),
-    Parameter(Direction),
+    Parameter(Box<Direction>),
 }
 
 /// How all that the slave shows changes, per unit of one variable.
@@ -40,9 +44,9 @@ pub(crate) struct Change<'a> {
 }
 
 impl Harvester {
-    /// What `read` finds in the change by one unit of `known`; NaN under the compliant law, of which no change is known.
+    /// What `read` finds in the change by one unit of `known`; NaN where no change is known.
     pub(crate) fn partial(&self, known: &Variable<Self>, read: impl FnOnce(&Change) -> f64) -> f64 {
-        if self.parameters.contact_law == ContactLaw::Compliant {
+        if !self.parameters.has_sensitivities() || ONE_SIDED.contains(&known.name()) {
             return f64::NAN; // the exporter makes an error of it
         }
         read(&self.change(known.name()))
@@ -68,7 +72,7 @@ impl Harvester {
             Some(direction) if !self.placed => {
                 let moved = Model::along(&self.parameters, self.start_time, self.external_force, &direction);
                 let model = moved.ok().map(|model| model.sensitivities());
-                Change { slave: self, known: Known::Parameter(direction), model }
+                Change { slave: self, known: Known::Parameter(Box::new(direction)), model }
             }
             _ if name == FORCE && !self.placed => {
                 Change { slave: self, known: Known::Force, model: self.model().map(Model::sensitivities) }
@@ -82,7 +86,8 @@ impl Harvester {
     fn change_at_point(&self, name: &str) -> Change<'_> {
         let rests = self.model().is_some_and(|model| model.resting().is_some());
         let [cylinder, cylinder_rate, ball, ball_rate] = STATES.map(|state| f64::from(state == name));
-        let by_force = f64::from(name == FORCE) / self.parameters.cylinder_mass; // Eq. (7)
+        let yields = if self.parameters.excitation_kind == ExcitationKind::Force { 1.0 } else { 0.0 };
+        let by_force = f64::from(name == FORCE) * yields / self.parameters.cylinder_mass; // Eq. (7)
         // A ball at rest moves with the cylinder.
         let [ball, ball_rate] = if rests { [cylinder, cylinder_rate] } else { [ball, ball_rate] };
         let displacement = [cylinder - ball, cylinder_rate - ball_rate];
@@ -98,6 +103,7 @@ impl Harvester {
                 wall: if rests { of_ball } else { 0.0 },
                 cylinder: of_cylinder,
                 excitation: of_cylinder,
+                gravity: -self.parameters.ball_mass * self.parameters.incline() * ball,
                 ..Energies::default()
             },
             ..Sensitivities::default()

@@ -76,7 +76,7 @@ impl Slave for Harvester {
         .default_tolerance(EXCHANGE_TOLERANCE)
         .can_serialize()
         .directional_derivatives()
-        .model_exchange(2);
+        .model_exchange(3);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -170,7 +170,7 @@ impl Slave for Harvester {
     }
 
     fn event_indicators(&self) -> Vec<f64> {
-        self.model().map_or([f64::NAN; 2], Model::event_indicators).to_vec()
+        self.model().map_or([f64::NAN; 3], Model::event_indicators).to_vec()
     }
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {

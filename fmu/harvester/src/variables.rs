@@ -8,8 +8,8 @@ use fmu_export::{Variable, concat};
 use videg_model::Side;
 
 use crate::harvester::Harvester;
-use initial::{BALL, DRIVE, FILM, FORCE_LAW, IMPACT, OPTIONS};
-use parameters::{CHOICES, PARAMETERS};
+use initial::{FILM, FORCE_LAW, IMPACT, OPTIONS};
+use parameters::{choices, reals};
 
 type V = Variable<Harvester>;
 
@@ -146,9 +146,10 @@ static MOTION: [V; 5] = [
         .get(|slave| slave.read(videg_model::Harvester::cylinder_position)),
     V::output("cylinder.velocity", "m/s", "z_M': velocity of the cylinder, Eq. (7)")
         .nominal(1e-1)
+        .reinit()
         .output_derivatives(1, |slave, _order| slave.read(videg_model::Harvester::cylinder_acceleration))
         .depends_on(&["cylinder.velocity"])
-        .initially_depends_on(&[&["initial.cylinderVelocity"]])
+        .initially_depends_on(&[IMPACT])
         .partial_derivative(change!(cylinder[1]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("ball.position", "m", "z_m: position of the ball, Section 3.2")
@@ -200,20 +201,20 @@ static EVENTS: [V; 8] = [
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
-    .initially_depends_on(&[IMPACT, BALL, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
+    .initially_depends_on(&[IMPACT, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
     .partial_derivative(|slave, known| slave.partial(known, |change| change.next(1, |it| it.next_knot)))
         .get(|slave| slave.predicted(videg_model::Harvester::next_knot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])
-        .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
+        .initially_depends_on(&[IMPACT, FILM, FORCE_LAW, &["biasVoltage"]])
         .partial_derivative(change!(voltage_gain))
         .get(|slave| slave.read(|model| model.totals().voltage_gain)),
     V::output("gain.energyEq13", "J", "Sum of W over all impacts, Eqs. (13) and (14)")
         .discrete()
         .nominal(1e-6)
         .depends_on(&[])
-        .initially_depends_on(&[IMPACT, BALL, FILM, FORCE_LAW, &["biasVoltage"]])
+        .initially_depends_on(&[IMPACT, FILM, FORCE_LAW, &["biasVoltage"]])
         .partial_derivative(change!(energy))
         .get(|slave| slave.read(|model| model.totals().energy)),
     V::boolean_output("contact.resting", "The ball rests on a membrane, pressed by the acceleration of the cylinder")
@@ -238,21 +239,51 @@ macro_rules! energies {
 }
 
 static ENERGIES: [V; 7] = energies! {
-    "energy.kinetic" ball 1e-4 ["cylinder.velocity", "ball.velocity"] [IMPACT, BALL]
-        "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss = their sum at the start + energy.wall + energy.electrical";
-    "energy.cylinderKinetic" cylinder 1e-3 ["cylinder.velocity"] [&["cylinder.mass", "initial.cylinderVelocity"]]
-        "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change = energy.excitation, less energy.wall with contact.reaction";
+    "energy.kinetic" ball 1e-4 ["cylinder.velocity", "ball.velocity"] [IMPACT]
+        "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss + energy.friction = their sum at the start + energy.wall + energy.electrical + energy.gravity";
+    "energy.cylinderKinetic" cylinder 1e-3 ["cylinder.velocity"] [IMPACT]
+        "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change + that of energy.suspension + energy.damping = energy.excitation, less energy.wall with contact.reaction";
     "energy.elastic" elastic 1e-4 [] []
         "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law";
-    "energy.impactLoss" impact_loss 1e-4 [] [IMPACT, BALL]
-        "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact";
-    "energy.excitation" excitation 1e-3 ["cylinder.velocity"] []
-        "Work of excitation and external force on the cylinder since the start: the change of energy.cylinderKinetic, plus energy.wall with contact.reaction";
+    "energy.impactLoss" impact_loss 1e-4 [] [IMPACT]
+        "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact, with contact.reaction m M / (m + M) for m";
+    "energy.excitation" excitation 1e-3 ["cylinder.position", "cylinder.velocity"] [IMPACT]
+        "Work of excitation and external force on the cylinder since the start, or of the shaker that moves it: the change of energy.cylinderKinetic and energy.suspension, plus energy.damping, plus energy.wall with contact.reaction";
     "energy.electrical" electrical 1e-6 [] []
         "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC";
-    "energy.wall" wall 1e-4 ["cylinder.velocity"] [IMPACT, BALL]
-        "Work of the walls, membranes included, on the ball since the start, with the walls' own velocity; without contact.reaction the cylinder gives it without being slowed";
+    "energy.wall" wall 1e-4 ["cylinder.position", "cylinder.velocity"] [IMPACT]
+        "Work of the cylinder, membranes and friction included, on the ball since the start, with the cylinder's own velocity; without contact.reaction the cylinder gives it without being slowed";
 };
+
+/// What an inclined, rubbing or held cylinder adds to these books.
+static OTHER_ENERGIES: [V; 4] = energies! {
+    "energy.friction" friction 1e-4 ["cylinder.position", "ball.position"] [IMPACT]
+        "Energy lost by friction between ball and cylinder since the start";
+    "energy.gravity" gravity 1e-3 ["ball.position"] [IMPACT]
+        "Work of gravity on the ball since the start: -m g sin(beta) times its way along the axis";
+    "energy.suspension" suspension 1e-3 ["cylinder.position"] [&["cylinder.suspensionStiffness", "initial.cylinderPosition"]]
+        "k z_M^2 / 2: energy in the spring that holds the cylinder";
+    "energy.damping" damping 1e-3 ["cylinder.velocity"] []
+        "Energy lost in the damper that holds the cylinder since the start; in model exchange 0, and missing in energy.excitation";
+};
+
+static MOUNT: [V; 2] = [V::output(
+    "mount.force",
+    "N",
+    "Force of the mount on the cylinder: of spring and damper, -k z_M - c z_M', or of the shaker that prescribes the motion (excitation.kind = motion), which bears externalForce and, with contact.reaction, the ball, but for impacts that take no time",
+)
+.depends_on(&["cylinder.position", "cylinder.velocity", "ball.velocity", FORCE])
+.initially_depends_on(&[IMPACT, &[FORCE]])
+.partial_derivative(|slave, known| {
+    // Without spring and damper there is no force; that of a shaker has no known change.
+    let is_none = slave.parameters.excitation_kind == videg_model::ExcitationKind::Force;
+    slave.partial(known, |_| if is_none { 0.0 } else { f64::NAN })
+})
+.get(|slave| slave.read(videg_model::Harvester::mount_force)),
+    V::boolean_output("ball.sticks", "Friction holds the ball on the cylinder, between the membranes")
+        .local()
+        .get(|slave| slave.model().is_some_and(videg_model::Harvester::is_stuck)),
+];
 
 static CONTACT_TIME: [V; 1] = [V::output(
     "contact.time",
@@ -314,14 +345,14 @@ static DERIVATIVES: [V; 4] = [
         .local()
         .depends_on(&["cylinder.velocity"])
         .derivative_of("cylinder.position")
-        .initially_depends_on(&[&["initial.cylinderVelocity"]])
+        .initially_depends_on(&[IMPACT])
         .partial_derivative(change!(cylinder[1]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_velocity)),
     V::output("der(cylinder.velocity)", "m/s2", "z_M'': time derivative of cylinder.velocity, Eq. (7)")
         .local()
-        .depends_on(&["externalForce"])
+        .depends_on(&["cylinder.position", "cylinder.velocity", "externalForce"])
         .derivative_of("cylinder.velocity")
-        .initially_depends_on(&[DRIVE, &[FORCE]])
+        .initially_depends_on(&[IMPACT, &[FORCE]])
         .partial_derivative(change!(cylinder[2]))
         .get(|slave| slave.read(videg_model::Harvester::cylinder_acceleration)),
     V::output("der(ball.position)", "m/s", "z_m': time derivative of ball.position")
@@ -337,9 +368,9 @@ static DERIVATIVES: [V; 4] = [
         "z_m'': time derivative of ball.velocity; that of the cylinder while the ball rests",
     )
     .local()
-    .depends_on(&["externalForce"])
+    .depends_on(&["cylinder.position", "cylinder.velocity", "externalForce"])
     .derivative_of("ball.velocity")
-    .initially_depends_on(&[IMPACT, BALL, &[FORCE]])
+    .initially_depends_on(&[IMPACT, &[FORCE]])
     .partial_derivative(change!(ball[2]))
     .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
 ];
@@ -371,6 +402,14 @@ const fn as_real(count: u64) -> f64 {
     count as f64
 }
 
+/// Parameters of the paper and of contacts that last.
+const PARAMETERS: &[V] = reals(0, 22);
+const CHOICES: &[V] = choices(0, 6);
+
+/// How the cylinder is held and driven, and gravity and friction.
+const MOUNT_PARAMETERS: &[V] = reals(22, 28);
+const MOUNT_CHOICES: &[V] = choices(6, 7);
+
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
     + CHOICES.len()
@@ -385,12 +424,16 @@ const COUNT: usize = PARAMETERS.len()
     + LEFT_LOADS.len()
     + RIGHT_LOADS.len()
     + DERIVATIVES.len()
-    + TWINS.len();
+    + TWINS.len()
+    + MOUNT_PARAMETERS.len()
+    + MOUNT_CHOICES.len()
+    + OTHER_ENERGIES.len()
+    + MOUNT.len();
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
-    &PARAMETERS,
-    &CHOICES,
+    PARAMETERS,
+    CHOICES,
     &CALCULATED,
     &INPUTS,
     &LEFT,
@@ -403,4 +446,8 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &RIGHT_LOADS,
     &DERIVATIVES,
     &TWINS,
+    MOUNT_PARAMETERS,
+    MOUNT_CHOICES,
+    &OTHER_ENERGIES,
+    &MOUNT,
 ]);

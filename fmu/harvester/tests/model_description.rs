@@ -49,6 +49,7 @@ fn of_the_inputs_few_initial_values_depend() {
         ("der(cylinder.velocity)", "externalForce"),
         ("impact.nextTime", "externalForce"),
         ("left.electricField", "left.voltage"),
+        ("mount.force", "externalForce"),
         ("pulse.nextKnot", "externalForce"),
         ("pulse.nextKnot", "left.voltage"),
         ("pulse.nextKnot", "right.voltage"),

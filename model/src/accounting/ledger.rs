@@ -1,8 +1,10 @@
 //! The ledger: what impacts gain, and the works on ball and cylinder.
 //!
-//! For the ball, from any time to any other: kinetic + elastic + impact loss = what they were + wall + electrical. For the
-//! cylinder: kinetic = what it was + excitation, minus the work of the wall if there is reaction.
+//! For the ball, from any time to any other: kinetic + elastic + impact loss + friction = what they were + wall + electrical +
+//! gravity. For the cylinder: kinetic + suspension + damping = what they were + excitation, minus the work of the wall if
+//! there is reaction.
 
+use crate::motion::mount::Mount;
 use crate::paper::impact;
 use crate::parameters::Parameters;
 
@@ -34,12 +36,16 @@ impl Totals {
 /// Sums of the energy up to the last event.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Works {
-    /// Work of the walls on the ball, J; while the ball rests under the impulsive law, less its kinetic energy.
+    /// Work of cylinder and membranes on the ball, J; while the cylinder carries the ball, less its kinetic and potential energy.
     pub wall: f64,
     /// Work of the Maxwell force on the ball, J.
     pub electrical: f64,
     /// Energy lost in contacts that have ended, J.
     pub loss: f64,
+    /// Energy lost by friction, J.
+    pub friction: f64,
+    /// `z_M` and dz, m, up to where the work of friction is contained.
+    pub slide: [f64; 2],
     /// Time in contact under the compliant law, s, of contacts that have ended.
     pub contact_time: f64,
 }
@@ -55,11 +61,19 @@ pub struct Energies {
     pub elastic: f64,
     /// Energy lost in the membranes.
     pub impact_loss: f64,
-    /// Work of excitation and external force on the cylinder.
+    /// Energy lost by friction between ball and cylinder.
+    pub friction: f64,
+    /// Work of gravity on the ball.
+    pub gravity: f64,
+    /// Energy in the spring that holds the cylinder.
+    pub suspension: f64,
+    /// Energy lost in the damper that holds the cylinder.
+    pub damping: f64,
+    /// Work of excitation and external force on the cylinder, or of the shaker that moves it.
     pub excitation: f64,
     /// Work of the Maxwell force on the ball: the integral of 1/2 U^2 dC.
     pub electrical: f64,
-    /// Work of the walls, membranes included, on the ball, with the walls' own velocity.
+    /// Work of the cylinder, membranes and friction included, on the ball, with the cylinder's own velocity.
     pub wall: f64,
 }
 
@@ -72,13 +86,25 @@ pub struct Ledger {
     rest_capacitance: f64,
     ball_mass: f64,
     restitution: f64,
+    mount: Mount,
+    /// Where the ball was at the start, m.
+    origin: f64,
 }
 
 impl Ledger {
     /// The sums so far of a harvester with these parameters and `C_2`, F.
     pub fn new(p: &Parameters, rest_capacitance: f64, totals: Totals, works: Works) -> Self {
         let Parameters { bias_voltage: bias, ball_mass, restitution, .. } = *p;
-        Self { totals, works, bias, rest_capacitance, ball_mass, restitution }
+        Self {
+            totals,
+            works,
+            bias,
+            rest_capacitance,
+            ball_mass,
+            restitution,
+            mount: Mount::new(p),
+            origin: p.initial_ball_position(),
+        }
     }
 
     /// Adds the gains of impacts whose `C_3` / `C_2` - 1 sum to `excess`.
@@ -99,28 +125,63 @@ impl Ledger {
         self.totals.last_speed = speed;
     }
 
-    /// An impact at relative `speed`, m/s: the impulse m (1 + r) `speed` at the velocity of the `wall`, m/s. `sign` is that of dz.
-    pub fn impact(&mut self, sign: f64, wall: f64, speed: f64) {
+    /// Kinetic and potential energy of a ball at `position`, m, and `velocity`, m/s.
+    pub fn mechanical(&self, position: f64, velocity: f64) -> f64 {
+        self.kinetic(velocity) - self.gravity(position)
+    }
+
+    /// Work of gravity on the ball from the start to `position`, m.
+    pub fn gravity(&self, position: f64) -> f64 {
+        -self.ball_mass * self.mount.incline * (position - self.origin)
+    }
+
+    /// An impact at relative `speed`, m/s: an impulse at the mean of the velocities of the `wall`, m/s, before and after it. `sign`
+    /// is that of dz.
+    pub fn impact(&mut self, sign: f64, wall: [f64; 2], speed: f64) {
         let r = self.restitution;
-        self.works.wall += self.ball_mass * sign * (1.0 + r) * speed * wall;
-        self.works.loss += (1.0 - r * r) * self.kinetic(speed);
+        self.works.wall += self.mount.share() * self.ball_mass * sign * (1.0 + r) * speed * mean(wall);
+        self.works.loss += self.mount.share() * (1.0 - r * r) * self.kinetic(speed);
     }
 
-    /// A chattering sequence ends: a ball faster than the `wall` by `slip` takes on its velocity, m/s.
-    pub fn settle(&mut self, wall: f64, slip: f64) {
+    /// A chattering sequence ends: a ball faster than the `wall` by `slip` takes on its velocity, m/s, before and after that.
+    pub fn settle(&mut self, wall: [f64; 2], slip: f64) {
         self.totals.chatters += 1;
-        self.works.wall -= self.ball_mass * slip * wall;
-        self.works.loss += self.kinetic(slip);
+        self.works.wall -= self.mount.share() * self.ball_mass * slip * mean(wall);
+        self.works.loss += self.mount.share() * self.kinetic(slip);
     }
 
-    /// The wall, at velocity `wall`, m/s, begins to carry the ball: its work is the gain of kinetic energy.
-    pub fn rest(&mut self, wall: f64) {
-        self.works.wall -= self.kinetic(wall);
+    /// The cylinder begins to carry a ball at `position`, m, and `velocity`, m/s: its work is the gain of energy.
+    pub fn carry(&mut self, position: f64, velocity: f64) {
+        self.works.wall -= self.mechanical(position, velocity);
     }
 
-    /// The wall lets the ball go at `velocity`, m/s.
-    pub fn release(&mut self, velocity: f64) {
-        self.works.wall += self.kinetic(velocity);
-        self.totals.releases += 1;
+    /// The cylinder lets go a ball at `position`, m, and `velocity`, m/s.
+    pub fn release(&mut self, position: f64, velocity: f64) {
+        self.works.wall += self.mechanical(position, velocity);
     }
+
+    /// What friction, with this sign `slip` of dz', has done since it was last asked, where `z_M` and dz, m, are `slide`: loss and
+    /// work on the ball, J.
+    pub fn friction_since(&self, slip: f64, slide: [f64; 2]) -> [f64; 2] {
+        let force = slip * self.ball_mass * self.mount.friction;
+        let [wall, distance] = [0, 1].map(|k| slide[k] - self.works.slide[k]);
+        [force * distance, force * wall]
+    }
+
+    /// Friction acts along a way of this length, m, in a contact, whose work on the ball is booked there.
+    pub fn rub(&mut self, way: f64) {
+        self.works.friction += self.ball_mass * self.mount.friction * way;
+    }
+
+    /// Adds what friction has done up to `slide`.
+    pub fn slide(&mut self, slip: f64, slide: [f64; 2]) {
+        let [loss, wall] = self.friction_since(slip, slide);
+        self.works.friction += loss;
+        self.works.wall += wall;
+        self.works.slide = slide;
+    }
+}
+
+fn mean([before, after]: [f64; 2]) -> f64 {
+    0.5 * (before + after)
 }

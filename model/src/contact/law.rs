@@ -4,9 +4,10 @@ use super::point::Point;
 use crate::membrane::Membrane;
 use crate::motion::cylinder::CylinderMotion;
 use crate::motion::flight::Flight;
+use crate::motion::mount::Mount;
 use crate::motion::side::Side;
 use crate::paper::{excitation, force};
-use crate::parameters::Parameters;
+use crate::parameters::{ExcitationKind, Parameters};
 
 /// A voltage that is linear in time.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -36,11 +37,31 @@ impl Ramp {
 pub enum Phase {
     /// Deeper than ever in this contact: the force is K x^n.
     Loading,
-    /// Anywhere below the largest deflection of this contact: r^2 K x^n.
+    /// Anywhere below the largest deflection of this contact: r^2 K x^n. With friction, on the way back only.
     Unloading,
+    /// The same with friction, on the way in again.
+    Reloading,
+    /// The same, held by friction: neither the push nor the membrane overcomes it.
+    Stuck,
     /// At rest at the largest deflection: the push is less than K x^n, so it goes no deeper, and more than r^2 K x^n, so it
     /// does not come back. The force balances the push, as friction does.
     Held,
+}
+
+impl Phase {
+    /// Whether the ball does not move relative to the cylinder.
+    pub(crate) fn is_at_rest(self) -> bool {
+        matches!(self, Self::Held | Self::Stuck)
+    }
+
+    /// Sign of the rate that friction acts against, in a contact with friction.
+    pub(super) fn direction(self) -> f64 {
+        match self {
+            Self::Loading | Self::Reloading => 1.0,
+            Self::Unloading => -1.0,
+            Self::Held | Self::Stuck => 0.0,
+        }
+    }
 }
 
 /// Everything that acts during a contact; deflection x is counted from the membrane's rest plane, inwards.
@@ -49,6 +70,7 @@ pub(crate) struct Law<'a> {
     pub(crate) membrane: &'a Membrane,
     /// The cylinder as it would move without the contact.
     pub(crate) cylinder: &'a CylinderMotion,
+    pub(crate) mount: &'a Mount,
     /// The ball likewise, relative to the cylinder.
     pub(crate) flight: &'a Flight,
     pub(crate) side: Side,
@@ -73,7 +95,7 @@ impl Law<'_> {
         let force = self.loading(x);
         match phase {
             Phase::Loading => force,
-            Phase::Unloading | Phase::Held => self.recovered() * force,
+            Phase::Unloading | Phase::Reloading | Phase::Stuck | Phase::Held => self.recovered() * force,
         }
     }
 
@@ -127,24 +149,40 @@ impl Law<'_> {
     /// Size of the terms of the push about `time`, s, whose rounding it carries, m/s^2.
     pub(super) fn push_size(&self, time: f64) -> f64 {
         let drive = &self.cylinder.drive;
-        drive.amplitude + (drive.external + drive.external_rate * (time - self.cylinder.start)).abs()
+        let external = drive.external + drive.external_rate * (time - self.cylinder.start);
+        drive.amplitude + (external + self.mount.incline).abs()
     }
 
     /// Force on the ball, N, outwards.
     pub(crate) fn total(&self, phase: Phase, point: &Point) -> f64 {
         match phase {
-            Phase::Held => self.mass() * self.push(point.time, 0.0),
-            _ => self.spring(phase, point.x) - self.maxwell(point.time, 0.0, point.x),
+            Phase::Held | Phase::Stuck => self.mass() * self.push(point.time, 0.0),
+            _ => self.spring(phase, point.x) - self.maxwell(point.time, 0.0, point.x) + self.friction(phase),
         }
+    }
+
+    /// Friction on the ball, N, outwards.
+    pub(super) fn friction(&self, phase: Phase) -> f64 {
+        phase.direction() * self.parameters.ball_mass * self.mount.friction
+    }
+
+    /// What friction at most takes from x'', m/s^2.
+    pub(super) fn deceleration(&self) -> f64 {
+        self.mount.deceleration()
     }
 
     /// Relative acceleration, m/s^2, inwards, that a free ball would have `elapsed` after `time`, s. The two are kept
     /// apart: their sum has too few digits for short steps late in a run.
     pub(super) fn push(&self, time: f64, elapsed: f64) -> f64 {
         let drive = &self.cylinder.drive;
+        if !self.cylinder.suspension.is_none() {
+            let since = (time - self.cylinder.start) + elapsed;
+            return self.side.sign() * (self.cylinder.suspended_acceleration(since) + self.mount.incline);
+        }
         let cosine = (drive.angle(time) + drive.omega() * elapsed).cos();
-        let external = drive.external + drive.external_rate * (time - self.cylinder.start + elapsed);
-        self.side.sign() * excitation::acceleration(drive.amplitude, cosine, external)
+        let external =
+            self.cylinder.load.give * (drive.external + drive.external_rate * (time - self.cylinder.start + elapsed));
+        self.side.sign() * (excitation::acceleration(drive.amplitude, cosine, external) + self.mount.incline)
     }
 
     /// What the contact adds to the cylinder's motion when deflection and rate are `x`, m, and `v`, m/s.
@@ -156,7 +194,11 @@ impl Law<'_> {
 impl Parameters {
     /// Share of the relative motion that the cylinder makes in a contact: m / (m + M) with reaction, else 0.
     pub(crate) fn recoil_share(&self) -> f64 {
-        if self.reaction { self.ball_mass / (self.ball_mass + self.cylinder_mass) } else { 0.0 }
+        if self.reaction && self.excitation_kind == ExcitationKind::Force {
+            self.ball_mass / (self.ball_mass + self.cylinder_mass)
+        } else {
+            0.0
+        }
     }
 }
 

@@ -46,9 +46,10 @@ impl Step {
     pub(super) fn new(law: &Law<'_>, phase: Phase, from: &Point, length: f64) -> Result<Self, TooLong> {
         let half = 0.5 * length;
         let elapsed = GRID.nodes.map(|node| half * (1.0 + node));
-        let pushes = elapsed.map(|elapsed| law.push(from.time, elapsed));
+        let rubbing = phase.direction() * law.deceleration();
+        let pushes = elapsed.map(|elapsed| law.push(from.time, elapsed) - rubbing);
         let at_nodes = |f: &dyn Fn(usize) -> f64| -> Values { core::array::from_fn(f) };
-        let (x, deflection, rate, push) = if phase == Phase::Held {
+        let (x, deflection, rate, push) = if phase.is_at_rest() {
             let push = at_nodes(&|j| pushes[j] + law.maxwell(from.time, elapsed[j], from.x) / law.mass());
             ([from.x; NODES], Series::constant(from.x), Series::default(), GRID.fit(&push))
         } else {
@@ -63,8 +64,8 @@ impl Step {
         let spring = at_nodes(&|j| law.spring(phase, x[j]));
         // What the wall, membrane included, does to the ball in the ball's direction of z.
         let force = at_nodes(&|j| match phase {
-            Phase::Held => law.mass() * pushes[j],
-            _ => spring[j] - maxwell[j],
+            Phase::Held | Phase::Stuck => law.mass() * pushes[j],
+            _ => spring[j] - maxwell[j] + law.friction(phase),
         });
         let wall_velocity = at_nodes(&|j| {
             let time = from.time + elapsed[j];

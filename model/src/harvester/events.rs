@@ -5,9 +5,10 @@ use crate::accounting::batch::Batch;
 use crate::contact::Ending;
 use crate::error::ModelError;
 use crate::motion::cylinder::{CylinderState, Drive};
+use crate::motion::flight::Flight;
 use crate::motion::pulse::{Pulse, PulseChange};
 use crate::motion::side::Side;
-use crate::motion::{Prediction, Tail};
+use crate::motion::{Ball, Prediction, Start, Tail};
 use crate::parameters::ContactLaw;
 use crate::sensitivity::Hit;
 
@@ -69,6 +70,7 @@ impl Harvester {
     fn process(&mut self, event: Prediction, batch: &mut Batch) -> Result<(), ModelError> {
         self.tangent.fresh = false;
         self.motion.enter_predicted(&mut self.noise);
+        self.settle_friction(event.time());
         match event {
             Prediction::Impact { time, side } => {
                 let speed = self.motion.search.speed;
@@ -95,13 +97,27 @@ impl Harvester {
                 self.release(time, wall_change);
                 self.motion.new_flight(&self.motion.cylinder.at(time), relative);
             }
+            Prediction::Turn { time } => {
+                self.budget.spend(time)?;
+                let [dz, _] = self.motion.relative_at(time);
+                self.turn(time, dz);
+            }
             Prediction::NoiseSample { time } => self.next_noise_sample(time),
         }
         Ok(())
     }
 
     /// A ball that starts on a membrane meets it if it approaches, and if it is pushed against it, without a speed, it rests.
-    pub(super) fn begin_on_membrane(&mut self) {
+    /// Friction may hold one without relative velocity anywhere.
+    pub(super) fn begin(&mut self) {
+        self.begin_on_membrane();
+        let Flight { dz, rate, .. } = self.motion.flight;
+        if self.parameters.friction > 0.0 && rate == 0.0 && self.motion.ball == Ball::Free {
+            self.turn(self.time, dz);
+        }
+    }
+
+    fn begin_on_membrane(&mut self) {
         let Some((side, speed)) = self.motion.touched() else { return };
         if speed > 0.0 {
             let search = &mut self.motion.search;
@@ -112,7 +128,7 @@ impl Harvester {
         let may_rest = speed == 0.0 && self.parameters.contact_law == ContactLaw::Impulsive;
         if may_rest && self.end_of_bounces(side, 0.0, &wall).is_some() {
             let [_, wall_change] = self.tangential().cylinder_change(self.time);
-            self.rest(side, &wall, wall_change);
+            self.rest(side, 0.0, &wall, wall_change);
         }
     }
 
@@ -128,12 +144,14 @@ impl Harvester {
         } else {
             self.credit_with_changes(speed, side, &wall)
         };
-        self.ledger.impact(side.sign(), wall.velocity, speed);
-        let rebound = self.motion.rebound(side, speed, &wall);
+        let (rebound, after) = self.motion.rebound(side, speed, &wall);
+        self.ledger.impact(side.sign(), [wall.velocity, after.velocity], speed);
+        let wall = after;
         match self.end_of_bounces(side, rebound, &wall) {
-            Some(Tail::Summed) => {
+            Some(Tail::Summed { slower }) => {
                 batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
-                let excess = self.membrane.excess_of_chatter(rebound, self.parameters.restitution);
+                let restitution = self.parameters.restitution * slower;
+                let excess = self.membrane.excess_of_chatter(rebound * slower, restitution);
                 self.ledger.credit(excess);
                 if !self.tangent.idle {
                     self.tangent.pass_tail(&self.parameters, &self.membrane, speed, excess);
@@ -164,24 +182,51 @@ impl Harvester {
     /// Ends a chattering sequence on this `wall`. Its velocity, and how much faster the ball is, change by `changes`, m/s.
     fn settle(&mut self, side: Side, wall: &CylinderState, [wall_change, slip_change]: [f64; 2]) {
         let slip = -self.motion.flight.rate;
-        self.ledger.settle(wall.velocity, slip);
         self.tangent.settle(self.parameters.ball_mass, [slip, slip_change], [wall.velocity, wall_change]);
-        self.rest(side, wall, wall_change);
+        let after = self.rest(side, slip, wall, wall_change);
+        self.ledger.settle([wall.velocity, after.velocity], slip);
     }
 
-    /// From now on the ball rests on the membrane at `side`, on this `wall`, whose velocity changes by `wall_change`, m/s.
-    fn rest(&mut self, side: Side, wall: &CylinderState, wall_change: f64) {
-        self.ledger.rest(wall.velocity);
-        self.tangent.rest(self.parameters.ball_mass, [wall.velocity, wall_change]);
-        self.motion.rest(side, wall);
+    /// From now on the ball rests on the membrane at `side`, on this `wall`, which it was `slip`, m/s, faster than, and whose velocity
+    /// changes by `wall_change`, m/s. Returns the wall then.
+    fn rest(&mut self, side: Side, slip: f64, wall: &CylinderState, wall_change: f64) -> CylinderState {
+        let wall = self.motion.rest(side, slip, wall);
+        let gravity = self.gravity_change(wall.time);
+        self.ledger.carry(self.motion.ball_position_at(wall.time), wall.velocity);
+        self.tangent.rest(self.parameters.ball_mass, [wall.velocity, wall_change], gravity);
+        wall
+    }
+
+    /// Change of the work of gravity on the ball, J, if somebody asks for changes.
+    fn gravity_change(&self, time: f64) -> f64 {
+        if self.tangent.idle { 0.0 } else { self.tangential().gravity_change(time) }
+    }
+
+    /// A ball without relative velocity at `time`, s, not pressed on a membrane, goes on with this dz, m.
+    pub(super) fn turn(&mut self, time: f64, dz: f64) {
+        self.motion.turn(time, dz);
+        if self.motion.ball.is_carried() {
+            self.ledger.carry(self.motion.last.position, self.motion.last.velocity);
+        }
+    }
+
+    /// The work of friction up to `time`, s, before something changes there.
+    pub(super) fn settle_friction(&mut self, time: f64) {
+        if self.parameters.friction > 0.0 {
+            self.ledger.slide(self.motion.slip, self.motion.slide_at(time));
+        }
     }
 
     /// The wall, whose velocity changes by `wall_change`, m/s, lets the ball go at `time`, s.
     pub(super) fn release(&mut self, time: f64, wall_change: f64) {
-        self.motion.release(time);
-        let velocity = self.motion.last.velocity;
-        self.ledger.release(velocity);
-        self.tangent.release(self.parameters.ball_mass, [velocity, wall_change]);
+        if self.motion.ball.support().is_some() {
+            self.ledger.totals.releases += 1;
+        }
+        let gravity = self.gravity_change(time);
+        self.motion.release(time, self.motion.departure(time));
+        let Start { position, velocity, .. } = self.motion.last;
+        self.ledger.release(position, velocity);
+        self.tangent.release(self.parameters.ball_mass, [velocity, wall_change], gravity);
     }
 
     pub(super) fn next_noise_sample(&mut self, time: f64) {
@@ -192,6 +237,7 @@ impl Harvester {
 
     /// Cylinder and ball go on from `time`, s, under another drive.
     pub(super) fn restart(&mut self, time: f64, drive: Drive) {
+        self.settle_friction(time);
         if self.motion.ball.contact().is_some() {
             let (motion, forces, limit, ledger, _) = self.parts();
             motion.restart_contact(forces, limit, ledger, (time, drive));

@@ -22,7 +22,7 @@ impl Harvester {
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         check_force([force, rate])?;
         if !self.tangent.fresh {
-            self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, self.parameters.cylinder_mass) };
+            self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, &self.parameters) };
             self.pulses.forget_changes();
         }
         self.tangent.changes.since = self.time;

@@ -8,9 +8,9 @@ use super::Harvester;
 use super::inputs::{check_force, finite};
 use crate::accounting::batch::Batch;
 use crate::error::ModelError;
-use crate::motion::Start;
 use crate::motion::cylinder::{CylinderMotion, Drive};
 use crate::motion::side::Side;
+use crate::motion::{Ball, Start};
 use crate::paper::gap::gap;
 use crate::parameters::ContactLaw;
 
@@ -21,7 +21,8 @@ pub const MAX_LAG: f64 = 1e6;
 /// side, to their tolerance.
 const CONTACT: f64 = 1e-9;
 
-/// Gap that a ball is left with after an impact or a release, in units of the rounding of the positions. The event
+/// Gap that a ball is left with after an impact or a release, in units of the rounding of the positions, and speed that one has
+/// that begins to slide, in units of the rounding of the velocities. The event
 /// indicator is then on its positive side, so that the next crossing changes its sign however soon it comes.
 const CLEARANCE: f64 = 8.0;
 
@@ -45,7 +46,7 @@ impl Harvester {
         let drive = Drive { external, external_rate: 0.0, ..self.motion.cylinder.drive };
         self.time = time;
         self.leave_to_integrator();
-        self.motion.cylinder = CylinderMotion::new(time, position, velocity, drive);
+        self.motion.cylinder = CylinderMotion::new(time, position, velocity, drive, self.motion.cylinder.load);
         self.motion.last = Start { time, position: ball_position, velocity: ball_velocity };
         self.forget_search();
         Ok(())
@@ -68,12 +69,36 @@ impl Harvester {
     }
 
     /// The gaps between ball and membrane, m, left and right, Eq. (8). While the ball rests on a membrane there is no gap: in its
-    /// place stands the acceleration, m/s^2, that presses the ball on, whose change of sign is the release.
-    pub fn event_indicators(&self) -> [f64; 2] {
-        Side::BOTH.map(|side| match self.motion.ball.support() {
-            Some(rests_on) if rests_on == side => side.sign() * self.cylinder_acceleration(),
+    /// place stands the acceleration, m/s^2, that presses the ball on, whose change of sign is the release. The third is for
+    /// friction: the relative speed, m/s, of a ball that slides, and the acceleration, m/s^2, that one which sticks can still
+    /// stand; 1 without friction.
+    pub fn event_indicators(&self) -> [f64; 3] {
+        let [left, right] = Side::BOTH.map(|side| match self.motion.ball.support() {
+            Some(rests_on) if rests_on == side => self.pressing(side),
             _ => gap(self.motion.half_travel, side.sign(), self.relative_displacement()),
-        })
+        });
+        let friction = match &self.motion.ball {
+            _ if self.parameters.friction == 0.0 => 1.0,
+            Ball::Stuck => self.motion.mount.friction - self.carrying_acceleration().abs(),
+            Ball::Free => self.motion.slip * self.relative_rate(),
+            Ball::Resting(_) | Ball::InContact(_) => 1.0,
+        };
+        [left, right, friction]
+    }
+
+    /// `z_M'` - `z_m'`, m/s.
+    fn relative_rate(&self) -> f64 {
+        self.cylinder_velocity() - self.ball_velocity()
+    }
+
+    /// Acceleration, m/s^2, that the cylinder must give a ball that it carries, against gravity.
+    fn carrying_acceleration(&self) -> f64 {
+        self.cylinder_acceleration() + self.motion.mount.incline
+    }
+
+    /// Acceleration, m/s^2, that holds the ball on the membrane at `side`, friction included.
+    fn pressing(&self, side: Side) -> f64 {
+        side.sign() * self.carrying_acceleration() + self.motion.mount.friction
     }
 
     /// Does what is due at the present time: a fresh phase-noise sample; an impact, Eqs. (10) to (13); a release. True if
@@ -88,9 +113,12 @@ impl Harvester {
         while let Some(due) = self.noise.limit().filter(|due| *due <= self.time * (1.0 + f64::EPSILON)) {
             self.next_noise_sample(due.min(self.time));
         }
-        let changed = match self.motion.ball.support() {
-            Some(side) => self.release_if_pulled(side)?,
-            None => self.impact_if_touching()?,
+        self.settle_friction(self.time);
+        let changed = match self.motion.ball {
+            Ball::Resting(side) if self.pressing(side) > 0.0 => false,
+            Ball::Stuck if self.carrying_acceleration().abs() <= self.motion.mount.friction => false,
+            Ball::Resting(_) | Ball::Stuck => self.let_go()?,
+            Ball::Free | Ball::InContact(_) => self.impact_if_touching()? || self.turn_if_halted()?,
         };
         self.forget_search();
         Ok(changed)
@@ -112,14 +140,35 @@ impl Harvester {
         }
     }
 
-    fn release_if_pulled(&mut self, side: Side) -> Result<bool, ModelError> {
-        if side.sign() * self.cylinder_acceleration() > 0.0 {
+    fn let_go(&mut self) -> Result<bool, ModelError> {
+        let support = self.motion.ball.support();
+        self.budget.spend(self.time)?;
+        self.release(self.time, 0.0);
+        if let Some(side) = support {
+            self.clear(side);
+        }
+        self.set_out();
+        Ok(true)
+    }
+
+    /// A ball that slid comes to a halt on the cylinder, or turns.
+    fn turn_if_halted(&mut self) -> Result<bool, ModelError> {
+        let slip = self.motion.slip;
+        if slip == 0.0 || slip * self.relative_rate() > 0.0 {
             return Ok(false);
         }
         self.budget.spend(self.time)?;
-        self.release(self.time, 0.0);
-        self.clear(side);
+        self.turn(self.time, self.relative_displacement());
+        self.set_out();
         Ok(true)
+    }
+
+    /// Makes a ball that begins to slide a little faster than the cylinder, so that the indicator of friction is on its positive
+    /// side.
+    fn set_out(&mut self) {
+        let rounding =
+            f64::EPSILON * (self.cylinder_velocity().abs() + self.motion.half_travel * self.parameters.frequency);
+        self.motion.last.velocity -= self.motion.slip * CLEARANCE * rounding;
     }
 
     fn impact_if_touching(&mut self) -> Result<bool, ModelError> {
@@ -142,7 +191,7 @@ impl Harvester {
         let mut batch = Batch::EMPTY;
         self.impact(self.time, side, side.sign() * (wall - ball), &mut batch);
         batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
-        if self.motion.ball.support().is_none() {
+        if !self.motion.ball.is_carried() {
             self.clear(side);
         }
         Ok(true)

@@ -3,9 +3,10 @@
 use super::Harvester;
 use crate::accounting::ledger::{Energies, Totals};
 use crate::membrane::Membrane;
+use crate::motion::Ball;
 use crate::motion::pulse::Deflection;
 use crate::motion::side::Side;
-use crate::parameters::{ContactLaw, Parameters};
+use crate::parameters::{ContactLaw, ExcitationKind, Parameters};
 use crate::sensitivity::{Sensitivities, membrane_changes};
 
 impl Harvester {
@@ -42,7 +43,11 @@ impl Harvester {
     /// What the contact adds to `z_M''`, m/s^2.
     fn recoil_acceleration(&self) -> f64 {
         let p = &self.parameters;
-        if p.reaction { -self.motion.contact_force(self.forces(), self.time) / p.cylinder_mass } else { 0.0 }
+        if p.reaction_ratio() > 0.0 {
+            -self.motion.contact_force(self.forces(), self.time) / p.cylinder_mass
+        } else {
+            0.0
+        }
     }
 
     /// `z_m`, m.
@@ -55,12 +60,33 @@ impl Harvester {
         self.motion.ball_velocity_at(self.time)
     }
 
-    /// `z_m''`, m/s^2: that of the cylinder while the ball rests, that of the forces of a contact, else 0.
+    /// `z_m''`, m/s^2: that of the cylinder while it carries the ball, else that of gravity, friction and the forces of a
+    /// contact.
     pub fn ball_acceleration(&self) -> f64 {
-        match self.resting() {
-            Some(_) => self.cylinder_acceleration(),
-            None => self.motion.contact_force(self.forces(), self.time) / self.parameters.ball_mass,
+        if self.resting().is_some() || self.is_stuck() {
+            return self.cylinder_acceleration();
         }
+        let contact = self.motion.contact_force(self.forces(), self.time) / self.parameters.ball_mass;
+        contact + self.motion.ball_acceleration()
+    }
+
+    /// Force of the mount on the cylinder, N: of spring and damper, or of the shaker that prescribes the motion. That bears the
+    /// external force and, with reaction, the ball, but for impacts that take no time.
+    pub fn mount_force(&self) -> f64 {
+        let p = &self.parameters;
+        if p.excitation_kind == ExcitationKind::Force {
+            return -p.suspension_stiffness * self.cylinder_position()
+                - p.suspension_damping * self.cylinder_velocity();
+        }
+        let external = p.cylinder_mass * self.motion.drive_at(self.time).external;
+        // Gravity aside, whatever accelerates the ball comes from the cylinder.
+        let ball = if p.reaction { p.ball_mass * (self.ball_acceleration() + p.incline()) } else { 0.0 };
+        p.cylinder_mass * self.cylinder_acceleration() - external + ball
+    }
+
+    /// Whether friction holds the ball on the cylinder, between the membranes.
+    pub fn is_stuck(&self) -> bool {
+        self.motion.ball == Ball::Stuck
     }
 
     /// dz = `z_M` - `z_m`, m.
@@ -109,20 +135,35 @@ impl Harvester {
         if let Some((work, stored, lost)) = self.motion.contact_energies(self.forces(), self.time) {
             works.wall += work.wall;
             works.electrical += work.electrical;
+            works.friction +=
+                p.ball_mass * self.motion.mount.friction * self.motion.ball.contact().map_or(0.0, |c| c.way(self.time));
             elastic = stored;
             works.loss += lost;
-        } else if self.motion.ball.support().is_some() {
-            works.wall += ball;
+        } else if self.motion.ball.is_carried() {
+            works.wall += self.ledger.mechanical(self.ball_position(), self.ball_velocity());
+        }
+        if self.motion.slip != 0.0 {
+            let [loss, wall] = self.ledger.friction_since(self.motion.slip, self.motion.slide_at(self.time));
+            works.friction += loss;
+            works.wall += wall;
         }
         let of_cylinder = |velocity: f64| 0.5 * p.cylinder_mass * velocity * velocity;
         let cylinder = of_cylinder(self.cylinder_velocity());
+        let spring = |position: f64| 0.5 * p.suspension_stiffness * position * position;
+        let (suspension, damping) =
+            (spring(self.cylinder_position()), p.cylinder_mass * self.motion.cylinder.damped_at(self.time));
         let gained = cylinder - of_cylinder(p.cylinder_velocity);
+        let held = suspension - spring(p.cylinder_position) + damping;
         Energies {
             ball,
             cylinder,
             elastic,
             impact_loss: works.loss,
-            excitation: gained + if p.reaction { works.wall } else { 0.0 },
+            friction: works.friction,
+            gravity: self.ledger.gravity(self.ball_position()),
+            suspension,
+            damping,
+            excitation: (gained + held) + if p.reaction { works.wall } else { 0.0 },
             electrical: works.electrical,
             wall: works.wall,
         }
@@ -158,7 +199,7 @@ impl Harvester {
         let sums = &self.tangent.changes;
         Sensitivities {
             cylinder: [position, velocity, acceleration],
-            ball: [ball_position, ball_velocity, self.motion.ball.support().map_or(0.0, |_| acceleration)],
+            ball: [ball_position, ball_velocity, changes.ball_acceleration_change(time)],
             relative_displacement: changes.motion_change(time)[0],
             deflection,
             area_ratio: of_membrane(0),

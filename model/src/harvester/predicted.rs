@@ -75,7 +75,11 @@ impl Harvester {
     fn resolved_impact(&self) -> Option<(f64, Side, f64)> {
         let impact = self.motion.found_impact();
         impact.filter(|(time, side, speed)| {
-            !grazes(*side, *speed, self.motion.predicted_cylinder(&self.noise).at(*time).acceleration)
+            !grazes(
+                *side,
+                *speed,
+                self.motion.predicted_cylinder(&self.noise).at(*time).acceleration + self.motion.mount.incline,
+            )
         })
     }
 

@@ -7,7 +7,7 @@ use crate::accounting::ledger::{Ledger, Totals, Works};
 use crate::contact::{Contact, ContactState, Ramp};
 use crate::error::ModelError;
 use crate::membrane::Membrane;
-use crate::motion::cylinder::{CylinderMotion, Drive};
+use crate::motion::cylinder::Drive;
 use crate::motion::pulse::{Pulse, PulseShape, Pulses};
 use crate::motion::side::Side;
 use crate::motion::{Ball, Motion, Prediction, Search, Start};
@@ -26,6 +26,8 @@ pub struct Snapshot {
     pub time: f64,
     /// Start of the cylinder's present motion.
     pub cylinder: Start,
+    /// Energy that the cylinder's damper has taken up to that start, over M, J/kg.
+    pub damped: f64,
     /// External force over M at that start, m/s^2.
     pub external: f64,
     /// Its rate, m/s^3.
@@ -34,6 +36,10 @@ pub struct Snapshot {
     pub ball: Start,
     /// The membrane on which the ball rests.
     pub resting: Option<Side>,
+    /// Friction holds it between the membranes.
+    pub is_stuck: bool,
+    /// Sign of dz' while friction acts on a ball that slides, else 0.
+    pub slip: f64,
     /// Start of the present search for events: `z_M` - `z_m` and its rate.
     pub relative: Start,
     /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
@@ -70,10 +76,13 @@ impl Harvester {
         Snapshot {
             time: self.time,
             cylinder: start(motion.cylinder.start, state.position, state.velocity),
+            damped: motion.cylinder.damped,
             external: state.external,
             external_rate: motion.cylinder.drive.external_rate,
             ball: motion.last,
             resting: motion.ball.support(),
+            is_stuck: motion.ball == Ball::Stuck,
+            slip: motion.slip,
             relative: start(motion.flight.start, state.dz, state.rate),
             noise_sample: state.sample,
             noise_walk: noise.walk,
@@ -125,21 +134,20 @@ impl Harvester {
         snapshot.validate(p, lag)?;
         let noise = Noise::new(p, snapshot.noise_sample, snapshot.noise_walk);
         let drive = Drive::new(p, noise.phase(noise.sample), [snapshot.external, snapshot.external_rate]);
-        let Start { time: start, position, velocity } = snapshot.cylinder;
-        let cylinder = CylinderMotion::new(start, position, velocity, drive);
         let ball = match (snapshot.contact, snapshot.resting) {
             (Some(state), _) => Ball::InContact(Contact::resumed(state)),
             (None, Some(side)) => Ball::Resting(side),
+            (None, None) if snapshot.is_stuck => Ball::Stuck,
             (None, None) => Ball::Free,
         };
-        let rate = if snapshot.resting.is_some() { 0.0 } else { snapshot.relative.velocity };
+        let rate = if ball.is_carried() { 0.0 } else { snapshot.relative.velocity };
         let relative = Start { velocity: rate, ..snapshot.relative };
-        let mut motion = Motion::new(p, cylinder, snapshot.ball, ball, relative);
+        let mut motion = Motion::new(p, snapshot.cylinder, drive, snapshot.ball, (ball, snapshot.slip), relative);
+        motion.cylinder.damped = snapshot.damped;
         motion.search = Search::none();
-        let tangent = snapshot.changes.map_or_else(Tangent::none, |changes| Tangent {
-            changes,
-            ..Tangent::of_force(changes.since, p.cylinder_mass)
-        });
+        let tangent = snapshot
+            .changes
+            .map_or_else(Tangent::none, |changes| Tangent { changes, ..Tangent::of_force(changes.since, p) });
         let membrane = Membrane::new(p);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         Ok(Self {
@@ -171,6 +179,7 @@ impl Snapshot {
             finite("motion", &[time, position, velocity])?;
         }
         finite("motion", &[self.external, self.external_rate])?;
+        check_size("energy of the damper", self.damped)?;
         for pulse in self.pulses.iter().flatten() {
             finite("change", &[pulse.change.start, pulse.change.speed, pulse.change.peak])?;
         }
@@ -184,6 +193,11 @@ impl Snapshot {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
             check("start of a motion", start, start <= time && periods_since(start) < 9.0e15)?;
         }
+        let is_carried = self.resting.is_some() || self.is_stuck;
+        let slips = if parameters.friction > 0.0 { !is_carried && self.slip.abs() == 1.0 } else { self.slip == 0.0 };
+        check("slip", self.slip, slips || (is_carried && self.slip == 0.0) || self.contact.is_some())?;
+        let may_stick = self.is_stuck && parameters.friction > 0.0 && self.resting.is_none() && self.contact.is_none();
+        check("sticking ball at", relative.position, may_stick || !self.is_stuck)?;
         finite("Wiener process", &[self.noise_walk])?;
         if parameters.is_noisy() {
             let (sample, hold) = (self.noise_sample as f64, parameters.noise_hold);
@@ -196,7 +210,9 @@ impl Snapshot {
         for Ramp { start, value, rate } in self.voltages {
             finite("voltage or sum of work", &[start, value, rate])?;
         }
-        finite("voltage or sum of work", &[works.wall, works.electrical, works.loss, works.contact_time])?;
+        let Works { wall, electrical, loss, friction, contact_time, .. } = works;
+        finite("voltage or sum of work", &[wall, electrical, loss, friction, contact_time])?;
+        finite("begin of friction", &works.slide)?;
         if let Some(ContactState { since, largest, start, credited, proposal, .. }) = self.contact {
             let is_compliant = parameters.contact_law == ContactLaw::Compliant && self.resting.is_none();
             check("contact since", since, since <= start.time && is_compliant)?;

@@ -17,8 +17,10 @@ pub struct Start {
 /// What the ball does.
 #[derive(Debug, PartialEq)]
 pub enum Ball {
-    /// It goes straight on.
+    /// Gravity and friction alone act on it.
     Free,
+    /// Friction holds it on the cylinder, between the membranes.
+    Stuck,
     /// The membrane carries it.
     Resting(Side),
     /// It presses a membrane in, under the compliant law.
@@ -30,7 +32,7 @@ impl Ball {
     pub fn contact(&self) -> Option<&Contact> {
         match self {
             Self::InContact(contact) => Some(contact),
-            Self::Free | Self::Resting(_) => None,
+            Self::Free | Self::Stuck | Self::Resting(_) => None,
         }
     }
 
@@ -38,8 +40,13 @@ impl Ball {
     pub fn support(&self) -> Option<Side> {
         match self {
             Self::Resting(side) => Some(*side),
-            Self::Free | Self::InContact(_) => None,
+            Self::Free | Self::Stuck | Self::InContact(_) => None,
         }
+    }
+
+    /// Whether the cylinder carries it.
+    pub fn is_carried(&self) -> bool {
+        matches!(self, Self::Resting(_) | Self::Stuck)
     }
 }
 
@@ -47,6 +54,7 @@ impl Clone for Ball {
     fn clone(&self) -> Self {
         match self {
             Self::Free => Self::Free,
+            Self::Stuck => Self::Stuck,
             Self::Resting(side) => Self::Resting(*side),
             Self::InContact(contact) => Self::InContact(contact.clone()),
         }

@@ -26,10 +26,13 @@ impl Accuracy {
 }
 
 /// How a chattering sequence ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tail {
     /// Endless bounces in a time so short that they are a geometric series.
-    Summed,
+    Summed {
+        /// Speed at which the ball returns to the membrane over that at which it left: 1 without friction.
+        slower: f64,
+    },
     /// Bounces lower than rounding; what they would still gain is left out.
     Unresolved,
 }
@@ -40,22 +43,28 @@ impl Motion {
     /// constant meanwhile. Up to `limit`, s, the phase of the force is known.
     pub fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState, limit: f64) -> Option<Tail> {
         let CylinderState { time, jerk, .. } = *wall;
-        let push = side.sign() * wall.acceleration;
-        if push <= 0.0 {
-            return (push == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
+        let push = side.sign() * self.free_acceleration(wall);
+        let friction = self.mount.deceleration();
+        // Friction acts against a ball that leaves, and against one that returns.
+        let [leaving, returning] = [push + friction, push - friction];
+        if leaving <= 0.0 {
+            return (leaving == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
         }
         let [highest, tolerance] = self.accuracy.bounds();
         let (highest, unresolved) = (highest * self.half_travel, 4.0 * self.flight.rounding(0.0));
-        if rebound * rebound > 2.0 * push * highest.max(unresolved) {
+        if rebound * rebound > 2.0 * leaving * highest.max(unresolved) {
             return None;
         }
-        // Flights of 2 v / a, 2 v r / a, ...: their sum.
-        let duration = 2.0 * rebound / (push * (1.0 - self.restitution));
-        let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
-        let change = duration * (jerk.abs() + 0.5 * duration * curvature);
-        let height = rebound * rebound / (2.0 * push);
-        if height <= highest && change <= tolerance * push && time + duration <= limit {
-            return Some(Tail::Summed);
+        let height = rebound * rebound / (2.0 * leaving);
+        if returning > 0.0 {
+            let slower = (returning / leaving).sqrt();
+            // Flights of (1 + 1 / q) v / a, (1 + 1 / q) v q r / a, ..., where q v is the speed of the return: their sum.
+            let duration = (1.0 + 1.0 / slower) * rebound / (leaving * (1.0 - self.restitution * slower));
+            let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
+            let change = duration * (jerk.abs() + 0.5 * duration * curvature);
+            if height <= highest && change <= tolerance * returning && time + duration <= limit {
+                return Some(Tail::Summed { slower });
+            }
         }
         (height <= unresolved).then_some(Tail::Unresolved)
     }

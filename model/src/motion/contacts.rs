@@ -1,7 +1,8 @@
 //! Contacts under the compliant law as part of the motion.
 
-use super::cylinder::{CylinderMotion, Drive};
+use super::cylinder::{CylinderMotion, CylinderState, Drive};
 use super::flight::Flight;
+use super::mount::Mount;
 use super::pulse::Deflection;
 use super::side::Side;
 use super::{Ball, Motion, Start};
@@ -28,15 +29,15 @@ pub struct Forces<'a> {
 }
 
 impl<'a> Forces<'a> {
-    fn law(self, cylinder: &'a CylinderMotion, flight: &'a Flight, side: Side) -> Law<'a> {
+    fn law(self, (cylinder, mount): (&'a CylinderMotion, &'a Mount), flight: &'a Flight, side: Side) -> Law<'a> {
         let Self { parameters, membrane, voltages } = self;
-        Law { parameters, membrane, cylinder, flight, side, voltage: voltages[side.index()] }
+        Law { parameters, membrane, cylinder, mount, flight, side, voltage: voltages[side.index()] }
     }
 }
 
 impl Motion {
     fn law<'a>(&'a self, forces: Forces<'a>, side: Side) -> Law<'a> {
-        forces.law(&self.cylinder, &self.flight, side)
+        forces.law((&self.cylinder, &self.mount), &self.flight, side)
     }
 
     /// Force on the ball in the direction of z, N, at `time`, s.
@@ -66,7 +67,8 @@ impl Motion {
 
     /// A contact begins at `time`, s, at relative `speed`, m/s.
     pub fn begin_contact(&mut self, forces: Forces<'_>, limit: Option<f64>, time: f64, side: Side, speed: f64) {
-        self.new_flight(&self.cylinder.at(time), [self.half_travel, speed].map(|value| side.sign() * value));
+        let here = self.change_ball(Ball::Free, 0.0, &self.cylinder.at(time));
+        self.new_flight(&here, [self.half_travel, speed].map(|value| side.sign() * value));
         let period = 1.0 / forces.parameters.frequency;
         let loading = if speed > 0.0 { forces.membrane.deflection(speed) / speed } else { period };
         self.ball = Ball::InContact(Contact::new(side, time, speed, FIRST_STEP * loading.min(period)));
@@ -75,11 +77,13 @@ impl Motion {
 
     /// Works out the present pass, which reaches one excitation period or to the next noise sample, `limit`, at most.
     pub fn plan_contact(&mut self, forces: Forces<'_>, limit: Option<f64>) {
-        let Self { cylinder, flight, ball, .. } = self;
+        let Self { cylinder, mount, flight, ball, .. } = self;
         let Ball::InContact(contact) = ball else { return };
         let period_end = contact.state.start.time + 1.0 / forces.parameters.frequency;
         let limit = limit.map_or(period_end, |limit| limit.min(period_end));
-        contact.plan(&forces.law(cylinder, flight, contact.state.side), limit);
+        // The motion of a suspended cylinder is known to the end of its piece.
+        let limit = flight.piece().map_or(limit, |(_, length)| limit.min(flight.start + length));
+        contact.plan(&forces.law((cylinder, mount), flight, contact.state.side), limit);
     }
 
     /// The pass of the contact has ended.
@@ -102,6 +106,10 @@ impl Motion {
         }
         (0..STEP_COST * steps).try_for_each(|_| budget.spend(time))?;
         self.book_pass(forces.membrane, ledger, time);
+        if self.end_of_piece().is_some_and(|end| end <= time) {
+            self.restart_contact_booked(forces, limit, (time, self.drive_at(time)));
+            return Ok(());
+        }
         let Some(contact) = self.ball.contact() else { return Ok(()) };
         match contact.next(&self.law(forces, contact.state.side)) {
             Some(next) => {
@@ -120,6 +128,7 @@ impl Motion {
         let work = contact.work(time);
         ledger.works.wall += work.wall;
         ledger.works.electrical += work.electrical;
+        ledger.rub(contact.way(time));
         if contact.ending() == Ending::Turn && time == contact.end() {
             let (excess, credited) = (membrane.capacitance_excess(contact.largest_at(time)), contact.state.credited);
             ledger.credit((excess - credited).max(0.0));
@@ -140,12 +149,16 @@ impl Motion {
             self.cylinder = cylinder;
         }
         self.last = Start { time, position: position - sign * self.half_travel, velocity };
-        self.new_flight(&self.cylinder.at(time), [sign * self.half_travel, sign * rate]);
+        let slip = if self.mount.friction > 0.0 { -sign } else { 0.0 };
+        let here = self.change_ball(Ball::Free, slip, &self.cylinder.at(time));
+        self.new_flight(&here, [sign * self.half_travel, sign * rate]);
     }
 
     /// The cylinder's motion from `time`, s, on, the recoil of the contact included.
     fn recoiling_cylinder(&self, time: f64, drive: Drive) -> CylinderMotion {
-        CylinderMotion::new(time, self.cylinder_position_at(time), self.cylinder_velocity_at(time), drive)
+        let here = self.cylinder.at(time);
+        let (position, velocity) = (self.cylinder_position_at(time), self.cylinder_velocity_at(time));
+        self.cylinder.changed(&CylinderState { position, velocity, ..here }, drive, self.mount.sliding(0.0))
     }
 
     /// The contact goes on from `time`, s, under other voltages.
@@ -171,15 +184,20 @@ impl Motion {
         ledger: &mut Ledger,
         (time, drive): (f64, Drive),
     ) {
+        self.book_pass(forces.membrane, ledger, time);
+        self.restart_contact_booked(forces, limit, (time, drive));
+    }
+
+    /// The same after the works of the pass are booked.
+    fn restart_contact_booked(&mut self, forces: Forces<'_>, limit: Option<f64>, (time, drive): (f64, Drive)) {
         let Some(contact) = self.ball.contact() else { return };
         let next = contact.continued(time);
         let sign = contact.state.side.sign();
         let velocity = self.ball_velocity_at(time);
-        let cylinder = self.recoiling_cylinder(time, drive);
-        self.book_pass(forces.membrane, ledger, time);
-        self.cylinder = cylinder;
+        self.cylinder = self.recoiling_cylinder(time, drive);
         let [dz, rate] = [self.half_travel + next.state.start.x, next.state.start.v].map(|value| sign * value);
-        self.flight = Flight::new(&self.cylinder, &self.cylinder.at(time), [dz, rate], self.half_travel);
+        self.flight =
+            Flight::new(&self.cylinder, &self.cylinder.at(time), [dz, rate], self.half_travel, self.mount.incline);
         self.last = Start { time, position: self.cylinder.position - dz, velocity };
         self.ball = Ball::InContact(next);
         self.plan_contact(forces, limit);

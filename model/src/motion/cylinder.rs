@@ -2,6 +2,8 @@
 
 use core::f64::consts::TAU;
 
+use super::mount::Load;
+use super::suspended::{Oscillation, Suspension, damped_energy};
 use crate::numerics::elementary::{round, sin_cos};
 use crate::numerics::product::cycle_fraction;
 use crate::paper::excitation;
@@ -26,7 +28,7 @@ impl Drive {
     /// The force of a harvester with these parameters at this `phase`, rad, with an external part over M, m/s^2, and its rate,
     /// m/s^3.
     pub fn new(p: &Parameters, phase: f64, [external, external_rate]: [f64; 2]) -> Self {
-        let amplitude = p.amplitude / p.cylinder_mass;
+        let amplitude = p.harmonic_acceleration();
         Self { amplitude, frequency: p.frequency, phase, external, external_rate }
     }
 
@@ -83,6 +85,15 @@ pub struct CylinderMotion {
     pub velocity: f64,
     /// Force over mass.
     pub drive: Drive,
+    /// What mount and ball do to the cylinder meanwhile.
+    pub load: Load,
+    /// Spring and damper over the mass that moves.
+    pub suspension: Suspension,
+    /// Energy that the damper has taken up to the start, over M, J/kg.
+    pub damped: f64,
+    /// Amplitude of the acceleration, m/s^2, the constant part of the acceleration at the start, m/s^2, and its rate, m/s^3.
+    amplitude: f64,
+    external: [f64; 2],
     /// The phase of the harmonic force, in turns.
     own_turns: f64,
     /// Sine and cosine of its angle at the start.
@@ -113,13 +124,32 @@ pub struct CylinderState {
 }
 
 impl CylinderMotion {
-    /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive`.
-    pub fn new(start: f64, position: f64, velocity: f64, drive: Drive) -> Self {
+    /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive` and `load`.
+    pub fn new(start: f64, position: f64, velocity: f64, drive: Drive, load: Load) -> Self {
         let own_turns = drive.own_turns();
         let [sin_start, cos_start] = sin_cos(4.0 * (cycle_fraction(drive.frequency, start) + own_turns));
-        let speed = drive.amplitude / drive.omega();
+        let amplitude = load.share * drive.amplitude;
+        let external =
+            [load.share * (load.give * drive.external + load.push), load.share * (load.give * drive.external_rate)];
+        let (suspension, damped) = (load.suspension.over(load.share), 0.0);
+        let speed = amplitude / drive.omega();
         let swing = speed / drive.omega();
-        Self { start, position, velocity, drive, own_turns, sin_start, cos_start, speed, swing }
+        Self {
+            start,
+            position,
+            velocity,
+            drive,
+            load,
+            suspension,
+            damped,
+            amplitude,
+            external,
+            own_turns,
+            sin_start,
+            cos_start,
+            speed,
+            swing,
+        }
     }
 
     /// The angle of the harmonic force at `time`, s, in turns.
@@ -131,10 +161,18 @@ impl CylinderMotion {
     /// All of the motion at `time`, s.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
-        let Drive { amplitude, external, external_rate, .. } = self.drive;
+        let Self { amplitude, external: [external, external_rate], .. } = *self;
         let turns = self.turns(time);
         let sine = sin_cos(4.0 * turns);
         let ([sin, cos], elapsed) = (sine, time - self.start);
+        let acceleration = excitation::acceleration(amplitude, cos, external) + external_rate * elapsed;
+        let jerk = external_rate - amplitude * self.drive.omega() * sin;
+        if !self.suspension.is_none() {
+            let [position, velocity] = self.after(elapsed, self.oscillation().change(elapsed));
+            let acceleration = acceleration + self.suspension.acceleration(position, velocity);
+            let jerk = jerk + self.suspension.acceleration(velocity, acceleration);
+            return CylinderState { time, position, velocity, acceleration, jerk, turns, sine };
+        }
         let drift = self.velocity - self.speed * self.sin_start;
         let displacement = 0.5 * external + elapsed * external_rate * (1.0 / 6.0);
         CylinderState {
@@ -143,8 +181,8 @@ impl CylinderMotion {
             velocity: self.velocity
                 + self.speed * (sin - self.sin_start)
                 + elapsed * (external + 0.5 * external_rate * elapsed),
-            acceleration: excitation::acceleration(amplitude, cos, external) + external_rate * elapsed,
-            jerk: external_rate - amplitude * self.drive.omega() * sin,
+            acceleration,
+            jerk,
             turns,
             sine,
         }
@@ -155,8 +193,8 @@ impl CylinderMotion {
     pub fn change(&self, time: f64, drive: &DriveChange) -> [f64; 2] {
         let (elapsed, omega) = (time - self.start, self.drive.omega());
         let stiffer = TAU * drive.frequency / omega;
-        let speed = self.drive.amplitude / omega;
-        let speed_change = drive.amplitude / omega - speed * stiffer;
+        let speed = self.amplitude / omega;
+        let speed_change = self.load.share * drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
         let [sin, cos] = sin_cos(4.0 * self.turns(time));
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
@@ -169,14 +207,69 @@ impl CylinderMotion {
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
         let [sin, cos] = sin_cos(4.0 * self.turns(time));
-        drive.amplitude * cos - self.drive.amplitude * sin * drive.angle(time)
+        self.load.share * drive.amplitude * cos - self.amplitude * sin * drive.angle(time)
+    }
+
+    /// Position and velocity `elapsed`, s, after the start, of a suspended cylinder to which that adds this.
+    pub(super) fn after(&self, elapsed: f64, [farther, faster]: [f64; 2]) -> [f64; 2] {
+        [self.position + (self.velocity * elapsed + farther), self.velocity + faster]
     }
 
     /// The same motion described from `time`, s, on, under another drive.
     #[must_use]
     pub fn continued(&self, time: f64, drive: Drive) -> Self {
         let here = self.at(time);
-        Self::new(time, here.position, here.velocity, drive)
+        self.changed(&here, drive, self.load)
+    }
+
+    /// The motion that goes on from `here` under another drive or load.
+    #[must_use]
+    pub fn changed(&self, here: &CylinderState, drive: Drive, load: Load) -> Self {
+        Self { damped: self.damped_at(here.time), ..Self::new(here.time, here.position, here.velocity, drive, load) }
+    }
+
+    /// The oscillation of a suspended cylinder, at the start.
+    pub fn oscillation(&self) -> Oscillation {
+        let Self { suspension, position, velocity, amplitude, external, .. } = *self;
+        let sine = [self.sin_start, self.cos_start];
+        Oscillation { suspension, position, velocity, amplitude, sine, omega: self.drive.omega(), external }
+    }
+
+    /// `z_M''`, m/s^2, of a suspended cylinder `elapsed`, s, after the start.
+    pub fn suspended_acceleration(&self, elapsed: f64) -> f64 {
+        let terms = self.oscillation().terms(elapsed);
+        let sums = terms
+            .iter()
+            .enumerate()
+            .rev()
+            .fold([0.0; 2], |[value, slope], (n, term)| [value + term, slope + n as f64 * term]);
+        let velocity = if elapsed > 0.0 { sums[1] / elapsed } else { self.velocity };
+        let [external, rate] = self.external;
+        let cosine = (TAU * self.drive.frequency * elapsed + self.sin_start.atan2(self.cos_start)).cos();
+        excitation::acceleration(self.amplitude, cosine, external)
+            + rate * elapsed
+            + self.suspension.acceleration(sums[0], velocity)
+    }
+
+    /// Energy that the damper has taken up to `time`, s, over M, J/kg.
+    pub fn damped_at(&self, time: f64) -> f64 {
+        let damping = self.load.suspension.damping;
+        if damping == 0.0 {
+            return self.damped;
+        }
+        let elapsed = time - self.start;
+        self.damped + damped_energy(damping, &self.oscillation().terms(elapsed), elapsed)
+    }
+
+    /// The constant part of `z_M''` at `time`, s, in m/s^2, and its rate, m/s^3.
+    pub fn external_at(&self, time: f64) -> [f64; 2] {
+        let [external, rate] = self.external;
+        [external + rate * (time - self.start), rate]
+    }
+
+    /// What `acceleration`, `z_M''`, m/s^2, would be if the ball did not act on the cylinder.
+    pub fn unloaded(&self, acceleration: f64) -> f64 {
+        acceleration / self.load.share - self.load.push
     }
 }
 
@@ -188,7 +281,7 @@ mod tests {
     #[test]
     fn velocity_and_acceleration_are_the_derivatives_of_position() {
         let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: -0.2 };
-        let motion = CylinderMotion::new(0.37, 0.01, -0.2, drive);
+        let motion = CylinderMotion::new(0.37, 0.01, -0.2, drive, Load { share: 0.8, push: 0.3, ..Load::NONE });
         for k in 0..50 {
             let (t, h) = (0.4 + 0.06 * f64::from(k), 1e-4);
             let slope =
@@ -202,7 +295,7 @@ mod tests {
     #[test]
     fn a_motion_continued_with_the_same_force_goes_on_as_before() {
         let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: 0.0 };
-        let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive);
+        let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive, Load::NONE);
         let continued = motion.continued(1.3, drive);
         assert_relative_eq!(motion.at(2.9).position, continued.at(2.9).position, max_relative = 1e-13);
         assert_relative_eq!(motion.at(2.9).velocity, continued.at(2.9).velocity, max_relative = 1e-13);

@@ -1,5 +1,6 @@
 //! What comes next, and how far the way ahead has been searched.
 
+use super::ball::Start;
 use super::side::Side;
 use crate::noise::intervals::{Anchored, HoldState};
 
@@ -11,6 +12,10 @@ pub enum Prediction {
         side: Side,
     },
     Release {
+        time: f64,
+    },
+    /// A ball with friction comes to a halt on the cylinder.
+    Turn {
         time: f64,
     },
     /// The contact turns, ends or goes on.
@@ -28,10 +33,22 @@ impl Prediction {
         match self {
             Self::Impact { time, .. }
             | Self::Release { time }
+            | Self::Turn { time }
             | Self::ContactChange { time }
             | Self::NoiseSample { time } => time,
         }
     }
+}
+
+/// The begin of a piece of the motion over a suspended cylinder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// The cylinder.
+    pub cylinder: Start,
+    /// dz, m, and its rate, m/s.
+    pub relative: [f64; 2],
+    /// Energy that the damper has taken so far, over M, J/kg.
+    pub damped: f64,
 }
 
 /// How far the present flight (or rest) has been searched.
@@ -50,13 +67,25 @@ pub struct Search {
     pub ahead: Option<Anchored>,
     /// With phase noise: the begin of an earlier hold interval of the block, which the present one follows from.
     pub anchor: Option<HoldState>,
+    /// Over a suspended cylinder: the begin of the first piece that has not been searched, or of that in which the event is
+    /// that has been found, unless it is the present one.
+    pub piece: Option<Piece>,
     /// No event will ever come.
     pub(super) exhausted: bool,
 }
 
 impl Search {
     pub fn new() -> Self {
-        Self { window: 0, found: None, speed: 0.0, after_release: None, ahead: None, anchor: None, exhausted: false }
+        Self {
+            window: 0,
+            found: None,
+            speed: 0.0,
+            after_release: None,
+            ahead: None,
+            anchor: None,
+            piece: None,
+            exhausted: false,
+        }
     }
 
     /// No search at all: no event is predicted.

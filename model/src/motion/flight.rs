@@ -9,6 +9,8 @@
 
 mod angle;
 mod crossing;
+mod curved;
+mod piece;
 mod zeros;
 
 use core::f64::consts::TAU;
@@ -16,7 +18,9 @@ use core::f64::consts::TAU;
 use self::angle::{Angle, Swept};
 use self::zeros::Knot;
 use crate::motion::cylinder::{CylinderMotion, CylinderState};
+use crate::motion::mount::Mount;
 use crate::motion::side::Side;
+use crate::motion::suspended::Oscillation;
 use crate::numerics::product::cycle_fraction;
 use crate::paper::gap::gap;
 
@@ -29,6 +33,18 @@ pub struct Crossing {
     pub side: Side,
     /// Relative speed, m/s, at which it does.
     pub speed: f64,
+}
+
+/// How a flight ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum End {
+    /// The ball meets a membrane.
+    Contact(Crossing),
+    /// dz' is zero, `elapsed`, s, after the start, where friction changes.
+    Turn {
+        /// s.
+        elapsed: f64,
+    },
 }
 
 /// Penetration, in units of s/2, beyond which a ball is outside the gap (a start there) and not on the membrane
@@ -57,17 +73,42 @@ pub struct Flight {
     turns: f64,
     sine: [f64; 2],
     half_travel: f64,
+    /// What gravity and friction add to dz'', m/s^2, by the ball's own motion.
+    relative: f64,
+    /// A suspended cylinder at the start.
+    oscillation: Option<Oscillation>,
 }
 
 impl Flight {
-    /// Free flight from `start`, when dz and its rate are `dz`, m, and `rate`, m/s.
-    pub fn new(cylinder: &CylinderMotion, start: &CylinderState, [dz, rate]: [f64; 2], half_travel: f64) -> Self {
+    /// Free flight from `start`, when dz and its rate are `dz`, m, and `rate`, m/s, of a ball that has the acceleration
+    /// -`relative`, m/s^2.
+    pub fn new(
+        cylinder: &CylinderMotion,
+        start: &CylinderState,
+        [dz, rate]: [f64; 2],
+        half_travel: f64,
+        relative: f64,
+    ) -> Self {
         let (drive, swing) = (&cylinder.drive, cylinder.swing);
         let CylinderState { time, turns, sine, .. } = *start;
-        let external = drive.external + drive.external_rate * (time - cylinder.start);
-        let external = [external / 2.0, drive.external_rate / 6.0];
+        let [external, external_rate] = cylinder.external_at(time);
+        let external = [0.5 * (external + relative), external_rate / 6.0];
         let (frequency, period) = (drive.frequency, 1.0 / drive.frequency);
-        Self { start: time, dz, rate, external, swing, frequency, period, turns, sine, half_travel }
+        let oscillation = (!cylinder.suspension.is_none()).then(|| cylinder.oscillation());
+        Self {
+            start: time,
+            dz,
+            rate,
+            external,
+            swing,
+            frequency,
+            period,
+            turns,
+            sine,
+            half_travel,
+            relative,
+            oscillation,
+        }
     }
 
     /// s/2, m.
@@ -82,6 +123,11 @@ impl Flight {
     /// Length of a search window, s: one period of the excitation.
     pub fn window_length(&self) -> f64 {
         self.period
+    }
+
+    /// The cylinder at the start, if it is suspended, and the time for which its series holds, s.
+    pub fn piece(&self) -> Option<(&Oscillation, f64)> {
+        self.oscillation.as_ref().map(|oscillation| (oscillation, oscillation.suspension.piece(self.omega())))
     }
 
     /// The angle at `tau`, s, in turns.
@@ -146,8 +192,17 @@ impl Flight {
     /// dz, m, and its rate, m/s, at `tau`, s.
     #[inline]
     pub fn at(&self, tau: f64) -> [f64; 2] {
+        if let Some(oscillation) = &self.oscillation {
+            return self.after(tau, oscillation.change(tau));
+        }
         let Angle { swept, .. } = self.angle(tau);
         [self.dz + self.change(tau, &swept), self.slope(tau, &swept)]
+    }
+
+    /// dz, m, and its rate, m/s, at `tau`, s, over a suspended cylinder to which that adds this.
+    pub fn after(&self, tau: f64, [farther, faster]: [f64; 2]) -> [f64; 2] {
+        let by_ball = self.relative * tau;
+        [self.dz + (tau * (self.rate + 0.5 * by_ball) + farther), self.rate + (by_ball + faster)]
     }
 
     /// The acceleration of dz, m/s^2, at `tau`, s.
@@ -188,16 +243,29 @@ impl Flight {
 
     /// The first contact inside window number `window`, which ends at `limit`, s since the start, at the latest.
     pub fn contact_in_window(&self, window: u64, limit: f64) -> Option<Crossing> {
+        match self.end_in_window(window, limit, 0.0)? {
+            End::Contact(crossing) => Some(crossing),
+            End::Turn { .. } => None,
+        }
+    }
+
+    /// The first contact, or before it the first place where dz' no longer has the sign `slip` (0 for none), inside window number
+    /// `window`, which ends at `limit`, s since the start, at the latest.
+    #[inline]
+    pub fn end_in_window(&self, window: u64, limit: f64, slip: f64) -> Option<End> {
         let (begin, end) = self.window_bounds(window, limit);
         let mut from = if begin == 0.0 { self.first_knot() } else { self.knot(0, begin, self.angle(begin)) };
-        if end == limit && !self.within_reach(&from, end) {
+        if slip == 0.0 && end == limit && !self.within_reach(&from, end) {
             return None;
+        }
+        if self.has_curvature_only() {
+            return self.end_between_inflections(from, self.knot(0, end, self.angle(end)), slip);
         }
         for zero in self.zeros(1, begin, end).iter() {
             let to = self.knot_at(0, zero);
-            let contact = self.contact_in_piece(&from, &to);
-            if contact.is_some() {
-                return contact;
+            let found = self.end_in_piece(&from, &to, slip);
+            if found.is_some() {
+                return found;
             }
             from = to;
         }
@@ -205,7 +273,17 @@ impl Flight {
         let is_first_period = begin == 0.0 && end == self.period;
         let last = if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
         let last = self.knot(0, end, last);
-        self.contact_in_piece(&from, &last)
+        self.end_in_piece(&from, &last, slip)
+    }
+
+    /// The end in a piece on which dz is monotone: it begins with a turn if it leads back, by more than rounding, as it may where
+    /// the ball has just set out.
+    #[inline]
+    fn end_in_piece(&self, from: &Knot, to: &Knot, slip: f64) -> Option<End> {
+        if slip != 0.0 && slip * (to.value - from.value) < -self.rounding(to.tau) {
+            return Some(End::Turn { elapsed: from.tau });
+        }
+        self.contact_in_piece(from, to).map(End::Contact)
     }
 
     fn window_bounds(&self, window: u64, limit: f64) -> (f64, f64) {
@@ -252,10 +330,27 @@ impl Flight {
         presses_on.then(|| self.crossing(side, from, to, rounding))
     }
 
-    /// The first time in window number `window` from which on the acceleration no longer presses the ball against
-    /// `side`, s since the start.
-    pub fn release_in_window(&self, side: Side, window: u64, limit: f64) -> Option<f64> {
+    /// The first time in window number `window` at which the acceleration takes a ball that the cylinder carries away from
+    /// `side`, or to any side, against friction, s since the start.
+    pub fn departure_in_window(&self, support: Option<Side>, mount: &Mount, window: u64, limit: f64) -> Option<f64> {
+        let departure = |side| self.release_in_window(side, mount, window, limit);
+        match support {
+            Some(side) => departure(side),
+            None => Side::BOTH.into_iter().filter_map(departure).min_by(f64::total_cmp),
+        }
+    }
+
+    /// The first time in window number `window` from which on the acceleration takes the ball away from `side` against friction, s
+    /// since the start.
+    fn release_in_window(&self, side: Side, mount: &Mount, window: u64, limit: f64) -> Option<f64> {
         let (begin, end) = self.window_bounds(window, limit);
+        // Both bodies have this acceleration: friction holds the ball up to its own, without that of the cylinder.
+        let [c2, c3] = self.external;
+        let held = Self { external: [c2 + 0.5 * side.sign() * mount.friction, c3], ..*self };
+        held.release_without_friction(side, begin, end)
+    }
+
+    fn release_without_friction(&self, side: Side, begin: f64, end: f64) -> Option<f64> {
         let zeros = self.zeros(2, begin, end);
         let begins = core::iter::once(begin).chain(zeros.iter().map(|zero| zero.tau));
         let ends = zeros.iter().map(|zero| zero.tau).chain(core::iter::once(end));

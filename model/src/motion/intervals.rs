@@ -11,6 +11,7 @@ use super::Motion;
 use super::cylinder::{CylinderMotion, CylinderState, Drive};
 use super::events::{Prediction, Search};
 use super::flight::Flight;
+use super::mount::Load;
 use crate::noise::Noise;
 use crate::noise::block::BLOCK;
 use crate::noise::intervals::{Anchored, Conditions, HoldState};
@@ -22,6 +23,7 @@ impl Motion {
             hold: noise.hold(),
             resting: self.ball.support().map(super::side::Side::sign),
             rate: drive.external_rate,
+            incline: self.mount.incline,
             amplitude: drive.amplitude,
             omega: TAU * drive.frequency,
             half_travel: self.half_travel,
@@ -68,11 +70,17 @@ impl Motion {
 
     fn cylinder_from(&self, noise: &Noise, state: &HoldState, phase: f64) -> CylinderMotion {
         let drive = Drive { phase, external: state.external, ..self.cylinder.drive };
-        CylinderMotion::new(noise.begin_of(state.sample), state.position, state.velocity, drive)
+        CylinderMotion::new(noise.begin_of(state.sample), state.position, state.velocity, drive, Load::NONE)
     }
 
     fn flight_from(&self, state: &HoldState, cylinder: &CylinderMotion) -> Flight {
-        Flight::new(cylinder, &cylinder.at(cylinder.start), [state.dz, state.rate], self.half_travel)
+        Flight::new(
+            cylinder,
+            &cylinder.at(cylinder.start),
+            [state.dz, state.rate],
+            self.half_travel,
+            self.mount.incline,
+        )
     }
 
     /// The cylinder's motion when the event comes that is predicted.
@@ -83,6 +91,7 @@ impl Motion {
 
     /// Enters the hold interval ahead in which the event is that has been found.
     pub fn enter_predicted(&mut self, noise: &mut Noise) {
+        self.enter_predicted_piece();
         if let Some(ahead) = self.search.ahead {
             self.enter(noise, ahead);
         }
@@ -106,6 +115,7 @@ impl Motion {
 
     /// Enters the hold interval of `time`, s, up to which nothing happens any more.
     pub fn enter_interval_of(&mut self, noise: &mut Noise, time: f64) {
+        self.enter_piece_of(time);
         if !noise.in_blocks() || noise.limit().is_none_or(|limit| time < limit) {
             return;
         }
@@ -148,7 +158,7 @@ impl Motion {
         let flight = self.flight_from(state, &cylinder);
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if let Some(side) = self.ball.support() {
-            let release = flight.release_in_window(side, 0, hold);
+            let release = flight.departure_in_window(Some(side), &self.mount, 0, hold);
             self.search.found = release.map(|elapsed| Prediction::Release { time: time(elapsed) });
             return;
         }

@@ -2,7 +2,7 @@
 
 use super::cylinder::CylinderState;
 use super::events::{Prediction, Search};
-use super::flight::Flight;
+use super::flight::{End, Flight};
 use super::side::Side;
 use super::{Ball, Motion};
 use crate::noise::Noise;
@@ -19,7 +19,7 @@ impl Motion {
     /// All events up to `time`, s, have happened: windows that lie before are passed over.
     pub fn resume_search(&mut self, time: f64) {
         self.search = Search::new();
-        if self.ball.contact().is_none() {
+        if self.ball.contact().is_none() && self.flight.piece().is_none() {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             // saturates; time does not lie before the start
             let passed = ((time - self.flight.start) / self.flight.window_length()) as u64;
@@ -42,6 +42,9 @@ impl Motion {
             let sample = limit.filter(|limit| *limit <= end);
             let change = Prediction::ContactChange { time: end };
             return Some(sample.map_or(change, |time| Prediction::NoiseSample { time }));
+        }
+        if self.flight.piece().is_some() {
+            return self.next_event_in_pieces(limit, until);
         }
         let start = self.flight.start;
         let in_blocks = noise.in_blocks();
@@ -85,25 +88,33 @@ impl Motion {
         if let Ball::InContact(contact) = &self.ball {
             return contact.end();
         }
+        if let Some(end) = self.end_of_piece() {
+            // Within the present piece nothing happens before the event.
+            let searched = self.search.piece.map_or(end, |piece| piece.cylinder.time);
+            let calm = self.search.found.map_or_else(|| self.before_horizon_of(searched), Prediction::time);
+            return calm.min(end);
+        }
         let Search { window, found, exhausted, .. } = &self.search;
         match found {
             Some(event) => event.time(),
             None if *exhausted => f64::INFINITY,
-            None => {
-                let searched = self.flight.start + *window as f64 * self.flight.window_length();
-                let horizon = self.flight.window_length();
-                // Less the rounding of this difference and of the sum that the search compares with.
-                searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
-            }
+            None => self.before_horizon_of(self.flight.start + *window as f64 * self.flight.window_length()),
         }
+    }
+
+    /// The last time, s, from which the search need not go farther than `searched`, s.
+    fn before_horizon_of(&self, searched: f64) -> f64 {
+        let horizon = self.flight.window_length();
+        // Less the rounding of this difference and of the sum that the search compares with.
+        searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
     }
 
     /// Searches one window of the flight or of the rest; both limits mean the end of the hold interval, s since the start and s.
     fn search_window(&mut self, limit: f64, end: f64) {
-        let Self { cylinder, ball, flight, search, .. } = self;
+        let Self { mount, cylinder, ball, slip, flight, search, .. } = self;
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
-        if let Some(side) = ball.support() {
-            let release = flight.release_in_window(side, search.window, limit);
+        if ball.is_carried() {
+            let release = flight.departure_in_window(ball.support(), mount, search.window, limit);
             search.found = release.map(|elapsed| Prediction::Release { time: time(elapsed) });
             search.window += 1;
             // Without a force that changes, the ball rests for ever.
@@ -118,10 +129,15 @@ impl Motion {
             }
             return;
         };
-        let crossing = flight.contact_in_window(window, limit);
         search.window = window + 1;
-        search.found = crossing.map(|there| Prediction::Impact { time: time(there.elapsed), side: there.side });
-        search.speed = crossing.map_or(0.0, |there| there.speed);
+        match flight.end_in_window(window, limit, *slip) {
+            Some(End::Contact(there)) => {
+                search.found = Some(Prediction::Impact { time: time(there.elapsed), side: there.side });
+                search.speed = there.speed;
+            }
+            Some(End::Turn { elapsed }) => search.found = Some(Prediction::Turn { time: time(elapsed) }),
+            None => {}
+        }
     }
 
     /// The next impact that has been found, and its relative speed, m/s.

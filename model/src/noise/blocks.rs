@@ -46,7 +46,7 @@ struct Force {
 impl Force {
     fn new(p: &Parameters) -> Self {
         let (hold, x) = (p.noise_hold, PI * p.frequency * p.noise_hold);
-        let push = p.amplitude / p.cylinder_mass * hold;
+        let push = p.harmonic_acceleration() * hold;
         Self {
             seed: p.seed,
             intensity: p.phase_noise,
@@ -178,6 +178,7 @@ impl core::fmt::Debug for Blocks {
 mod tests {
     use super::*;
     use crate::motion::cylinder::{CylinderMotion, Drive};
+    use crate::motion::mount::Load;
     use core::f64::consts::TAU;
     use proptest::prelude::*;
 
@@ -202,7 +203,7 @@ mod tests {
                 let phase = phase + intensity * normal::normal(seed, sample);
                 let drive = Drive { amplitude, frequency, phase, external: 0.0, external_rate: 0.0 };
                 let [start, end] = [sample, sample + 1].map(|sample| sample as f64 * hold);
-                let motion = CylinderMotion::new(start, 0.0, 0.0, drive);
+                let motion = CylinderMotion::new(start, 0.0, 0.0, drive, Load::NONE);
                 // Rounding of the times, of the angles and of the differences that the closed form consists of.
                 let angle = 16.0 * f64::EPSILON * (phase.abs() + TAU) + TAU * frequency * 4.0 * f64::EPSILON * end;
                 let (time, swing) = (4.0 * f64::EPSILON * end, amplitude / (TAU * frequency).powi(2));

@@ -51,6 +51,8 @@ pub struct Conditions {
     pub resting: Option<f64>,
     /// Rate of the external force over M, m/s^3.
     pub rate: f64,
+    /// What gravity adds to the acceleration of dz, m/s^2.
+    pub incline: f64,
     /// A / M, m/s^2.
     pub amplitude: f64,
     /// 2 pi `f_0`, rad/s.
@@ -83,7 +85,8 @@ impl Conditions {
             [anchor.dz, 0.0]
         } else {
             let rate = anchor.rate - v0;
-            [anchor.dz + (time * rate + position), rate + gained]
+            let [faster, farther] = [time * self.incline, 0.5 * time * time * self.incline];
+            [anchor.dz + (time * rate + (position + farther)), rate + (gained + faster)]
         };
         HoldState {
             sample: anchor.sample + (place - from) as u64,
@@ -102,7 +105,7 @@ impl Conditions {
         let mut from = self.at(anchor, block, first);
         (first..BLOCK).find(|place| {
             let to = self.at(anchor, block, place + 1);
-            let change = to.velocity - from.velocity;
+            let change = to.velocity - from.velocity + self.hold * self.incline;
             from = to;
             sign * change <= doubt
         })
@@ -127,14 +130,15 @@ impl Conditions {
         let [velocity, position] = block.at(from, self.hold);
         let time = self.hold * (BLOCK - from) as f64;
         let straight = anchor.dz + time * (anchor.rate - velocity);
-        let external = time * time * (anchor.external.abs() / 2.0 + self.rate.abs() * time / 6.0);
+        let external = 0.5 * (anchor.external.abs() + self.incline.abs()) + self.rate.abs() * time / 6.0;
+        let external = time * time * external;
         1.000_001 * (anchor.dz.abs().max(straight.abs()) + block.reach + position.abs() + external)
     }
 
     /// |dz|, m, at both ends of an interval up to which the ball meets no membrane in between; for one block.
     fn near(&self, from: &HoldState) -> f64 {
         let [begin, end] = [0.0, BLOCK as f64].map(|n| (from.external + n * self.hold * self.rate).abs());
-        let bulge = 0.125 * self.hold * self.hold * (self.amplitude + begin.max(end));
+        let bulge = 0.125 * self.hold * self.hold * (self.amplitude + (begin.max(end) + self.incline.abs()));
         let swing = self.amplitude / (self.omega * self.omega);
         self.half_travel * (1.0 - 1e-12) - 1.001 * bulge - 64.0 * f64::EPSILON * swing
     }

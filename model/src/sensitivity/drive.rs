@@ -13,7 +13,8 @@ impl Tangential<'_> {
             let end = noise.begin_of(sample + 1);
             sum = self.carried(sum, &motion, end, sample, change);
             sample += 1;
-            let next = CylinderMotion::new(end, 0.0, 0.0, Drive { phase: noise.phase(sample), ..motion.drive });
+            let next =
+                CylinderMotion::new(end, 0.0, 0.0, Drive { phase: noise.phase(sample), ..motion.drive }, motion.load);
             // The end comes later by the change of the hold time in each interval before.
             sum[1] += (motion.at(end).acceleration - next.at(end).acceleration) * sample as f64 * change.of.noise_hold;
             motion = next;
@@ -49,12 +50,13 @@ impl Tangential<'_> {
         self.noise.limit().is_some() && time == self.noise.begin_of(self.sample_of_release())
     }
 
-    /// Acceleration of the wall, m/s^2, just before the release at `time`, s: zero but at a jump.
+    /// dz'', m/s^2, just before the release at `time`, s: zero but at a jump.
     pub(super) fn acceleration_before(&self, time: f64) -> f64 {
         let Some(sample) = self.sample_of_release().checked_sub(1).filter(|_| self.is_jump(time)) else { return 0.0 };
-        let CylinderMotion { start, drive, .. } = self.motion.predicted_cylinder(self.noise);
+        let CylinderMotion { start, drive, load, .. } = self.motion.predicted_cylinder(self.noise);
         let (phase, external) = (self.noise.phase(sample), drive.external + drive.external_rate * (time - start));
-        CylinderMotion::new(time, 0.0, 0.0, Drive { phase, external, ..drive }).at(time).acceleration
+        let cylinder = CylinderMotion::new(time, 0.0, 0.0, Drive { phase, external, ..drive }, load);
+        cylinder.at(time).acceleration + self.motion.mount.incline
     }
 
     /// Change of the release at `time`, s: the acceleration of the wall passes zero there, or jumps at the begin of a hold
@@ -65,6 +67,6 @@ impl Tangential<'_> {
             return self.tangent.of(|change| sample as f64 * change.of.noise_hold);
         }
         let by_drive = self.tangent.of(|change| cylinder.acceleration_change(time, &self.drive_change(sample, change)));
-        bounded(-(self.tangent.push + by_drive) / cylinder.at(time).jerk)
+        bounded(-(self.tangent.push + self.tangent.incline() + by_drive) / cylinder.at(time).jerk)
     }
 }

@@ -16,7 +16,7 @@ use crate::parameters::Parameters;
 /// a chattering sequence, whose changes are as small as they are.
 pub const GRAZING_SPEED: f64 = 1e-7;
 
-/// Whether an impact at relative `speed`, m/s, grazes, under the wall's `acceleration`, m/s^2.
+/// Whether an impact at relative `speed`, m/s, grazes, where dz'' is this `acceleration`, m/s^2.
 pub fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {
     speed <= 0.0 || (speed < GRAZING_SPEED && side.sign() * acceleration <= 0.0)
 }
@@ -61,13 +61,14 @@ impl Tangential<'_> {
         let CylinderState { time, acceleration, .. } = hit.wall;
         let [_, velocity] = self.cylinder_change(time);
         let motion = self.motion_change(time);
-        if grazes(side, speed, acceleration) {
+        if grazes(side, speed, acceleration + self.motion.mount.incline) {
             return HitChange { motion, wall: [velocity, -motion[1]], ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
+        let relative = acceleration + self.motion.mount.incline;
         let delay = self.delay_by(motion[0], side, speed);
         let wall_change = velocity + acceleration * delay;
-        let speed_change = sign * (motion[1] + acceleration * delay);
+        let speed_change = sign * (motion[1] + relative * delay);
         let rebound_change = self.tangent.rebound_change(restitution, speed, speed_change);
         let membrane = self.tangent.membrane();
         let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
@@ -78,7 +79,7 @@ impl Tangential<'_> {
             excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
             motion: [
                 sign * (self.tangent.half_travel() + impact::rebound(restitution, speed) * delay),
-                -sign * rebound_change - acceleration * delay,
+                -sign * rebound_change - relative * delay,
             ]
             .map(bounded),
         }

@@ -5,7 +5,7 @@ use std::sync::mpsc;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use videg_model::{ContactLaw, Harvester, ModelError, NoiseModel, Parameters, Quantity, Side};
+use videg_model::{ContactLaw, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Quantity, Side};
 
 #[path = "../../../tests/support/edges.rs"]
 mod edges;
@@ -67,7 +67,13 @@ pub fn kinds() -> Vec<(&'static str, Parameters)> {
         ("chattering", Parameters { amplitude: 5.0, restitution: 0.3, frequency: 1.0, ..impulsive }),
         ("with held noise", held),
         ("with a Wiener phase", Parameters { noise_model: NoiseModel::Wiener, ..held }),
+        ("inclined", Parameters { inclination: 0.1, ..impulsive }),
+        ("rubbing", Parameters { friction: 0.1, reaction: true, ..impulsive }),
+        ("suspended", Parameters { suspension_stiffness: 20.0, suspension_damping: 0.1, ..impulsive }),
+        ("on a shaker", Parameters { excitation_kind: ExcitationKind::Motion, acceleration: 4.0, ..impulsive }),
         ("compliant", compliant),
+        ("compliant and rubbing", Parameters { friction: 0.1, inclination: 0.1, ..compliant }),
+        ("compliant and suspended", Parameters { suspension_stiffness: 20.0, suspension_damping: 0.1, ..compliant }),
         ("compliant with reaction", Parameters { reaction: true, ..compliant }),
         ("compliant with feedback", Parameters { electrostatic_feedback: true, ..compliant }),
         ("compliant with noise", Parameters { contact_law: ContactLaw::Compliant, ..held }),
@@ -96,6 +102,10 @@ pub fn outputs(harvester: &Harvester) -> Vec<(&'static str, f64)> {
         ("kinetic energy of the cylinder", energies.cylinder),
         ("elastic energy", energies.elastic),
         ("impact loss", energies.impact_loss),
+        ("friction", energies.friction),
+        ("work of gravity", energies.gravity),
+        ("energy of the suspension", energies.suspension),
+        ("loss of the damper", energies.damping),
         ("work of the excitation", energies.excitation),
         ("electrical work", energies.electrical),
         ("work of the walls", energies.wall),
@@ -125,14 +135,29 @@ pub fn assert_finite(harvester: &Harvester, what: &str) {
 pub fn assert_balanced(harvester: &Harvester, parameters: &Parameters, what: &str) {
     let e = harvester.energies();
     let start = 0.5 * parameters.ball_mass * parameters.ball_velocity * parameters.ball_velocity;
-    let residual = e.ball + e.elastic + e.impact_loss - (start + e.wall + e.electrical);
+    let residual = e.ball + e.elastic + e.impact_loss + e.friction - (start + e.wall + e.electrical + e.gravity);
     let swing = 2.0 * parameters.cylinder_amplitude() * std::f64::consts::TAU * parameters.frequency;
     let fastest = parameters.cylinder_velocity.abs() + swing + harvester.cylinder_velocity().abs();
     let of_wall = 0.5 * parameters.ball_mass * fastest * fastest;
     let moved = e.ball + e.elastic + e.impact_loss + start + e.wall.abs() + e.electrical.abs() + of_wall;
-    let tolerance = 1e-9 + digits_of_time(harvester, parameters, fastest);
+    let moved = moved + e.friction + e.gravity.abs();
+    let tolerance = 2e-9 + digits_of_time(harvester, parameters, fastest);
     let time = harvester.time();
-    assert!(residual.abs() <= tolerance * moved, "{what}: the books miss {residual} of {moved} J at {time} s");
+    // Gravity and friction work along differences of positions, which may be large.
+    let pull = parameters.ball_mass * (parameters.incline().abs() + parameters.friction_acceleration());
+    let far = harvester.ball_position().abs().max(parameters.initial_ball_position().abs());
+    // Each event puts the ball where it is at the double next to the time of the event.
+    let totals = harvester.totals();
+    let speed = totals.last_speed
+        + fastest
+        + parameters.ball_velocity.abs()
+        + (pull / parameters.ball_mass * parameters.travel()).sqrt();
+    let moved_by_events = (1 + totals.impacts) as f64 * speed * (time.abs().next_up() - time.abs());
+    let rounding = 16.0 * pull * (f64::EPSILON * far + moved_by_events);
+    assert!(
+        residual.abs() <= tolerance * moved + rounding,
+        "{what}: the books miss {residual} of {moved} J at {time} s"
+    );
 }
 
 /// What the digits of time are worth: events are put at doubles, by the rounding of which a wall turns on, or a contact at
@@ -143,9 +168,11 @@ fn digits_of_time(harvester: &Harvester, parameters: &Parameters, speed: f64) ->
     let of_contact = if deflection > 0.0 { speed / deflection } else { 0.0 };
     let rate = match parameters.contact_law {
         ContactLaw::Impulsive => std::f64::consts::TAU * parameters.frequency,
-        ContactLaw::Compliant => of_contact,
+        ContactLaw::Compliant => of_contact + std::f64::consts::TAU * parameters.frequency,
     };
-    16.0 * (time.next_up() - time) * rate
+    let pull = parameters.incline().abs() + parameters.friction_acceleration();
+    let by_pull = if pull > 0.0 { pull / (speed + (pull * parameters.travel()).sqrt()) } else { 0.0 };
+    16.0 * (time.next_up() - time) * (rate + by_pull)
 }
 
 /// Runs a harvester from `start`, s, in a few steps: every output stays finite, the books close and the events keep to the
@@ -173,6 +200,9 @@ pub fn assert_explained(error: &ModelError, what: &str) {
         ModelError::Order { name, bound_name, .. } => text.contains(name) && text.contains(bound_name),
         ModelError::TooManyEvents { limit, .. } => text.contains(&limit.to_string()),
         ModelError::TooDeep { bound, .. } => text.contains(&format!("at most {bound} m")),
+        ModelError::TooStiff { name, limit, .. } => text.contains(name) && text.contains(&limit.to_string()),
+        ModelError::NeedsForce { name, .. } => text.contains(name) && text.contains("allowed: 0"),
+        ModelError::SuspendedReaction => text.contains("allowed: "),
         _ => false,
     };
     assert!(explained, "{what}: {text}");

@@ -2,8 +2,8 @@
 //! starts on a membrane, or is put on it, may hit it at once or rest on it: then initial values are those after the impact.
 //! What shows in the last digits only, as the time of such an impact is rounded, is no dependency.
 
-/// The motion of the cylinder without the external force.
-pub(super) const DRIVE: &[&str] = &[
+/// The motion of cylinder and ball without the external force.
+const DRIVE: &[&str] = &[
     "cylinder.mass",
     "excitation.amplitude",
     "excitation.frequency",
@@ -12,6 +12,15 @@ pub(super) const DRIVE: &[&str] = &[
     "excitation.noiseHold",
     "excitation.noiseModel",
     "excitation.seed",
+    "excitation.kind",
+    "excitation.acceleration",
+    "cylinder.inclination",
+    "gravity",
+    "ball.friction",
+    "cylinder.suspensionStiffness",
+    "cylinder.suspensionDamping",
+    "ball.mass",
+    "contact.reaction",
 ];
 
 /// Whether the ball hits a membrane at the start or rests on it, how fast, and where it is then.
@@ -24,6 +33,15 @@ pub(super) const IMPACT: &[&str] = &[
     DRIVE[5],
     DRIVE[6],
     DRIVE[7],
+    DRIVE[8],
+    DRIVE[9],
+    DRIVE[10],
+    DRIVE[11],
+    DRIVE[12],
+    DRIVE[13],
+    DRIVE[14],
+    DRIVE[15],
+    DRIVE[16],
     "cylinder.length",
     "frame.width",
     "ball.radius",
@@ -36,8 +54,6 @@ pub(super) const IMPACT: &[&str] = &[
     "membrane.restitution",
 ];
 
-pub(super) const BALL: &[&str] = &["ball.mass"];
-
 /// The capacitance of a flat membrane.
 pub(super) const FILM: &[&str] =
     &["membrane.initialRadius", "membrane.initialThickness", "membrane.prestretch", "membrane.relativePermittivity"];
@@ -46,4 +62,4 @@ pub(super) const FILM: &[&str] =
 pub(super) const FORCE_LAW: &[&str] = &["membrane.stiffness", "membrane.stiffnessExponent"];
 
 /// Options of a contact.
-pub(super) const OPTIONS: &[&str] = &["contact.electrostaticFeedback", "contact.reaction"];
+pub(super) const OPTIONS: &[&str] = &["contact.electrostaticFeedback"];

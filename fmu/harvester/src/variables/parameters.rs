@@ -16,6 +16,15 @@ static CONTACT_LAW: EnumerationType = EnumerationType {
     ],
 };
 
+static EXCITATION_KIND: EnumerationType = EnumerationType {
+    name: "ExcitationKind",
+    description: "What the excitation prescribes",
+    items: &[
+        ("force", "The force on the cylinder, Eq. (7)"),
+        ("motion", "The acceleration of the cylinder: a shaker moves it, whatever acts on it"),
+    ],
+};
+
 static NOISE_MODEL: EnumerationType = EnumerationType {
     name: "NoiseModel",
     description: "How the phase noise of Section 5.2 is read",
@@ -69,10 +78,15 @@ const FEEDBACK: Choice<Harvester> = Choice::ELECTROSTATIC_FEEDBACK;
 const SEED: Choice<Harvester> = Choice::SEED;
 
 /// Every real parameter of the model.
-pub(super) static PARAMETERS: [V; Parameters::TABLE.len()] = real_rows(Quantity::TABLE);
+static REALS: [V; Parameters::TABLE.len()] = real_rows(Quantity::TABLE);
+
+/// Real parameters number `from` to `to`. They are in the table by the release that they came with.
+pub(super) const fn reals(from: usize, to: usize) -> &'static [V] {
+    REALS.split_at(to).0.split_at(from).1
+}
 
 /// Parameters that choose or count, in the order of the model.
-pub(super) static CHOICES: [V; Parameters::CHOICES.len()] = [
+static CHOICES: [V; Parameters::CHOICES.len()] = [
     V::integer_parameter(SEED.name, SEED.start, SEED.description).access(SEED.get, SEED.set),
     enumeration(&Choice::NOISE_MODEL, &NOISE_MODEL),
     enumeration(&Choice::OUTSIDE_GAP, &OUTSIDE_GAP),
@@ -83,7 +97,13 @@ pub(super) static CHOICES: [V; Parameters::CHOICES.len()] = [
     ),
     V::boolean_parameter(REACTION.name, REACTION.start != 0, REACTION.description)
         .access(|slave| slave.parameters.reaction, |slave, on| slave.parameters.reaction = on),
+    enumeration(&Choice::EXCITATION_KIND, &EXCITATION_KIND),
 ];
+
+/// Choices number `from` to `to`, likewise.
+pub(super) const fn choices(from: usize, to: usize) -> &'static [V] {
+    CHOICES.split_at(to).0.split_at(from).1
+}
 
 #[cfg(test)]
 mod tests {
@@ -92,6 +112,6 @@ mod tests {
     #[test]
     fn the_rows_have_the_order_and_the_names_of_the_tables_of_the_model() {
         let names = Parameters::TABLE.iter().map(|it| it.name).chain(Parameters::CHOICES.iter().map(|it| it.name));
-        assert!(PARAMETERS.iter().chain(&CHOICES).map(Variable::name).eq(names));
+        assert!(REALS.iter().chain(&CHOICES).map(Variable::name).eq(names));
     }
 }

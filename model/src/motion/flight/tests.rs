@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::motion::cylinder::Drive;
+use crate::motion::mount::Load;
 use proptest::prelude::*;
 
 const HALF_TRAVEL: f64 = 0.02;
@@ -23,8 +24,8 @@ prop_compose! {
     ) -> Flight {
         let amplitude = swing * (TAU * frequency).powi(2);
         let drive = Drive { amplitude, frequency, phase, external, external_rate };
-        let cylinder = CylinderMotion::new(start, 0.0, 0.0, drive);
-        Flight::new(&cylinder, &cylinder.at(start), [place * HALF_TRAVEL, -velocity], HALF_TRAVEL)
+        let cylinder = CylinderMotion::new(start, 0.0, 0.0, drive, Load::NONE);
+        Flight::new(&cylinder, &cylinder.at(start), [place * HALF_TRAVEL, -velocity], HALF_TRAVEL, 0.0)
     }
 }
 

@@ -25,6 +25,13 @@ pub(super) struct Zero {
     sine: [f64; 2],
 }
 
+impl Zero {
+    /// A zero at `tau`, s, where the angle has this sine and cosine.
+    pub(super) fn new(tau: f64, sine: [f64; 2]) -> Self {
+        Self { tau, sine }
+    }
+}
+
 /// Zeros in increasing order. A constant plus a harmonic function has two in a period; by Rolle's theorem each lower
 /// derivative has at most one more than the one above.
 #[derive(Debug, Clone, Copy, Default)]
@@ -86,7 +93,8 @@ impl Flight {
         let last = self.knot(order, end, self.angle(end));
         let turns = self.zeros(order + 1, begin, end);
         for to in turns.iter().map(|zero| self.knot_at(order, zero)).chain(core::iter::once(last)) {
-            let sign = from.value.signum();
+            // A zero at the begin itself is none in between.
+            let sign = if from.value == 0.0 { to.value.signum() } else { from.value.signum() };
             if sign != to.value.signum() {
                 let tau = bracketed_root(from.tau, to.tau, |tau| {
                     let derivatives = self.derivatives(tau, &self.angle(tau));

@@ -1,0 +1,55 @@
+//! The end of a flight under a constant force besides the harmonic one, as gravity and friction are.
+//!
+//! The extrema of dz have no closed form then, but its inflections have. Between two of these dz is convex or concave: it has one
+//! extremum at most, which lies within its tangents. Only where these leave a doubt the extremum is worked out.
+
+use super::zeros::{Knot, Zero};
+use super::{End, Flight};
+use crate::motion::side::Side;
+use crate::numerics::roots::bracketed_root;
+
+impl Flight {
+    /// Whether the acceleration of dz has a constant part, and nothing else beside the harmonic one.
+    pub(super) fn has_curvature_only(&self) -> bool {
+        self.external[0] != 0.0 && self.external[1] == 0.0
+    }
+
+    /// The end of the flight between these places of one window.
+    pub(super) fn end_between_inflections(&self, mut from: Knot, last: Knot, slip: f64) -> Option<End> {
+        let mut slope = self.slope(from.tau, &from.angle.swept);
+        let inflections = self.zeros(2, from.tau, last.tau);
+        for to in inflections.iter().map(|zero| self.knot_at(0, zero)).chain(core::iter::once(last)) {
+            let slope_to = self.slope(to.tau, &to.angle.swept);
+            let found = if slope * slope_to >= 0.0 {
+                self.end_in_piece(&from, &to, slip)
+            } else {
+                self.end_about_extremum((&from, slope), (&to, slope_to), slip)
+            };
+            if found.is_some() {
+                return found;
+            }
+            (from, slope) = (to, slope_to);
+        }
+        None
+    }
+
+    /// The end between two places with these slopes of other signs, between which dz is convex or concave.
+    fn end_about_extremum(&self, (from, slope): (&Knot, f64), (to, slope_to): (&Knot, f64), slip: f64) -> Option<End> {
+        let ahead = if slope > 0.0 { Side::Left } else { Side::Right };
+        let behind = if slope > 0.0 { Side::Right } else { Side::Left };
+        // Where the tangents meet, dz is farther than it comes.
+        let elapsed = (to.value - from.value - slope_to * (to.tau - from.tau)) / (slope - slope_to);
+        let farthest = from.value + slope * elapsed;
+        let is_open = |side: Side, value: f64| self.room(side) - side.sign() * value > self.rounding(to.tau);
+        if slip == 0.0 && is_open(ahead, farthest) && is_open(behind, to.value) {
+            return None;
+        }
+        let sign = slope.signum();
+        let tau = bracketed_root(from.tau, to.tau, |tau| {
+            let [_, slope, curvature, ..] = self.derivatives(tau, &self.angle(tau));
+            (sign * slope, sign * curvature)
+        });
+        let extremum = self.knot_at(0, Zero::new(tau, self.angle(tau).sine));
+        self.end_in_piece(from, &extremum, slip).or_else(|| self.end_in_piece(&extremum, to, slip))
+    }
+}
