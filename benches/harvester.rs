@@ -27,6 +27,22 @@ fn event_driven(parameters: &Parameters, steps: u32) -> Result<f64, ModelError> 
     Ok(harvester.totals().voltage_gain)
 }
 
+/// Fig. 14 beside the same capsule held and driven in other ways; all have some 600 events.
+fn mounts(criterion: &mut Criterion) {
+    let level = parameters("fig14");
+    let mut group = criterion.benchmark_group("100 s of fig14, another mount");
+    for (name, p) in [
+        ("level, free, without friction", level),
+        ("inclined", Parameters { inclination: 0.02, ..level }),
+        ("with friction", Parameters { friction: 0.02, ..level }),
+        ("suspended", Parameters { suspension_stiffness: 5.0, suspension_damping: 0.02, ..level }),
+        ("keeping the momentum", Parameters { reaction: true, ..level }),
+    ] {
+        group.bench_function(name, |b| b.iter(|| event_driven(black_box(&p), 1)));
+    }
+    group.finish();
+}
+
 fn runs_of_100_s(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("100 s");
     for case in ["fig14", "table3-2hz"] {
@@ -49,5 +65,5 @@ fn runs_of_100_s(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, runs_of_100_s);
+criterion_group!(benches, runs_of_100_s, mounts);
 criterion_main!(benches);

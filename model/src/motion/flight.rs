@@ -258,8 +258,11 @@ impl Flight {
         if slip == 0.0 && end == limit && !self.within_reach(&from, end) {
             return None;
         }
+        // After one period the angle is what it was; of many periods the end is not that exact.
+        let is_first_period = begin == 0.0 && end == self.period;
+        let at_end = || if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
         if self.has_curvature_only() {
-            return self.end_between_inflections(from, self.knot(0, end, self.angle(end)), slip);
+            return self.end_between_inflections(from, self.knot(0, end, at_end()), slip);
         }
         for zero in self.zeros(1, begin, end).iter() {
             let to = self.knot_at(0, zero);
@@ -269,10 +272,7 @@ impl Flight {
             }
             from = to;
         }
-        // After one period the angle is what it was; of many periods the end is not that exact.
-        let is_first_period = begin == 0.0 && end == self.period;
-        let last = if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
-        let last = self.knot(0, end, last);
+        let last = self.knot(0, end, at_end());
         self.end_in_piece(&from, &last, slip)
     }
 

@@ -6,8 +6,13 @@ const MAX_ITERATIONS: u32 = 200;
 /// Root of a monotone `function` (value and slope) that is positive at `low` and not at `high`; bisection wherever Newton's
 /// method would leave the bracket.
 pub fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    root_near(0.5 * (low + high), low, high, function)
+}
+
+/// The same, where the root is about at `start`.
+pub fn root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high) = (low, high);
-    let mut x = 0.5 * (low + high);
+    let mut x = start;
     for _ in 0..MAX_ITERATIONS {
         let (value, slope) = function(x);
         if value > 0.0 {

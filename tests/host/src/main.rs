@@ -57,11 +57,13 @@ fn on_threads(fmu: &Fmu, first: u64, count: u64) -> Result<(), Box<dyn std::erro
     Ok(outcomes.into_iter().collect::<Result<(), _>>()?)
 }
 
-/// Forgets an instance.
+/// Forgets instances: so many, as the address of the last one may still be found on the stack or in a register.
 fn leak(fmu: &Fmu) -> Result<(), Box<dyn std::error::Error>> {
-    let mut instance = Instance::new(fmu, Interface::CoSimulation)?;
-    let forgotten: fmi2Component = core::mem::replace(&mut instance.component, core::ptr::null_mut());
-    core::hint::black_box(forgotten);
+    for _ in 0..10 {
+        let mut instance = Instance::new(fmu, Interface::CoSimulation)?;
+        let forgotten: fmi2Component = core::mem::replace(&mut instance.component, core::ptr::null_mut());
+        core::hint::black_box(forgotten);
+    }
     Ok(())
 }
 

@@ -6,7 +6,7 @@
 use super::zeros::{Knot, Zero};
 use super::{End, Flight};
 use crate::motion::side::Side;
-use crate::numerics::roots::bracketed_root;
+use crate::numerics::roots::root_near;
 
 impl Flight {
     /// Whether the acceleration of dz has a constant part, and nothing else beside the harmonic one.
@@ -45,7 +45,9 @@ impl Flight {
             return None;
         }
         let sign = slope.signum();
-        let tau = bracketed_root(from.tau, to.tau, |tau| {
+        // Where a straight slope would be zero.
+        let guess = from.tau + (to.tau - from.tau) * slope / (slope - slope_to);
+        let tau = root_near(guess, from.tau, to.tau, |tau| {
             let [_, slope, curvature, ..] = self.derivatives(tau, &self.angle(tau));
             (sign * slope, sign * curvature)
         });
