@@ -134,7 +134,13 @@ impl Motion {
     /// `z_M` - `z_m`, m, and its rate, m/s.
     pub fn relative_at(&self, time: f64) -> [f64; 2] {
         match &self.ball {
-            Ball::Free => self.flight.at(time - self.flight.start),
+            Ball::Free => {
+                let tau = time - self.flight.start;
+                match self.flight.piece() {
+                    None => self.flight.at(tau),
+                    Some(_) => self.flight.after(tau, self.cylinder.oscillation().change(tau)),
+                }
+            }
             Ball::Stuck => [self.flight.dz, 0.0],
             Ball::Resting(side) => [side.sign() * self.half_travel, 0.0],
             Ball::InContact(contact) => {
@@ -199,16 +205,17 @@ impl Motion {
         self.search = Search::new();
     }
 
-    /// The ball slides with this sign of dz', or the cylinder carries it, from `here` on. Returns the cylinder with what the ball
-    /// then does to it; its velocity is that of `here`.
-    fn change_ball(&mut self, ball: Ball, slip: f64, here: &CylinderState) -> CylinderState {
-        let load = Self::load_of(&self.mount, &ball, slip);
+    /// The ball slides with this sign of dz', or the cylinder carries it, from `here` on, which becomes the cylinder with what the
+    /// ball then does to it.
+    #[inline]
+    fn change_ball(&mut self, ball: Ball, slip: f64, here: &mut CylinderState) {
         (self.ball, self.slip) = (ball, slip);
         if self.mount.ratio == 0.0 && !self.mount.is_suspended() {
-            return *here;
+            return; // the cylinder goes on as before
         }
+        let load = Self::load_of(&self.mount, &self.ball, slip);
         self.cylinder = self.cylinder.changed(here, self.drive_at(here.time), load);
-        self.cylinder.at(here.time)
+        *here = self.cylinder.at(here.time);
     }
 
     /// dz'', m/s^2, of a ball without friction where the cylinder is `here`, if the ball does not act on it.
@@ -216,32 +223,26 @@ impl Motion {
         self.cylinder.unloaded(here.acceleration) + self.mount.incline
     }
 
-    /// The ball leaves the `wall` at `side` after an impact at relative `speed`, m/s: Eq. (11). Returns the relative speed, m/s,
-    /// and the wall after the impact.
-    pub fn rebound(&mut self, side: Side, speed: f64, wall: &CylinderState) -> (f64, CylinderState) {
+    /// The ball leaves the `wall` at `side` after an impact at relative `speed`, m/s: Eq. (11). Returns the relative speed, m/s;
+    /// the wall becomes that after the impact.
+    pub fn rebound(&mut self, side: Side, speed: f64, wall: &mut CylinderState) -> f64 {
         let (sign, rebound) = (side.sign(), impact::rebound(self.restitution, speed));
-        let wall = self.recoiled(wall, sign * (speed + rebound));
+        wall.velocity = impact::wall_after(wall.velocity, self.mount.taken, sign * (speed + rebound));
         let slip = if self.mount.friction > 0.0 { -sign } else { 0.0 };
-        let wall = self.change_ball(Ball::Free, slip, &wall);
+        self.change_ball(Ball::Free, slip, wall);
         let dz = sign * self.half_travel;
         let velocity = impact::velocity_after(wall.velocity, sign, rebound);
         self.last = Start { time: wall.time, position: wall.position - dz, velocity };
-        self.new_flight(&wall, [dz, -sign * rebound]);
-        (rebound, wall)
+        self.new_flight(wall, [dz, -sign * rebound]);
+        rebound
     }
 
-    /// The cylinder `here` after an impulse that takes `change`, m/s, from dz'.
-    fn recoiled(&self, here: &CylinderState, change: f64) -> CylinderState {
-        CylinderState { velocity: impact::wall_after(here.velocity, self.mount.ratio, change), ..*here }
-    }
-
-    /// From now on the ball rests on the membrane at `side`, on this `wall`, which it was `slip`, m/s, faster than. Returns the wall
-    /// then.
-    pub fn rest(&mut self, side: Side, slip: f64, wall: &CylinderState) -> CylinderState {
-        let wall = self.recoiled(wall, -slip);
-        let wall = self.change_ball(Ball::Resting(side), 0.0, &wall);
-        self.new_flight(&wall, [side.sign() * self.half_travel, 0.0]);
-        wall
+    /// From now on the ball rests on the membrane at `side`, on this `wall`, which it was `slip`, m/s, faster than; the wall
+    /// becomes that after it.
+    pub fn rest(&mut self, side: Side, slip: f64, wall: &mut CylinderState) {
+        wall.velocity = impact::wall_after(wall.velocity, self.mount.taken, -slip);
+        self.change_ball(Ball::Resting(side), 0.0, wall);
+        self.new_flight(wall, [side.sign() * self.half_travel, 0.0]);
     }
 
     /// The wall lets the ball go at `time`, s, to slide with this sign of dz'. Where the flight begins is for the caller to
@@ -249,17 +250,16 @@ impl Motion {
     pub fn release(&mut self, time: f64, slip: f64) {
         let (position, velocity) = (self.ball_position_at(time), self.ball_velocity_at(time));
         self.last = Start { time, position, velocity };
-        let here = self.cylinder.at(time);
-        self.change_ball(Ball::Free, slip, &here);
+        self.change_ball(Ball::Free, slip, &mut self.cylinder.at(time));
     }
 
     /// A ball without relative velocity at `time`, s, not pressed on a membrane, goes on with this dz, m: friction holds it, or it
     /// slides.
     pub fn turn(&mut self, time: f64, dz: f64) {
-        let here = self.cylinder.at(time);
+        let mut here = self.cylinder.at(time);
         let slip = self.mount.start_of_slip(self.free_acceleration(&here));
         let ball = if slip == 0.0 { Ball::Stuck } else { Ball::Free };
-        let here = self.change_ball(ball, slip, &here);
+        self.change_ball(ball, slip, &mut here);
         self.last = Start { time, position: here.position - dz, velocity: here.velocity };
         self.new_flight(&here, [dz, 0.0]);
     }

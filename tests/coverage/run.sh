@@ -12,6 +12,10 @@ if [[ $(cargo-llvm-cov llvm-cov --version 2>/dev/null) != "cargo-llvm-cov $llvm_
     cargo install --quiet --locked --root "$built/tools" --version "$llvm_cov_version" cargo-llvm-cov
 fi
 sysroot=$(rustc --print sysroot)
+# Where rustup keeps the compiler, it has the tools, too.
+if [[ -d $sysroot/lib/rustlib ]] && command -v rustup >/dev/null; then
+    rustup component add llvm-tools >/dev/null 2>&1 || true
+fi
 if ! compgen -G "$sysroot/lib/rustlib/*/bin/llvm-profdata*" >/dev/null; then
     major=$(rustc --version --verbose | sed -n 's/^LLVM version: \([0-9]*\).*/\1/p')
     tools=/usr/lib/llvm-$major/bin

@@ -139,15 +139,15 @@ impl Ledger {
     /// is that of dz.
     pub fn impact(&mut self, sign: f64, wall: [f64; 2], speed: f64) {
         let r = self.restitution;
-        self.works.wall += self.mount.share() * self.ball_mass * sign * (1.0 + r) * speed * mean(wall);
-        self.works.loss += self.mount.share() * (1.0 - r * r) * self.kinetic(speed);
+        self.works.wall += self.mount.share * self.ball_mass * sign * (1.0 + r) * speed * mean(wall);
+        self.works.loss += self.mount.share * (1.0 - r * r) * self.kinetic(speed);
     }
 
     /// A chattering sequence ends: a ball faster than the `wall` by `slip` takes on its velocity, m/s, before and after that.
     pub fn settle(&mut self, wall: [f64; 2], slip: f64) {
         self.totals.chatters += 1;
-        self.works.wall -= self.mount.share() * self.ball_mass * slip * mean(wall);
-        self.works.loss += self.mount.share() * self.kinetic(slip);
+        self.works.wall -= self.mount.share * self.ball_mass * slip * mean(wall);
+        self.works.loss += self.mount.share * self.kinetic(slip);
     }
 
     /// The cylinder begins to carry a ball at `position`, m, and `velocity`, m/s: its work is the gain of energy.

@@ -175,7 +175,7 @@ impl Law<'_> {
     /// apart: their sum has too few digits for short steps late in a run.
     pub(super) fn push(&self, time: f64, elapsed: f64) -> f64 {
         let drive = &self.cylinder.drive;
-        if !self.cylinder.suspension.is_none() {
+        if self.cylinder.is_suspended() {
             let since = (time - self.cylinder.start) + elapsed;
             return self.side.sign() * (self.cylinder.suspended_acceleration(since) + self.mount.incline);
         }

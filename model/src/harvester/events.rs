@@ -124,17 +124,19 @@ impl Harvester {
             (search.found, search.speed) = (Some(Prediction::Impact { time: self.time, side }), speed);
         }
         // Under the compliant law the search finds the instant from which on it is pressed in.
-        let wall = self.motion.cylinder.at(self.time);
+        let mut wall = self.motion.cylinder.at(self.time);
         let may_rest = speed == 0.0 && self.parameters.contact_law == ContactLaw::Impulsive;
         if may_rest && self.end_of_bounces(side, 0.0, &wall).is_some() {
             let [_, wall_change] = self.tangential().cylinder_change(self.time);
-            self.rest(side, 0.0, &wall, wall_change);
+            self.motion.rest(side, 0.0, &mut wall);
+            self.carry(&wall, wall_change);
         }
     }
 
     /// Eqs. (10) to (13): the membrane is pressed in at relative `speed`, m/s, the ball rebounds, or comes to rest.
     pub(super) fn impact(&mut self, time: f64, side: Side, speed: f64, batch: &mut Batch) {
-        let wall = self.motion.cylinder.at(time);
+        let mut wall = self.motion.cylinder.at(time);
+        let before = wall.velocity;
         self.ledger.count_impact(speed);
         let changes = if self.tangent.idle {
             if batch.push(time, side, speed) {
@@ -144,9 +146,8 @@ impl Harvester {
         } else {
             self.credit_with_changes(speed, side, &wall)
         };
-        let (rebound, after) = self.motion.rebound(side, speed, &wall);
-        self.ledger.impact(side.sign(), [wall.velocity, after.velocity], speed);
-        let wall = after;
+        let rebound = self.motion.rebound(side, speed, &mut wall);
+        self.ledger.impact(side.sign(), [before, wall.velocity], speed);
         match self.end_of_bounces(side, rebound, &wall) {
             Some(Tail::Summed { slower }) => {
                 batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
@@ -156,9 +157,9 @@ impl Harvester {
                 if !self.tangent.idle {
                     self.tangent.pass_tail(&self.parameters, &self.membrane, speed, excess);
                 }
-                self.settle(side, &wall, changes);
+                self.settle(side, &mut wall, changes);
             }
-            Some(Tail::Unresolved) => self.settle(side, &wall, changes),
+            Some(Tail::Unresolved) => self.settle(side, &mut wall, changes),
             None => {}
         }
     }
@@ -180,21 +181,20 @@ impl Harvester {
     }
 
     /// Ends a chattering sequence on this `wall`. Its velocity, and how much faster the ball is, change by `changes`, m/s.
-    fn settle(&mut self, side: Side, wall: &CylinderState, [wall_change, slip_change]: [f64; 2]) {
+    fn settle(&mut self, side: Side, wall: &mut CylinderState, [wall_change, slip_change]: [f64; 2]) {
         let slip = -self.motion.flight.rate;
         self.tangent.settle(self.parameters.ball_mass, [slip, slip_change], [wall.velocity, wall_change]);
-        let after = self.rest(side, slip, wall, wall_change);
-        self.ledger.settle([wall.velocity, after.velocity], slip);
+        let before = wall.velocity;
+        self.motion.rest(side, slip, wall);
+        self.ledger.settle([before, wall.velocity], slip);
+        self.carry(wall, wall_change);
     }
 
-    /// From now on the ball rests on the membrane at `side`, on this `wall`, which it was `slip`, m/s, faster than, and whose velocity
-    /// changes by `wall_change`, m/s. Returns the wall then.
-    fn rest(&mut self, side: Side, slip: f64, wall: &CylinderState, wall_change: f64) -> CylinderState {
-        let wall = self.motion.rest(side, slip, wall);
+    /// The ball begins to rest on this `wall`, whose velocity changes by `wall_change`, m/s.
+    fn carry(&mut self, wall: &CylinderState, wall_change: f64) {
         let gravity = self.gravity_change(wall.time);
         self.ledger.carry(self.motion.ball_position_at(wall.time), wall.velocity);
         self.tangent.rest(self.parameters.ball_mass, [wall.velocity, wall_change], gravity);
-        wall
     }
 
     /// Change of the work of gravity on the ball, J, if somebody asks for changes.

@@ -41,20 +41,33 @@ impl Motion {
     /// Whether a ball that leaves the `wall` at `side` with relative speed `rebound`, m/s, comes to rest there, because that
     /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the push is
     /// constant meanwhile. Up to `limit`, s, the phase of the force is known.
+    #[inline]
     pub fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState, limit: f64) -> Option<Tail> {
-        let CylinderState { time, jerk, .. } = *wall;
         let push = side.sign() * self.free_acceleration(wall);
         let friction = self.mount.deceleration();
         // Friction acts against a ball that leaves, and against one that returns.
-        let [leaving, returning] = [push + friction, push - friction];
+        let leaving = push + friction;
         if leaving <= 0.0 {
-            return (leaving == 0.0 && rebound == 0.0 && side.sign() * jerk > 0.0).then_some(Tail::Unresolved);
+            return (leaving == 0.0 && rebound == 0.0 && side.sign() * wall.jerk > 0.0).then_some(Tail::Unresolved);
         }
         let [highest, tolerance] = self.accuracy.bounds();
         let (highest, unresolved) = (highest * self.half_travel, 4.0 * self.flight.rounding(0.0));
         if rebound * rebound > 2.0 * leaving * highest.max(unresolved) {
             return None;
         }
+        self.end_of_low_bounces(rebound, [leaving, push - friction], wall, limit, [highest, unresolved, tolerance])
+    }
+
+    /// The same of a bounce that is low; accelerations of a ball that leaves and of one that returns, m/s^2.
+    #[cold]
+    fn end_of_low_bounces(
+        &self,
+        rebound: f64,
+        [leaving, returning]: [f64; 2],
+        &CylinderState { time, jerk, .. }: &CylinderState,
+        limit: f64,
+        [highest, unresolved, tolerance]: [f64; 3],
+    ) -> Option<Tail> {
         let height = rebound * rebound / (2.0 * leaving);
         if returning > 0.0 {
             let slower = (returning / leaving).sqrt();

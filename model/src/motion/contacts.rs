@@ -67,7 +67,8 @@ impl Motion {
 
     /// A contact begins at `time`, s, at relative `speed`, m/s.
     pub fn begin_contact(&mut self, forces: Forces<'_>, limit: Option<f64>, time: f64, side: Side, speed: f64) {
-        let here = self.change_ball(Ball::Free, 0.0, &self.cylinder.at(time));
+        let mut here = self.cylinder.at(time);
+        self.change_ball(Ball::Free, 0.0, &mut here);
         self.new_flight(&here, [self.half_travel, speed].map(|value| side.sign() * value));
         let period = 1.0 / forces.parameters.frequency;
         let loading = if speed > 0.0 { forces.membrane.deflection(speed) / speed } else { period };
@@ -82,7 +83,7 @@ impl Motion {
         let period_end = contact.state.start.time + 1.0 / forces.parameters.frequency;
         let limit = limit.map_or(period_end, |limit| limit.min(period_end));
         // The motion of a suspended cylinder is known to the end of its piece.
-        let limit = flight.piece().map_or(limit, |(_, length)| limit.min(flight.start + length));
+        let limit = flight.piece().map_or(limit, |length| limit.min(flight.start + length));
         contact.plan(&forces.law((cylinder, mount), flight, contact.state.side), limit);
     }
 
@@ -150,7 +151,8 @@ impl Motion {
         }
         self.last = Start { time, position: position - sign * self.half_travel, velocity };
         let slip = if self.mount.friction > 0.0 { -sign } else { 0.0 };
-        let here = self.change_ball(Ball::Free, slip, &self.cylinder.at(time));
+        let mut here = self.cylinder.at(time);
+        self.change_ball(Ball::Free, slip, &mut here);
         self.new_flight(&here, [sign * self.half_travel, sign * rate]);
     }
 

@@ -87,8 +87,6 @@ pub struct CylinderMotion {
     pub drive: Drive,
     /// What mount and ball do to the cylinder meanwhile.
     pub load: Load,
-    /// Spring and damper over the mass that moves.
-    pub suspension: Suspension,
     /// Energy that the damper has taken up to the start, over M, J/kg.
     pub damped: f64,
     /// Amplitude of the acceleration, m/s^2, the constant part of the acceleration at the start, m/s^2, and its rate, m/s^3.
@@ -131,7 +129,7 @@ impl CylinderMotion {
         let amplitude = load.share * drive.amplitude;
         let external =
             [load.share * (load.give * drive.external + load.push), load.share * (load.give * drive.external_rate)];
-        let (suspension, damped) = (load.suspension.over(load.share), 0.0);
+        let damped = 0.0;
         let speed = amplitude / drive.omega();
         let swing = speed / drive.omega();
         Self {
@@ -140,7 +138,6 @@ impl CylinderMotion {
             velocity,
             drive,
             load,
-            suspension,
             damped,
             amplitude,
             external,
@@ -167,10 +164,11 @@ impl CylinderMotion {
         let ([sin, cos], elapsed) = (sine, time - self.start);
         let acceleration = excitation::acceleration(amplitude, cos, external) + external_rate * elapsed;
         let jerk = external_rate - amplitude * self.drive.omega() * sin;
-        if !self.suspension.is_none() {
+        if self.is_suspended() {
+            let suspension = self.suspension();
             let [position, velocity] = self.after(elapsed, self.oscillation().change(elapsed));
-            let acceleration = acceleration + self.suspension.acceleration(position, velocity);
-            let jerk = jerk + self.suspension.acceleration(velocity, acceleration);
+            let acceleration = acceleration + suspension.acceleration(position, velocity);
+            let jerk = jerk + suspension.acceleration(velocity, acceleration);
             return CylinderState { time, position, velocity, acceleration, jerk, turns, sine };
         }
         let drift = self.velocity - self.speed * self.sin_start;
@@ -228,10 +226,27 @@ impl CylinderMotion {
         Self { damped: self.damped_at(here.time), ..Self::new(here.time, here.position, here.velocity, drive, load) }
     }
 
+    /// Whether spring or damper hold it.
+    #[inline]
+    pub fn is_suspended(&self) -> bool {
+        !self.load.suspension.is_none()
+    }
+
+    /// Spring and damper over the mass that moves.
+    fn suspension(&self) -> Suspension {
+        self.load.suspension.over(self.load.share)
+    }
+
+    /// Time, s, for which the series of a suspended cylinder holds; infinite if it is free.
+    #[inline]
+    pub fn piece(&self) -> f64 {
+        if self.is_suspended() { self.suspension().piece(self.drive.omega()) } else { f64::INFINITY }
+    }
+
     /// The oscillation of a suspended cylinder, at the start.
     pub fn oscillation(&self) -> Oscillation {
-        let Self { suspension, position, velocity, amplitude, external, .. } = *self;
-        let sine = [self.sin_start, self.cos_start];
+        let Self { position, velocity, amplitude, external, .. } = *self;
+        let (suspension, sine) = (self.suspension(), [self.sin_start, self.cos_start]);
         Oscillation { suspension, position, velocity, amplitude, sine, omega: self.drive.omega(), external }
     }
 
@@ -245,10 +260,11 @@ impl CylinderMotion {
             .fold([0.0; 2], |[value, slope], (n, term)| [value + term, slope + n as f64 * term]);
         let velocity = if elapsed > 0.0 { sums[1] / elapsed } else { self.velocity };
         let [external, rate] = self.external;
-        let cosine = (TAU * self.drive.frequency * elapsed + self.sin_start.atan2(self.cos_start)).cos();
+        let [sin, cos] = sin_cos(4.0 * cycle_fraction(self.drive.frequency, elapsed));
+        let cosine = self.cos_start * cos - self.sin_start * sin;
         excitation::acceleration(self.amplitude, cosine, external)
             + rate * elapsed
-            + self.suspension.acceleration(sums[0], velocity)
+            + self.suspension().acceleration(sums[0], velocity)
     }
 
     /// Energy that the damper has taken up to `time`, s, over M, J/kg.
@@ -269,7 +285,7 @@ impl CylinderMotion {
 
     /// What `acceleration`, `z_M''`, m/s^2, would be if the ball did not act on the cylinder.
     pub fn unloaded(&self, acceleration: f64) -> f64 {
-        acceleration / self.load.share - self.load.push
+        acceleration * self.load.mass - self.load.push
     }
 }
 
@@ -281,7 +297,8 @@ mod tests {
     #[test]
     fn velocity_and_acceleration_are_the_derivatives_of_position() {
         let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: -0.2 };
-        let motion = CylinderMotion::new(0.37, 0.01, -0.2, drive, Load { share: 0.8, push: 0.3, ..Load::NONE });
+        let motion =
+            CylinderMotion::new(0.37, 0.01, -0.2, drive, Load { mass: 1.25, share: 0.8, push: 0.3, ..Load::NONE });
         for k in 0..50 {
             let (t, h) = (0.4 + 0.06 * f64::from(k), 1e-4);
             let slope =

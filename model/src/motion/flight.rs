@@ -20,7 +20,6 @@ use self::zeros::Knot;
 use crate::motion::cylinder::{CylinderMotion, CylinderState};
 use crate::motion::mount::Mount;
 use crate::motion::side::Side;
-use crate::motion::suspended::Oscillation;
 use crate::numerics::product::cycle_fraction;
 use crate::paper::gap::gap;
 
@@ -75,8 +74,8 @@ pub struct Flight {
     half_travel: f64,
     /// What gravity and friction add to dz'', m/s^2, by the ball's own motion.
     relative: f64,
-    /// A suspended cylinder at the start.
-    oscillation: Option<Oscillation>,
+    /// Time, s, for which the series of a suspended cylinder holds; infinite if the cylinder is free.
+    piece: f64,
 }
 
 impl Flight {
@@ -94,21 +93,8 @@ impl Flight {
         let [external, external_rate] = cylinder.external_at(time);
         let external = [0.5 * (external + relative), external_rate / 6.0];
         let (frequency, period) = (drive.frequency, 1.0 / drive.frequency);
-        let oscillation = (!cylinder.suspension.is_none()).then(|| cylinder.oscillation());
-        Self {
-            start: time,
-            dz,
-            rate,
-            external,
-            swing,
-            frequency,
-            period,
-            turns,
-            sine,
-            half_travel,
-            relative,
-            oscillation,
-        }
+        let piece = cylinder.piece();
+        Self { start: time, dz, rate, external, swing, frequency, period, turns, sine, half_travel, relative, piece }
     }
 
     /// s/2, m.
@@ -125,9 +111,9 @@ impl Flight {
         self.period
     }
 
-    /// The cylinder at the start, if it is suspended, and the time for which its series holds, s.
-    pub fn piece(&self) -> Option<(&Oscillation, f64)> {
-        self.oscillation.as_ref().map(|oscillation| (oscillation, oscillation.suspension.piece(self.omega())))
+    /// Time, s, for which the series of a suspended cylinder holds; none if the cylinder is free.
+    pub fn piece(&self) -> Option<f64> {
+        (self.piece < f64::INFINITY).then_some(self.piece)
     }
 
     /// The angle at `tau`, s, in turns.
@@ -189,12 +175,9 @@ impl Flight {
         ]
     }
 
-    /// dz, m, and its rate, m/s, at `tau`, s.
+    /// dz, m, and its rate, m/s, at `tau`, s, over a free cylinder.
     #[inline]
     pub fn at(&self, tau: f64) -> [f64; 2] {
-        if let Some(oscillation) = &self.oscillation {
-            return self.after(tau, oscillation.change(tau));
-        }
         let Angle { swept, .. } = self.angle(tau);
         [self.dz + self.change(tau, &swept), self.slope(tau, &swept)]
     }

@@ -7,7 +7,9 @@ use crate::parameters::{ExcitationKind, Parameters};
 /// What mount and ball do to the cylinder between impacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load {
-    /// M over the mass that moves as one.
+    /// The mass that moves as one over M.
+    pub mass: f64,
+    /// One over that.
     pub share: f64,
     /// Force of the ball on the cylinder over M, m/s^2.
     pub push: f64,
@@ -26,13 +28,17 @@ pub struct Mount {
     pub incline: f64,
     /// mu g cos(beta), m/s^2.
     pub friction: f64,
+    /// M / (m + M) if the ball acts back, else 1: the share of an impulse in the relative velocity that the ball takes.
+    pub share: f64,
+    /// What remains, that of the cylinder.
+    pub taken: f64,
     /// The load without a ball.
     empty: Load,
 }
 
 impl Load {
     /// The cylinder moves as if there were no ball.
-    pub const NONE: Self = Self { share: 1.0, push: 0.0, give: 1.0, suspension: Suspension::NONE };
+    pub const NONE: Self = Self { mass: 1.0, share: 1.0, push: 0.0, give: 1.0, suspension: Suspension::NONE };
 }
 
 impl Mount {
@@ -40,12 +46,16 @@ impl Mount {
         let [stiffness, damping] = [p.suspension_stiffness, p.suspension_damping].map(|value| value / p.cylinder_mass);
         let give = if p.excitation_kind == ExcitationKind::Force { 1.0 } else { 0.0 };
         let empty = Load { give, suspension: Suspension { stiffness, damping }, ..Load::NONE };
-        Self { ratio: p.reaction_ratio(), incline: p.incline(), friction: p.friction_acceleration(), empty }
-    }
-
-    /// M / (m + M) if the ball acts back, else 1: the share of an impulse in the relative velocity that the ball takes.
-    pub fn share(&self) -> f64 {
-        1.0 / (1.0 + self.ratio)
+        let ratio = p.reaction_ratio();
+        let share = 1.0 / (1.0 + ratio);
+        Self {
+            ratio,
+            incline: p.incline(),
+            friction: p.friction_acceleration(),
+            share,
+            taken: ratio / (1.0 + ratio),
+            empty,
+        }
     }
 
     /// Load of a ball that slides with this sign of dz', 0 without friction.
@@ -55,7 +65,7 @@ impl Mount {
 
     /// Load of a ball that the cylinder carries: its mass and its weight.
     pub fn carrying(&self) -> Load {
-        Load { share: self.share(), push: -self.ratio * self.incline, ..self.empty }
+        Load { mass: 1.0 + self.ratio, share: self.share, push: -self.ratio * self.incline, ..self.empty }
     }
 
     /// Whether spring or damper hold the cylinder.

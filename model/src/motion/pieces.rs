@@ -12,10 +12,11 @@ use super::{Motion, Start};
 impl Motion {
     /// Time, s, up to which the present piece holds, if the cylinder is suspended.
     pub(super) fn end_of_piece(&self) -> Option<f64> {
-        self.flight.piece().map(|(_, length)| self.flight.start + length)
+        self.flight.piece().map(|length| self.flight.start + length)
     }
 
     /// The next event, if there is one before a piece begins after `until`, s; up to `limit`, s, the force is known.
+    #[inline(never)]
     pub(super) fn next_event_in_pieces(&mut self, limit: Option<f64>, until: f64) -> Option<Prediction> {
         let mut ahead = self.search.piece.map(|piece| (piece, self.motion_from(&piece)));
         while self.search.found.is_none() {
@@ -23,12 +24,12 @@ impl Motion {
             if flight.start > until {
                 break;
             }
-            let Some((oscillation, length)) = flight.piece() else { break };
+            let Some(length) = flight.piece() else { break };
             let end = flight.start + length;
             let is_last = limit.is_some_and(|limit| limit <= end);
             let end = limit.map_or(end, |limit| limit.min(end));
             let length = end - flight.start;
-            let terms = oscillation.terms(length);
+            let terms = cylinder.oscillation().terms(length);
             let time = |elapsed: f64| (flight.start + elapsed).min(end);
             let mut speed = 0.0;
             let found = if self.ball.is_carried() {

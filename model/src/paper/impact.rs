@@ -14,10 +14,10 @@ pub fn velocity_after(wall: f64, sign: f64, rebound: f64) -> f64 {
 }
 
 /// `v_M+`, m/s, of a wall with the velocity `v_M`, m/s, after an impulse that takes `change`, m/s, from dz' = `v_M` - `v_m`, if
-/// the momentum is kept; `ratio` is m / M, which Eq. (11) neglects.
+/// it `takes` the share m / (m + M) of that: 0 where, as in Eq. (11), it is not slowed.
 #[inline]
-pub fn wall_after(wall: f64, ratio: f64, change: f64) -> f64 {
-    wall - ratio / (1.0 + ratio) * change
+pub fn wall_after(wall: f64, takes: f64, change: f64) -> f64 {
+    wall - takes * change
 }
 
 /// Eq. (12): `U_DE4` - `U_in`, V, at the bias voltage `U_in`, V, if `C_3` / `C_2` - 1 is `excess`.

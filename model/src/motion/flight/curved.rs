@@ -15,6 +15,7 @@ impl Flight {
     }
 
     /// The end of the flight between these places of one window.
+    #[inline(never)] // what a level, free capsule does stays small
     pub(super) fn end_between_inflections(&self, mut from: Knot, last: Knot, slip: f64) -> Option<End> {
         let mut slope = self.slope(from.tau, &from.angle.swept);
         let inflections = self.zeros(2, from.tau, last.tau);
