@@ -192,7 +192,8 @@ prop_compose! {
         amplitude in 0.0..2.0,
         frequency in 0.5..5.0,
         phase in 0.0..TAU,
-        restitution in prop_oneof![Just(1.0), Just(0.0), 0.1..1.0],
+        // Elastic bounces that gravity repeats have no end when a damper or the cylinder takes their energy.
+        restitution in prop_oneof![Just(0.95), Just(0.0), 0.1..0.95],
         start in (-0.9..0.9, -0.5..0.5, any::<bool>()),
         inclination in prop_oneof![Just(0.0), -FRAC_PI_2..FRAC_PI_2, -0.3..0.3],
         gravity in prop_oneof![Just(9.80665), 0.0..3.0],
