@@ -55,7 +55,7 @@ impl Observer for MemoryAt {
 }
 
 /// How far the books of the ball may be off, relative to the work of the walls. Events are put at doubles, which are 1.2e-10 s apart
-/// at 1e6 s: the wall of Table 3 goes on by 4e-8 m/s meanwhile, 64 million times.
+/// at 1e6 s: the wall of Table 3 goes on by 5e-8 m/s meanwhile, 64 million times.
 fn bound(case: &str) -> f64 {
     if case.starts_with("table3") { 1e-8 } else { 1e-9 }
 }

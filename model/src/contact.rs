@@ -269,6 +269,14 @@ impl Contact {
                 let scale = step.push.bound() + upper + friction;
                 let excess = step.push.plus(friction - lower);
                 let rest = step.push.times(-1.0).plus(upper + friction);
+                // After a jump of force or voltage it may be beyond from the begin.
+                let is_beyond = |series: &Series| series.value(-1.0) < -16.0 * f64::EPSILON * scale;
+                if is_beyond(&excess) {
+                    return Some((step.time(-1.0), Ending::Recovery));
+                }
+                if is_beyond(&rest) {
+                    return Some((step.time(-1.0), Ending::Yield));
+                }
                 [fall(excess, scale, Ending::Recovery), fall(rest, scale, Ending::Yield)]
             }
         };

@@ -60,7 +60,7 @@ pub enum ModelError {
     },
     /// A suspension that is too fast to be followed.
     #[error(
-        "{name} = {value} {unit} is too large for cylinder.mass = {mass} kg: its rate of {rate} 1/s is above {limit} 1/s"
+        "{name} = {value:e} {unit} is too large for cylinder.mass = {mass} kg: {rate:.1e} 1/s, at most {limit} 1/s"
     )]
     TooStiff {
         /// Name of the parameter.

@@ -1,5 +1,6 @@
 //! The vibro-impact harvester: its parts, and how they act together from event to event.
 
+mod differences;
 mod events;
 mod inputs;
 mod integrator;
@@ -103,7 +104,7 @@ impl Harvester {
         let projected = p.projected_side().map(|side| side.sign() * half);
         let displacement = projected.unwrap_or(p.cylinder_position - position);
         let relative = Start { time: start, position: displacement, velocity: p.cylinder_velocity - p.ball_velocity };
-        let slip = if p.friction > 0.0 { relative.velocity.signum() } else { 0.0 };
+        let slip = if p.friction_acceleration() > 0.0 { relative.velocity.signum() } else { 0.0 };
         let works = Works { slide: [p.cylinder_position, displacement], ..Works::default() };
         let membrane = Membrane::new(p);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);

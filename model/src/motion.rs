@@ -257,7 +257,10 @@ impl Motion {
     /// slides.
     pub fn turn(&mut self, time: f64, dz: f64) {
         let mut here = self.cylinder.at(time);
-        let slip = self.mount.start_of_slip(self.free_acceleration(&here));
+        let slip = self.mount.start_of_slip(self.free_acceleration(&here), self.cylinder.size_at(&here));
+        // A ball that turns where it has just set out stays.
+        let has_gone = time > self.flight.start || self.flight.rate != 0.0 || self.accuracy == Accuracy::Integrated;
+        let slip = if has_gone || self.slip == 0.0 { slip } else { 0.0 };
         let ball = if slip == 0.0 { Ball::Stuck } else { Ball::Free };
         self.change_ball(ball, slip, &mut here);
         self.last = Start { time, position: here.position - dz, velocity: here.velocity };

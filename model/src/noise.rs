@@ -9,7 +9,7 @@ use self::block::{BLOCK, Block, place_in_block};
 use self::blocks::Blocks;
 use crate::error::ModelError;
 use crate::paper::excitation::noisy_phase;
-use crate::parameters::{ContactLaw, NoiseModel, Parameters};
+use crate::parameters::{ContactLaw, ExcitationKind, NoiseModel, Parameters};
 
 /// Farthest start from t = 0, s: times have digits below a microsecond up to there.
 const MAX_START: f64 = 1e9;
@@ -19,7 +19,7 @@ const MAX_START: f64 = 1e9;
 enum Passing {
     /// There is no noise.
     Never,
-    /// One by one: in a contact that lasts, with friction, reaction or suspension, with a Wiener process, under an integrator; and where they are longer than a
+    /// One by one: in a contact that lasts, with friction, reaction, suspension or a prescribed motion, with a Wiener process, under an integrator; and where they are longer than a
     /// window of the search, so that this costs nothing.
     Single,
     /// Many in one go.
@@ -69,6 +69,7 @@ impl Noise {
         let is_fast = p.noise_model == NoiseModel::Held
             && p.contact_law == ContactLaw::Impulsive
             && !p.reaction
+            && p.excitation_kind == ExcitationKind::Force
             && p.friction == 0.0
             && !p.is_suspended()
             && p.noise_hold <= 1.0 / p.frequency;

@@ -1,8 +1,6 @@
 //! The parameters of the harvester: name, unit, start value, bounds and meaning of each, in two tables: real numbers, and
 //! choices.
 
-use core::f64::consts::FRAC_PI_2;
-
 use crate::error::ModelError;
 use crate::paper::{excitation, gap};
 
@@ -131,11 +129,11 @@ parameters! {
     ball_position: "initial.ballPosition", "m", 0.0, -1e3, 1e3, "z_m(0): position of the ball at the start, Section 4.2";
     ball_velocity: "initial.ballVelocity", "m/s", 0.0, -1e3, 1e3, "z_m'(0): velocity of the ball at the start, Section 4.2";
     bias_voltage: "biasVoltage", "V", 2000.0, 1e-3, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
-    inclination: "cylinder.inclination", "rad", 0.0, -FRAC_PI_2, FRAC_PI_2, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
+    inclination: "cylinder.inclination", "rad", 0.0, -1.5708, 1.5708, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
     gravity: "gravity", "m/s2", 9.806_65, 0.0, 1e3, "g: acceleration of gravity; acts along an inclined cylinder, and presses the ball on the cylinder for its friction";
     friction: "ball.friction", "1", 0.0, 0.0, 10.0, "mu: coefficient of Coulomb friction between ball and cylinder, static and kinetic; 0 in the paper";
-    suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e12, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
-    suspension_damping: "cylinder.suspensionDamping", "N.s/m", 0.0, 0.0, 1e12, "c: damping of the cylinder's suspension; 0 in the paper";
+    suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e9, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
+    suspension_damping: "cylinder.suspensionDamping", "N.s/m", 0.0, 0.0, 1e4, "c: damping of the cylinder's suspension; 0 in the paper";
     acceleration: "excitation.acceleration", "m/s2", 0.0, 0.0, 1e6, "Amplitude of the cylinder's acceleration, if that is prescribed (excitation.kind = motion)";
 }
 
@@ -355,7 +353,7 @@ impl Parameters {
     /// Whether [`Harvester::sensitivities`](crate::Harvester::sensitivities) are known: under the impulsive law, without friction,
     /// suspension and reaction.
     pub fn has_sensitivities(&self) -> bool {
-        let is_plain = self.contact_law == ContactLaw::Impulsive && self.reaction_ratio() == 0.0;
+        let is_plain = self.contact_law == ContactLaw::Impulsive && !self.reaction;
         is_plain && self.friction == 0.0 && !self.is_suspended()
     }
 
@@ -379,7 +377,8 @@ impl Parameters {
 
     /// mu g cos(beta), m/s^2: the most that friction accelerates the ball.
     pub fn friction_acceleration(&self) -> f64 {
-        self.friction * self.gravity * self.inclination.cos()
+        // Upright to four digits is a little beyond upright, where nothing presses the ball on the cylinder.
+        self.friction * self.gravity * self.inclination.cos().max(0.0)
     }
 
     /// m / M if the ball acts back on the cylinder, else 0; nothing slows a shaker.

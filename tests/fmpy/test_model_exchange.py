@@ -74,7 +74,7 @@ def test_the_model_description_is_valid_and_offers_both_interfaces():
     assert description.modelExchange is not None
     assert description.coSimulation is not None
     assert description.numberOfContinuousStates == 4
-    assert description.numberOfEventIndicators == 2
+    assert description.numberOfEventIndicators == 3
     states = [unknown.variable.derivative.name for unknown in description.derivatives]
     assert states == ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"]
 

@@ -9,8 +9,8 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! There are none under the compliant law, with friction, with a suspension or with reaction, and none with respect to
-//! [`ONE_SIDED`] parameters.
+//! There are none under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
+//! which are 0 elsewhere, they are taken upwards, by differences.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
 //! work on the ball.
@@ -20,9 +20,6 @@ use videg_model::{Direction, Energies, ExcitationKind, Harvester as Model, Param
 
 use crate::harvester::Harvester;
 use crate::variables::{FORCE, STATES, VOLTAGES};
-
-/// Parameters that are 0 wherever changes are known, and at the lower bound there.
-pub const ONE_SIDED: [&str; 3] = ["ball.friction", "cylinder.suspensionStiffness", "cylinder.suspensionDamping"];
 
 /// What changes by one unit.
 enum Known {
@@ -46,7 +43,7 @@ pub(crate) struct Change<'a> {
 impl Harvester {
     /// What `read` finds in the change by one unit of `known`; NaN where no change is known.
     pub(crate) fn partial(&self, known: &Variable<Self>, read: impl FnOnce(&Change) -> f64) -> f64 {
-        if !self.parameters.has_sensitivities() || ONE_SIDED.contains(&known.name()) {
+        if !self.parameters.has_sensitivities() {
             return f64::NAN; // the exporter makes an error of it
         }
         read(&self.change(known.name()))
@@ -70,8 +67,10 @@ impl Harvester {
         }
         match Direction::of_parameter(name) {
             Some(direction) if !self.placed => {
-                let moved = Model::along(&self.parameters, self.start_time, self.external_force, &direction);
-                let model = moved.ok().map(|model| model.sensitivities());
+                let (p, start, force) = (&self.parameters, self.start_time, self.external_force);
+                let upwards = Model::change_upwards(p, start, force, name).ok().flatten();
+                let along = || Model::along(p, start, force, &direction).ok().map(|model| model.sensitivities());
+                let model = upwards.or_else(along);
                 Change { slave: self, known: Known::Parameter(Box::new(direction)), model }
             }
             _ if name == FORCE && !self.placed => {
@@ -94,16 +93,17 @@ impl Harvester {
         // m z_m' and M z_M': changes of the kinetic energies per change of the velocities.
         let of_ball = self.read(|model| self.parameters.ball_mass * model.ball_velocity()) * ball_rate;
         let of_cylinder = self.read(|model| self.parameters.cylinder_mass * model.cylinder_velocity()) * cylinder_rate;
+        let weight = self.parameters.ball_mass * self.parameters.incline();
         let model = Sensitivities {
             cylinder: [cylinder, cylinder_rate, by_force],
             ball: [ball, ball_rate, if rests { by_force } else { 0.0 }],
             relative_displacement: displacement[0],
             energies: Energies {
                 ball: of_ball,
-                wall: if rests { of_ball } else { 0.0 },
+                wall: if rests { of_ball + weight * ball } else { 0.0 },
                 cylinder: of_cylinder,
                 excitation: of_cylinder,
-                gravity: -self.parameters.ball_mass * self.parameters.incline() * ball,
+                gravity: -weight * ball,
                 ..Energies::default()
             },
             ..Sensitivities::default()

@@ -112,7 +112,7 @@ impl Harvester {
     pub(super) fn begin(&mut self) {
         self.begin_on_membrane();
         let Flight { dz, rate, .. } = self.motion.flight;
-        if self.parameters.friction > 0.0 && rate == 0.0 && self.motion.ball == Ball::Free {
+        if self.motion.mount.friction > 0.0 && rate == 0.0 && self.motion.ball == Ball::Free {
             self.turn(self.time, dz);
         }
     }
@@ -212,7 +212,7 @@ impl Harvester {
 
     /// The work of friction up to `time`, s, before something changes there.
     pub(super) fn settle_friction(&mut self, time: f64) {
-        if self.parameters.friction > 0.0 {
+        if self.motion.mount.friction > 0.0 {
             self.ledger.slide(self.motion.slip, self.motion.slide_at(time));
         }
     }

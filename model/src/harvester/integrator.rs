@@ -78,7 +78,7 @@ impl Harvester {
             _ => gap(self.motion.half_travel, side.sign(), self.relative_displacement()),
         });
         let friction = match &self.motion.ball {
-            _ if self.parameters.friction == 0.0 => 1.0,
+            _ if self.motion.mount.friction == 0.0 => 1.0,
             Ball::Stuck => self.motion.mount.friction - self.carrying_acceleration().abs(),
             Ball::Free => self.motion.slip * self.relative_rate(),
             Ball::Resting(_) | Ball::InContact(_) => 1.0,
@@ -118,7 +118,10 @@ impl Harvester {
             Ball::Resting(side) if self.pressing(side) > 0.0 => false,
             Ball::Stuck if self.carrying_acceleration().abs() <= self.motion.mount.friction => false,
             Ball::Resting(_) | Ball::Stuck => self.let_go()?,
-            Ball::Free | Ball::InContact(_) => self.impact_if_touching()? || self.turn_if_halted()?,
+            Ball::Free | Ball::InContact(_) => {
+                let touched = self.impact_if_touching()?;
+                self.turn_if_halted()? || touched
+            }
         };
         self.forget_search();
         Ok(changed)

@@ -7,8 +7,11 @@ use crate::motion::Prediction;
 use crate::motion::side::Side;
 use crate::sensitivity::{bounded, grazes};
 
+/// Releases and turns of the ball after which the next impact is still looked for.
+const STARTS: usize = 8;
+
 impl Harvester {
-    /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, after its release. None
+    /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, or is about to turn against friction, after that. None
     /// during a contact under the compliant law, and if no impact is predicted within at least one excitation period (from
     /// the release on, if the ball rests), or, with phase noise, within at least 256 hold intervals if those are shorter;
     /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
@@ -55,9 +58,9 @@ impl Harvester {
         Some(ahead)
     }
 
-    /// This harvester when its ball has just been released, if that is what comes next.
+    /// This harvester when its ball has just been released, or has turned against friction, if that is what comes next.
     fn at_release(&self) -> Option<Self> {
-        let time = self.motion.found_release()?;
+        let time = self.motion.found_start()?;
         let mut ahead = self.clone();
         ahead.go_to(time, &mut |_| {}).ok()?;
         ahead.search_from(time);
@@ -66,7 +69,13 @@ impl Harvester {
 
     pub(super) fn look_beyond_release(&mut self) {
         if self.motion.search.after_release.is_none() {
-            let ahead = self.at_release();
+            let mut ahead = self.at_release();
+            // Friction may hold the ball some times before it arrives.
+            for _ in 0..STARTS {
+                let next = ahead.as_ref().filter(|ahead| ahead.time - self.time < 1.0 / self.parameters.frequency);
+                let Some(next) = next.and_then(Self::at_release) else { break };
+                ahead = Some(next);
+            }
             self.motion.search.after_release = ahead.map(|ahead| ahead.next_impact().unwrap_or(f64::INFINITY));
         }
     }

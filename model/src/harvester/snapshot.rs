@@ -1,5 +1,7 @@
 //! The dynamic state of a harvester as plain values: to be written down, and to go on from elsewhere to the last bit.
 
+use core::f64::consts::TAU;
+
 use super::Harvester;
 use super::integrator::MAX_LAG;
 use crate::accounting::budget::Budget;
@@ -8,6 +10,7 @@ use crate::contact::{Contact, ContactState, Ramp};
 use crate::error::ModelError;
 use crate::membrane::Membrane;
 use crate::motion::cylinder::Drive;
+use crate::motion::mount::Mount;
 use crate::motion::pulse::{Pulse, PulseShape, Pulses};
 use crate::motion::side::Side;
 use crate::motion::{Ball, Motion, Prediction, Search, Start};
@@ -108,7 +111,7 @@ impl Harvester {
         let (motion, forces, limit, ..) = harvester.parts();
         motion.plan_contact(forces, limit);
         let due = harvester.motion.next_event(&mut harvester.noise, snapshot.time, true);
-        if let Some(Prediction::Impact { time, .. } | Prediction::Release { time }) =
+        if let Some(Prediction::Impact { time, .. } | Prediction::Release { time } | Prediction::Turn { time }) =
             due.filter(|event| event.time() <= snapshot.time)
         {
             // All of them have happened; a state that says otherwise could hold any number.
@@ -193,10 +196,24 @@ impl Snapshot {
             // Beyond 2^53 periods ago, time has no digits left in which to search.
             check("start of a motion", start, start <= time && periods_since(start) < 9.0e15)?;
         }
+        if parameters.is_suspended() {
+            // The cylinder is followed piece by piece, and the ball with it.
+            let longest = Mount::new(parameters).longest_piece(TAU * parameters.frequency);
+            let (start, elapsed) = (cylinder.time, time - cylinder.time);
+            let is_present = relative.time == start && elapsed <= 1.001 * longest && start + longest > start;
+            check("start of a motion", start, is_present)?;
+        }
         let is_carried = self.resting.is_some() || self.is_stuck;
-        let slips = if parameters.friction > 0.0 { !is_carried && self.slip.abs() == 1.0 } else { self.slip == 0.0 };
-        check("slip", self.slip, slips || (is_carried && self.slip == 0.0) || self.contact.is_some())?;
-        let may_stick = self.is_stuck && parameters.friction > 0.0 && self.resting.is_none() && self.contact.is_none();
+        let slips = if parameters.friction_acceleration() > 0.0 {
+            !is_carried && self.slip.abs() == 1.0
+        } else {
+            self.slip == 0.0
+        };
+        check("slip", self.slip, slips || (self.slip == 0.0 && (is_carried || self.contact.is_some())))?;
+        let may_stick = self.is_stuck
+            && parameters.friction_acceleration() > 0.0
+            && self.resting.is_none()
+            && self.contact.is_none();
         check("sticking ball at", relative.position, may_stick || !self.is_stuck)?;
         finite("Wiener process", &[self.noise_walk])?;
         if parameters.is_noisy() {

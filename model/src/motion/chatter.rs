@@ -3,6 +3,7 @@
 use super::Motion;
 use super::cylinder::CylinderState;
 use super::side::Side;
+use super::suspended::Suspension;
 
 /// How exactly the motion is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,16 +65,19 @@ impl Motion {
         &self,
         rebound: f64,
         [leaving, returning]: [f64; 2],
-        &CylinderState { time, jerk, .. }: &CylinderState,
+        wall: &CylinderState,
         limit: f64,
         [highest, unresolved, tolerance]: [f64; 3],
     ) -> Option<Tail> {
+        let CylinderState { time, jerk, .. } = *wall;
         let height = rebound * rebound / (2.0 * leaving);
         if returning > 0.0 {
             let slower = (returning / leaving).sqrt();
             // Flights of (1 + 1 / q) v / a, (1 + 1 / q) v q r / a, ..., where q v is the speed of the return: their sum.
             let duration = (1.0 + 1.0 / slower) * rebound / (leaving * (1.0 - self.restitution * slower));
-            let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2);
+            let Suspension { stiffness, damping } = self.cylinder.load.suspension;
+            let by_mount = stiffness * wall.acceleration.abs() + damping * jerk.abs();
+            let curvature = self.cylinder.drive.amplitude * self.cylinder.drive.omega().powi(2) + by_mount;
             let change = duration * (jerk.abs() + 0.5 * duration * curvature);
             if height <= highest && change <= tolerance * returning && time + duration <= limit {
                 return Some(Tail::Summed { slower });

@@ -146,7 +146,7 @@ impl Motion {
         let (sign, rate) = (side.sign(), contact.at(time).v);
         ledger.works.loss += self.law(forces, side).loss(contact.largest_at(time));
         ledger.works.contact_time += time - contact.state.since;
-        if forces.parameters.reaction {
+        if self.mount.ratio > 0.0 {
             self.cylinder = cylinder;
         }
         self.last = Start { time, position: position - sign * self.half_travel, velocity };

@@ -283,6 +283,12 @@ impl CylinderMotion {
         [external + rate * (time - self.start), rate]
     }
 
+    /// Sum of the absolute terms of `z_M''`, m/s^2, where the cylinder is `here`.
+    pub fn size_at(&self, here: &CylinderState) -> f64 {
+        let (Suspension { stiffness, damping }, [external, _]) = (self.suspension(), self.external_at(here.time));
+        self.amplitude + external.abs() + (stiffness * here.position).abs() + (damping * here.velocity).abs()
+    }
+
     /// What `acceleration`, `z_M''`, m/s^2, would be if the ball did not act on the cylinder.
     pub fn unloaded(&self, acceleration: f64) -> f64 {
         acceleration * self.load.mass - self.load.push

@@ -329,7 +329,9 @@ impl Flight {
         let (begin, end) = self.window_bounds(window, limit);
         // Both bodies have this acceleration: friction holds the ball up to its own, without that of the cylinder.
         let [c2, c3] = self.external;
-        let held = Self { external: [c2 + 0.5 * side.sign() * mount.friction, c3], ..*self };
+        let size = self.swing * self.omega() * self.omega() + 2.0 * c2.abs() + 6.0 * c3.abs() * end;
+        let hold = mount.friction + mount.tolerance(size);
+        let held = Self { external: [c2 + 0.5 * side.sign() * hold, c3], ..*self };
         held.release_without_friction(side, begin, end)
     }
 

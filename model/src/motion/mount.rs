@@ -68,6 +68,11 @@ impl Mount {
         Load { mass: 1.0 + self.ratio, share: self.share, push: -self.ratio * self.incline, ..self.empty }
     }
 
+    /// Length of the longest piece of the motion of a suspended cylinder, s, under a force with omega, rad/s.
+    pub fn longest_piece(&self, omega: f64) -> f64 {
+        self.empty.suspension.over(self.share).piece(omega)
+    }
+
     /// Whether spring or damper hold the cylinder.
     pub fn is_suspended(&self) -> bool {
         !self.empty.suspension.is_none()
@@ -83,9 +88,16 @@ impl Mount {
         self.friction * (1.0 + self.ratio)
     }
 
-    /// How a ball without relative velocity goes on where a ball without friction would have this dz'', m/s^2: the sign of
-    /// dz' with which it slides, 0 if friction holds it.
-    pub fn start_of_slip(&self, acceleration: f64) -> f64 {
-        if acceleration.abs() <= self.deceleration() { 0.0 } else { acceleration.signum() }
+    /// How a ball without relative velocity goes on where a ball without friction would have this dz'', m/s^2, a sum of terms of this
+    /// `size`: the sign of dz' with which it slides, 0 if friction holds it.
+    pub fn start_of_slip(&self, acceleration: f64, size: f64) -> f64 {
+        let limit = self.deceleration() + self.tolerance(size);
+        if acceleration.abs() <= limit { 0.0 } else { acceleration.signum() }
+    }
+
+    /// By how much friction is exceeded, m/s^2, before a ball sets out: rounding of terms of this `size`, which would set it out and
+    /// halt it again and again.
+    pub fn tolerance(&self, size: f64) -> f64 {
+        if self.friction == 0.0 { 0.0 } else { 16.0 * f64::EPSILON * (size + self.incline.abs() + self.friction) }
     }
 }

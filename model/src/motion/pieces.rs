@@ -19,13 +19,17 @@ impl Motion {
     #[inline(never)]
     pub(super) fn next_event_in_pieces(&mut self, limit: Option<f64>, until: f64) -> Option<Prediction> {
         let mut ahead = self.search.piece.map(|piece| (piece, self.motion_from(&piece)));
-        while self.search.found.is_none() {
+        while !self.search.has_ended() {
             let (cylinder, flight) = ahead.as_ref().map_or((&self.cylinder, &self.flight), |(_, (c, f))| (c, f));
             if flight.start > until {
                 break;
             }
             let Some(length) = flight.piece() else { break };
             let end = flight.start + length;
+            if end <= flight.start {
+                self.search.exhausted = true; // times have no digits for so short a piece
+                break;
+            }
             let is_last = limit.is_some_and(|limit| limit <= end);
             let end = limit.map_or(end, |limit| limit.min(end));
             let length = end - flight.start;
@@ -87,7 +91,9 @@ impl Motion {
 
     /// Enters the piece of `time`, s, up to which nothing happens any more.
     pub fn enter_piece_of(&mut self, time: f64) {
-        while self.ball.contact().is_none() && self.end_of_piece().is_some_and(|end| end <= time) {
+        while self.ball.contact().is_none()
+            && self.end_of_piece().is_some_and(|end| end > self.flight.start && end <= time)
+        {
             let end = self.end_of_piece().unwrap_or(time);
             let terms = self.cylinder.oscillation().terms(end - self.flight.start);
             let piece = self.piece_after(&self.cylinder, &self.flight, &terms, end);

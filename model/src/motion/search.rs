@@ -121,7 +121,8 @@ impl Motion {
             search.exhausted = release.is_none() && cylinder.drive.is_constant() && limit == f64::INFINITY;
             return;
         }
-        let Some(window) = flight.skip(search.window) else {
+        let next = if *slip == 0.0 { flight.skip(search.window) } else { Some(search.window) };
+        let Some(window) = next else {
             if limit == f64::INFINITY {
                 search.exhausted = true;
             } else {
@@ -144,6 +145,14 @@ impl Motion {
     pub fn found_impact(&self) -> Option<(f64, Side, f64)> {
         let Search { found: Some(Prediction::Impact { time, side }), speed, .. } = self.search else { return None };
         Some((time, side, speed))
+    }
+
+    /// When the ball next sets out against friction, released or turned, s.
+    pub fn found_start(&self) -> Option<f64> {
+        match self.search.found {
+            Some(Prediction::Release { time } | Prediction::Turn { time }) => Some(time),
+            _ => None,
+        }
     }
 
     /// The release that has been found, s.

@@ -144,6 +144,9 @@ impl Series {
     pub fn first_fall(&self, scale: f64) -> Option<f64> {
         const NARROWEST: f64 = 1e-9;
         let rounding = 16.0 * f64::EPSILON * scale;
+        if !self.bound().is_finite() {
+            return None; // halves would have no end
+        }
         let halves = &GRID.halves;
         let mut parts = vec![(self.plus(rounding), -1.0, 1.0)];
         while let Some((part, from, to)) = parts.pop() {

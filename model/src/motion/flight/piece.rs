@@ -90,7 +90,7 @@ impl Flight {
 
     /// The same where no bound decides.
     fn doubtful_end(&self, terms: &Series, length: f64, slip: f64) -> Option<End> {
-        let turn = if slip == 0.0 { None } else { first_fall(&derivative(terms).map(|term| slip * term)) };
+        let turn = if slip == 0.0 { None } else { first_negative(&derivative(terms).map(|term| slip * term)) };
         let rounding = self.rounding_of(terms);
         let contact = |side: Side| {
             let gap = self.gap(side, terms);
@@ -119,8 +119,9 @@ impl Flight {
         let square = length * length;
         let departure = |side: Side| {
             let mut push = acceleration.map(|term| side.sign() * term);
-            push[0] += mount.friction * square;
-            first_fall(&push).map(|place| place * length)
+            let size = push.iter().map(|term| term.abs()).sum::<f64>() / square;
+            push[0] += (mount.friction + mount.tolerance(size)) * square;
+            first_negative(&push).map(|place| place * length)
         };
         match support {
             Some(side) => departure(side),
@@ -151,6 +152,12 @@ fn first_contact(gap: &Series, rounding: f64, outside: f64) -> Option<f64> {
     let rest = chebyshev::GRID.fit(&chebyshev::GRID.nodes.map(|x| value_and_slope(gap, from(0.5 * (x + 1.0)))[0]));
     // Where it comes inside it is rounding.
     rest.first_fall(rest.bound().max(rounding / f64::EPSILON)).map(|x| from(0.5 * (x + 1.0)))
+}
+
+/// Where a polynomial on [0, 1] is first below zero by more than rounding, as it may be from the begin.
+fn first_negative(polynomial: &Series) -> Option<f64> {
+    let size: f64 = polynomial.iter().map(|term| term.abs()).sum();
+    if polynomial[0] < -16.0 * f64::EPSILON * size { Some(0.0) } else { first_fall(polynomial) }
 }
 
 /// Where a polynomial on [0, 1] first falls below zero by more than rounding.
