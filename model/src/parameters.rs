@@ -129,7 +129,7 @@ parameters! {
     ball_position: "initial.ballPosition", "m", 0.0, -1e3, 1e3, "z_m(0): position of the ball at the start, Section 4.2";
     ball_velocity: "initial.ballVelocity", "m/s", 0.0, -1e3, 1e3, "z_m'(0): velocity of the ball at the start, Section 4.2";
     bias_voltage: "biasVoltage", "V", 2000.0, 1e-3, 1e6, "U_in: voltage to which the supply charges the membranes, Eqs. (12) and (13)";
-    inclination: "cylinder.inclination", "rad", 0.0, -1.5708, 1.5708, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
+    inclination: "cylinder.inclination", "rad", 0.0, -1.571, 1.571, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
     gravity: "gravity", "m/s2", 9.806_65, 0.0, 1e3, "g: acceleration of gravity; acts along an inclined cylinder, and presses the ball on the cylinder for its friction";
     friction: "ball.friction", "1", 0.0, 0.0, 10.0, "mu: coefficient of Coulomb friction between ball and cylinder, static and kinetic; 0 in the paper";
     suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e9, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
@@ -377,7 +377,7 @@ impl Parameters {
 
     /// mu g cos(beta), m/s^2: the most that friction accelerates the ball.
     pub fn friction_acceleration(&self) -> f64 {
-        // Upright to four digits is a little beyond upright, where nothing presses the ball on the cylinder.
+        // Upright to three digits may be a little beyond upright, where nothing presses the ball on the cylinder.
         self.friction * self.gravity * self.inclination.cos().max(0.0)
     }
 
