@@ -13,10 +13,10 @@ use crate::sensitivity::Sensitivities;
 const STEP: f64 = 1e-5;
 
 /// Parameters whose changes are worked out here.
-pub const ONE_SIDED: [&str; 3] = ["ball.friction", "cylinder.suspensionStiffness", "cylinder.suspensionDamping"];
+const ONE_SIDED: [&str; 3] = ["ball.friction", "cylinder.suspensionStiffness", "cylinder.suspensionDamping"];
 
 impl Harvester {
-    /// Changes of the harvester at `start`, s, under the external `force`, N, per unit of one of the [`ONE_SIDED`] parameters, upwards;
+    /// Changes of the harvester at `start`, s, under the external `force`, N, per unit of a parameter that is 0 and cannot be less, upwards;
     /// none if there is no such parameter.
     ///
     /// # Errors
