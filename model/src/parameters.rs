@@ -132,7 +132,7 @@ parameters! {
     inclination: "cylinder.inclination", "rad", 0.0, -1.571, 1.571, "beta: inclination of the cylinder's axis, which rises from the left to the right end; 0 in the paper";
     gravity: "gravity", "m/s2", 9.806_65, 0.0, 1e3, "g: acceleration of gravity; acts along an inclined cylinder, and presses the ball on the cylinder for its friction";
     friction: "ball.friction", "1", 0.0, 0.0, 10.0, "mu: coefficient of Coulomb friction between ball and cylinder, static and kinetic; 0 in the paper";
-    suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e9, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
+    suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e6, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
     suspension_damping: "cylinder.suspensionDamping", "N.s/m", 0.0, 0.0, 1e4, "c: damping of the cylinder's suspension; 0 in the paper";
     acceleration: "excitation.acceleration", "m/s2", 0.0, 0.0, 1e6, "Amplitude of the cylinder's acceleration, if that is prescribed (excitation.kind = motion)";
 }

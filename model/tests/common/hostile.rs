@@ -137,7 +137,8 @@ pub fn assert_balanced(harvester: &Harvester, parameters: &Parameters, what: &st
     let start = 0.5 * parameters.ball_mass * parameters.ball_velocity * parameters.ball_velocity;
     let residual = e.ball + e.elastic + e.impact_loss + e.friction - (start + e.wall + e.electrical + e.gravity);
     let swing = 2.0 * parameters.cylinder_amplitude() * std::f64::consts::TAU * parameters.frequency;
-    let fastest = parameters.cylinder_velocity.abs() + swing + harvester.cylinder_velocity().abs();
+    let held = parameters.cylinder_position * (parameters.suspension_stiffness / parameters.cylinder_mass).sqrt();
+    let fastest = parameters.cylinder_velocity.abs() + swing + held.abs() + harvester.cylinder_velocity().abs();
     let of_wall = 0.5 * parameters.ball_mass * fastest * fastest;
     let moved = e.ball + e.elastic + e.impact_loss + start + e.wall.abs() + e.electrical.abs() + of_wall;
     let moved = moved + e.friction + e.gravity.abs();
@@ -172,7 +173,10 @@ fn digits_of_time(harvester: &Harvester, parameters: &Parameters, speed: f64) ->
     };
     let pull = parameters.incline().abs() + parameters.friction_acceleration();
     let by_pull = if pull > 0.0 { pull / (speed + (pull * parameters.travel()).sqrt()) } else { 0.0 };
-    16.0 * (time.next_up() - time) * (rate + by_pull)
+    // A suspension turns the wall, too, and its pieces are rounded one by one.
+    let of_mount = (parameters.suspension_stiffness / parameters.cylinder_mass).sqrt()
+        + parameters.suspension_damping / parameters.cylinder_mass;
+    16.0 * (time.next_up() - time) * (rate + of_mount + by_pull) + 64.0 * f64::EPSILON * of_mount * duration(parameters)
 }
 
 /// Runs a harvester from `start`, s, in a few steps: every output stays finite, the books close and the events keep to the
