@@ -76,6 +76,79 @@ pub enum ModelError {
         /// Its bound, 1/s.
         limit: f64,
     },
+    /// A recording whose lists of times and values differ in length.
+    #[error("a recording has {times} times and {values} values: each sample needs both")]
+    SamplePairs {
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A recording with too few or too many samples.
+    #[error("a recording has {count} samples: at least {min}, at most {max}")]
+    SampleCount {
+        /// Number of samples.
+        count: usize,
+        /// Least number allowed.
+        min: usize,
+        /// Largest number allowed.
+        max: usize,
+    },
+    /// A sample that is NaN or too large.
+    #[error(
+        "sample {index} of the recording (from 0): {name} = {value} {unit} is outside [-{bound:e}, {bound:e}] {unit}"
+    )]
+    Sample {
+        /// Number of the sample, from 0.
+        index: usize,
+        /// `time` or `value`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Largest size allowed.
+        bound: f64,
+    },
+    /// A sample that does not come after the one before.
+    #[error(
+        "sample {index} of the recording (from 0): time = {time} s must be at least {spacing:e} s after that of the sample \
+         before, {before} s"
+    )]
+    SampleOrder {
+        /// Number of the sample, from 0.
+        index: usize,
+        /// Its time, s.
+        time: f64,
+        /// Time of the one before, s.
+        before: f64,
+        /// Least difference allowed, s.
+        spacing: f64,
+    },
+    /// A recording of what is not prescribed.
+    #[error(
+        "the recording is one of {}; allowed with it: excitation.kind = {}",
+        if *.is_motion { "acceleration" } else { "force" },
+        if *.is_motion { "motion" } else { "force" }
+    )]
+    RecordingKind {
+        /// Whether it is one of acceleration.
+        is_motion: bool,
+    },
+    /// A recording that is repeated, with samples that follow each other too fast.
+    #[error(
+        "excitation.fileRepeat = true needs a recording with at least {min:e} s from sample to sample on average; this one \
+         has {spacing:e} s"
+    )]
+    RepeatedTooFast {
+        /// Mean time between two samples, s.
+        spacing: f64,
+        /// Least one allowed, s.
+        min: f64,
+    },
+    /// A state from a run with another recording.
+    #[error("the snapshot is of a harvester with another recording, or without one")]
+    OtherRecording,
     /// A contact under a Maxwell force that goes deeper than any membrane.
     #[error(
         "at t = {time} s the membrane is pressed in by {deflection} m: with contact.electrostaticFeedback, at {voltage} V, \

@@ -24,6 +24,7 @@ use crate::motion::pulse::{PulseShape, Pulses};
 use crate::motion::{Ball, Forces, Motion, Start};
 use crate::noise::Noise;
 use crate::parameters::Parameters;
+use crate::recording::Setup;
 use crate::sensitivity::{Direction, Tangent, Tangential};
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
@@ -63,14 +64,15 @@ impl Clone for Harvester {
 }
 
 impl Harvester {
-    /// The harvester at `start`, s, in its initial state. A ball that starts on a membrane and approaches it has met it:
+    /// The harvester at `start`, s, in its initial state, from parameters and, if there is one, the recording that excites it
+    /// ([`Parameters::with_recording`]). A ball that starts on a membrane and approaches it has met it:
     /// [`Harvester::present_impact`].
     ///
     /// # Errors
-    /// A parameter out of bounds ([`Parameters::validate`]); a start time beyond 1e9 s before or after zero, or, with
+    /// A parameter out of bounds ([`Parameters::validate`]); a recording that does not fit ([`Setup::validate`]); a start time beyond 1e9 s before or after zero, or, with
     /// phase noise, beyond 2^52 hold intervals.
-    pub fn new(parameters: &Parameters, start: f64) -> Result<Self, ModelError> {
-        let mut harvester = Self::before_events(parameters, start)?;
+    pub fn new<'a>(setup: impl Into<Setup<'a>>, start: f64) -> Result<Self, ModelError> {
+        let mut harvester = Self::before_events(&setup.into(), start)?;
         harvester.begin();
         harvester.advance(start)?;
         Ok(harvester)
@@ -81,11 +83,17 @@ impl Harvester {
     ///
     /// # Errors
     /// As [`Harvester::new`]; a force that is not finite or beyond 1e18 N.
-    pub fn along(parameters: &Parameters, start: f64, force: f64, direction: &Direction) -> Result<Self, ModelError> {
+    pub fn along<'a>(
+        setup: impl Into<Setup<'a>>,
+        start: f64,
+        force: f64,
+        direction: &Direction,
+    ) -> Result<Self, ModelError> {
         inputs::check_force([force, 0.0])?;
-        let mut harvester = Self::before_events(parameters, start)?;
+        let setup = setup.into();
+        let mut harvester = Self::before_events(&setup, start)?;
         let xi = harvester.noise.xi(harvester.noise.sample);
-        harvester.tangent = Tangent::along(parameters, start, force, direction, xi);
+        harvester.tangent = Tangent::along(setup.parameters, start, force, direction, xi);
         harvester.begin();
         harvester.advance(start)?;
         harvester.push(force, 0.0);
@@ -93,10 +101,15 @@ impl Harvester {
     }
 
     /// The harvester at `start`, s; what happens there is still ahead.
-    fn before_events(p: &Parameters, start: f64) -> Result<Self, ModelError> {
-        p.validate()?;
-        let noise = Noise::at_start(p, start)?;
-        let drive = Drive::new(p, noise.phase(noise.sample), [0.0; 2]);
+    fn before_events(setup: &Setup<'_>, start: f64) -> Result<Self, ModelError> {
+        setup.validate()?;
+        let (p, playback) = (setup.parameters, setup.playback());
+        let mut noise = Noise::at_start(p, start)?;
+        let mut drive = Drive::new(p, noise.phase(noise.sample), [0.0; 2]);
+        if let Some(playback) = &playback {
+            noise.pass_singly();
+            drive.recorded = playback.segment_at(start);
+        }
         let cylinder = Start { time: start, position: p.cylinder_position, velocity: p.cylinder_velocity };
         let half = p.travel() / 2.0;
         let position = p.initial_ball_position();
@@ -105,6 +118,8 @@ impl Harvester {
         let displacement = projected.unwrap_or(p.cylinder_position - position);
         let relative = Start { time: start, position: displacement, velocity: p.cylinder_velocity - p.ball_velocity };
         let slip = if p.friction_acceleration() > 0.0 { relative.velocity.signum() } else { 0.0 };
+        let mut motion = Motion::new(p, cylinder, drive, last, (Ball::Free, slip), relative);
+        motion.playback = playback;
         let works = Works { slide: [p.cylinder_position, displacement], ..Works::default() };
         let membrane = Membrane::new(p);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
@@ -112,7 +127,7 @@ impl Harvester {
             parameters: *p,
             membrane,
             time: start,
-            motion: Motion::new(p, cylinder, drive, last, (Ball::Free, slip), relative),
+            motion,
             noise,
             voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             pulses: Pulses { shape, under_way: Default::default() },

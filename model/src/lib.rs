@@ -27,6 +27,7 @@ mod noise;
 mod numerics;
 mod paper;
 mod parameters;
+mod recording;
 mod sensitivity;
 
 pub use accounting::ledger::{Energies, Totals, Works};
@@ -42,4 +43,5 @@ pub use motion::side::Side;
 pub use parameters::{
     Choice, ContactLaw, ExcitationKind, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY,
 };
+pub use recording::{Recording, Setup};
 pub use sensitivity::{Changes, Direction, GRAZING_SPEED, Sensitivities};

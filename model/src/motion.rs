@@ -26,6 +26,7 @@ use self::side::Side;
 use crate::contact::{Contact, Recoil};
 use crate::paper::impact;
 use crate::parameters::{OutsideGap, Parameters};
+use crate::recording::{Playback, Segment};
 
 /// Where cylinder and ball are, how they go on, and what has been found of the way ahead.
 #[derive(Debug, PartialEq)]
@@ -45,11 +46,13 @@ pub struct Motion {
     /// The free motion of the ball relative to the cylinder.
     pub flight: Flight,
     pub search: Search,
+    /// The recording that excites the cylinder, of which a segment is in the drive.
+    pub playback: Option<Playback>,
 }
 
 impl Clone for Motion {
     fn clone(&self) -> Self {
-        Self { ball: self.ball.clone(), ..*self }
+        Self { ball: self.ball.clone(), playback: self.playback.clone(), ..*self }
     }
 
     fn clone_from(&mut self, source: &Self) {
@@ -65,8 +68,10 @@ impl Clone for Motion {
             slip,
             flight,
             search,
+            ref playback,
         } = *source;
         self.ball.clone_from(ball);
+        self.playback.clone_from(playback);
         (self.half_travel, self.restitution, self.recoil_share) = (half_travel, restitution, recoil_share);
         (self.accuracy, self.mount, self.cylinder, self.last) = (accuracy, mount, cylinder, last);
         (self.slip, self.flight, self.search) = (slip, flight, search);
@@ -91,8 +96,21 @@ impl Motion {
         let here = cylinder.at(relative.time);
         let flight = Flight::new(&cylinder, &here, motion, half_travel, mount.relative(slip));
         let (restitution, recoil_share, accuracy) = (p.restitution, p.recoil_share(), Accuracy::Exact);
-        let search = Search::new();
-        Self { half_travel, restitution, recoil_share, accuracy, mount, cylinder, last, ball, slip, flight, search }
+        let (search, playback) = (Search::new(), None);
+        Self {
+            half_travel,
+            restitution,
+            recoil_share,
+            accuracy,
+            mount,
+            cylinder,
+            last,
+            ball,
+            slip,
+            flight,
+            search,
+            playback,
+        }
     }
 
     /// What this `ball` does to the cylinder, under the compliant law besides the force of the contact.
@@ -186,8 +204,22 @@ impl Motion {
 
     /// The drive as it is at `time`, s, for a motion that starts there.
     pub fn drive_at(&self, time: f64) -> Drive {
-        let drive = self.cylinder.drive;
-        Drive { external: drive.external + drive.external_rate * (time - self.cylinder.start), ..drive }
+        self.cylinder.drive_at(time)
+    }
+
+    /// The same where a piece ends: the recording may go on with its next segment there.
+    fn drive_after(&self, cylinder: &CylinderMotion, time: f64) -> Drive {
+        let Drive { recorded, .. } = cylinder.drive;
+        let next = self.playback.as_ref().filter(|_| recorded.end <= time);
+        Drive {
+            recorded: next.map_or(recorded, |playback| playback.segment(recorded.number + 1)),
+            ..cylinder.drive_at(time)
+        }
+    }
+
+    /// The segment of the recording at `time`, s.
+    pub fn recorded_at(&self, time: f64) -> Segment {
+        self.playback.as_ref().map_or(Segment::NONE, |playback| playback.segment_at(time))
     }
 
     /// Takes cylinder and ball at `time`, s, as the start of a new motion under `drive`; not in a contact.

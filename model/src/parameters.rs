@@ -79,6 +79,8 @@ macro_rules! parameters {
             pub reaction: bool,
             /// `contact.electrostaticFeedback`: the Maxwell force acts on the ball.
             pub electrostatic_feedback: bool,
+            /// `excitation.fileRepeat`: the recording begins again at its end.
+            pub file_repeat: bool,
         }
 
         impl Default for Parameters {
@@ -92,6 +94,7 @@ macro_rules! parameters {
                     contact_law: ContactLaw::Impulsive,
                     reaction: false,
                     electrostatic_feedback: false,
+                    file_repeat: false,
                 }
             }
         }
@@ -135,6 +138,8 @@ parameters! {
     suspension_stiffness: "cylinder.suspensionStiffness", "N/m", 0.0, 0.0, 1e6, "k: stiffness of the cylinder's suspension, from static equilibrium; 0 in the paper";
     suspension_damping: "cylinder.suspensionDamping", "N.s/m", 0.0, 0.0, 1e4, "c: damping of the cylinder's suspension; 0 in the paper";
     acceleration: "excitation.acceleration", "m/s2", 0.0, 0.0, 1e6, "Amplitude of the cylinder's acceleration, if that is prescribed (excitation.kind = motion)";
+    file_scale: "excitation.fileScale", "1", 1.0, -1e6, 1e6, "Factor of the recorded force or acceleration";
+    file_offset: "excitation.fileOffset", "s", 0.0, -1e9, 1e9, "Time by which the recorded force or acceleration comes later than its samples say";
 }
 
 /// What the excitation prescribes.
@@ -183,7 +188,17 @@ impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
         Self::ELECTROSTATIC_FEEDBACK,
         Self::REACTION,
         Self::EXCITATION_KIND,
+        Self::FILE_REPEAT,
     ];
+
+    /// `excitation.fileRepeat`
+    pub const FILE_REPEAT: Self = Self {
+        name: "excitation.fileRepeat",
+        start: 0,
+        description: "The recording begins again where it ends; otherwise there is nothing after its last sample",
+        get: |p| i32::from(p.as_ref().file_repeat),
+        set: |p, on| p.as_mut().file_repeat = on != 0,
+    };
 
     /// `excitation.kind`
     pub const EXCITATION_KIND: Self = Self {

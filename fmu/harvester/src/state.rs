@@ -34,8 +34,8 @@ impl Harvester {
         (slave.voltages, slave.voltage_rates, slave.start_time) = (voltages, voltage_rates, start_time);
         slave.placed = placed;
         slave.model = if let Some(snapshot) = snapshot {
-            let restore = if placed { Model::restore_placed } else { Model::restore };
-            let restored = restore(&slave.parameters, &snapshot);
+            let p = &slave.parameters;
+            let restored = if placed { Model::restore_placed(p, &snapshot) } else { Model::restore(p, &snapshot) };
             Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
         } else {
             slave.at_start()

@@ -150,7 +150,7 @@ impl Law<'_> {
     pub(super) fn push_size(&self, time: f64) -> f64 {
         let drive = &self.cylinder.drive;
         let external = drive.external + drive.external_rate * (time - self.cylinder.start);
-        drive.amplitude + (external + self.mount.incline).abs()
+        drive.amplitude + (external + self.mount.incline).abs() + drive.recorded.at(time).abs()
     }
 
     /// Force on the ball, N, outwards.
@@ -182,7 +182,8 @@ impl Law<'_> {
         let cosine = (drive.angle(time) + drive.omega() * elapsed).cos();
         let external =
             self.cylinder.load.give * (drive.external + drive.external_rate * (time - self.cylinder.start + elapsed));
-        self.side.sign() * (excitation::acceleration(drive.amplitude, cosine, external) + self.mount.incline)
+        let given = external + (drive.recorded.at(time) + drive.recorded.rate * elapsed);
+        self.side.sign() * (excitation::acceleration(drive.amplitude, cosine, given) + self.mount.incline)
     }
 
     /// What the contact adds to the cylinder's motion when deflection and rate are `x`, m, and `v`, m/s.

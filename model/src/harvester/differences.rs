@@ -7,6 +7,7 @@ use crate::accounting::ledger::Energies;
 use crate::error::ModelError;
 use crate::motion::side::Side;
 use crate::parameters::Parameters;
+use crate::recording::Setup;
 use crate::sensitivity::Sensitivities;
 
 /// Step of the differences, in units of what friction and suspension typically are. Truncation and rounding are both below 1e-9.
@@ -21,12 +22,13 @@ impl Harvester {
     ///
     /// # Errors
     /// As [`Harvester::along`].
-    pub fn change_upwards(
-        p: &Parameters,
+    pub fn change_upwards<'a>(
+        setup: impl Into<Setup<'a>>,
         start: f64,
         force: f64,
         name: &str,
     ) -> Result<Option<Sensitivities>, ModelError> {
+        let Setup { parameters: p, recording } = setup.into();
         let is_known = ONE_SIDED.contains(&name);
         let Some(quantity) = Parameters::TABLE.iter().find(|quantity| is_known && quantity.name == name) else {
             return Ok(None);
@@ -41,7 +43,7 @@ impl Harvester {
         let at = |distance: f64| -> Result<Sensitivities, ModelError> {
             let mut moved = *p;
             (quantity.set)(&mut moved, (quantity.get)(p) + distance);
-            let mut harvester = Self::new(&moved, start)?;
+            let mut harvester = Self::new(moved.with_recording(recording), start)?;
             harvester.set_external_force(force, 0.0)?;
             Ok(harvester.shown())
         };

@@ -101,7 +101,7 @@ impl Harvester {
         side.sign() * self.carrying_acceleration() + self.motion.mount.friction
     }
 
-    /// Does what is due at the present time: a fresh phase-noise sample; an impact, Eqs. (10) to (13); a release. True if
+    /// Does what is due at the present time: a fresh phase-noise sample; the next sample of the recording; an impact, Eqs. (10) to (13); a release. True if
     /// continuous states have changed. A ball beyond a membrane and approaching it counts as meeting it. A second call at the
     /// same time changes nothing more.
     ///
@@ -113,6 +113,7 @@ impl Harvester {
         while let Some(due) = self.noise.limit().filter(|due| *due <= self.time * (1.0 + f64::EPSILON)) {
             self.next_noise_sample(due.min(self.time));
         }
+        self.take_next_sample();
         self.settle_friction(self.time);
         let changed = match self.motion.ball {
             Ball::Resting(side) if self.pressing(side) > 0.0 => false,
@@ -127,11 +128,22 @@ impl Harvester {
         Ok(changed)
     }
 
-    /// The next time, s, at which an event is due whatever the states do: a fresh phase-noise sample, or the peak or end of
+    /// The recording goes on with the segment of the present time.
+    fn take_next_sample(&mut self) {
+        let due = self.motion.cylinder.drive.recorded.end;
+        if due <= self.time + f64::EPSILON * self.time.abs() {
+            let recorded = self.motion.recorded_at(due.max(self.time));
+            self.restart(self.time, Drive { recorded, ..self.motion.drive_at(self.time) });
+        }
+    }
+
+    /// The next time, s, at which an event is due whatever the states do: a fresh phase-noise sample, a sample of the
+    /// recording, or the peak or end of
     /// a pulse, where a capacitance has a kink.
     pub fn next_time_event(&self) -> Option<f64> {
         let knots = self.pulses.next_knots(self.time).map(|knot| knot.time);
-        knots.chain(self.noise.limit()).min_by(f64::total_cmp)
+        let sample = Some(self.motion.cylinder.drive.recorded.end).filter(|end| *end < f64::INFINITY);
+        knots.chain(self.noise.limit()).chain(sample).min_by(f64::total_cmp)
     }
 
     /// That the integrator has not passed over more samples of the phase noise than it may.

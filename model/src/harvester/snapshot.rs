@@ -17,9 +17,10 @@ use crate::motion::{Ball, Motion, Prediction, Search, Start};
 use crate::noise::Noise;
 use crate::noise::block::BLOCK;
 use crate::parameters::{ContactLaw, Parameters};
+use crate::recording::{Recording, Segment, Setup};
 use crate::sensitivity::{Changes, Tangent};
 
-/// Everything that a [`Harvester`] carries from one step to the next, besides its parameters.
+/// Everything that a [`Harvester`] carries from one step to the next, besides its parameters and its recording.
 ///
 /// Exported by [`Harvester::snapshot`], imported by [`Harvester::restore`]. What follows from these values, such as the
 /// time of the next impact, is worked out again.
@@ -50,6 +51,10 @@ pub struct Snapshot {
     pub noise_sample: u64,
     /// The Wiener process of the phase noise, sqrt(s).
     pub noise_walk: f64,
+    /// Fingerprint of the recording, 0 if there is none.
+    pub recording: u64,
+    /// Number of its segment at the start of the cylinder's motion.
+    pub segment: u64,
     /// Pulses under way on the left and on the right membrane, the largest peak first.
     pub pulses: [Vec<Pulse>; 2],
     /// The present contact under the compliant law.
@@ -89,6 +94,8 @@ impl Harvester {
             relative: start(motion.flight.start, state.dz, state.rate),
             noise_sample: state.sample,
             noise_walk: noise.walk,
+            recording: motion.playback.as_ref().map_or(0, |playback| playback.recording.fingerprint()),
+            segment: motion.cylinder.drive.recorded.number,
             pulses: self.pulses.under_way.clone(),
             contact: motion.ball.contact().map(|contact| contact.state),
             voltages: self.voltages,
@@ -100,13 +107,16 @@ impl Harvester {
         }
     }
 
-    /// The harvester that had this state. With the parameters it had then, it goes on as if nothing had happened, to the
+    /// The harvester that had this state. With the parameters and the recording it had then, it goes on as if nothing had happened, to the
     /// last bit.
     ///
     /// # Errors
-    /// A parameter out of bounds; values that no harvester can have had, such as NaN or an event in the future.
-    pub fn restore(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        let mut harvester = Self::rebuild(parameters, snapshot, BLOCK as f64)?;
+    /// A parameter out of bounds; another recording; values that no harvester can have had, such as NaN or an event in the
+    /// future.
+    pub fn restore<'a>(setup: impl Into<Setup<'a>>, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        let mut harvester = Self::rebuild(&setup.into(), snapshot, BLOCK as f64)?;
+        let segment_end = harvester.motion.cylinder.drive.recorded.end;
+        check("segment of the recording that ended at", segment_end, segment_end >= snapshot.time)?;
         harvester.motion.resume_search(snapshot.time);
         let (motion, forces, limit, ..) = harvester.parts();
         motion.plan_contact(forces, limit);
@@ -125,18 +135,32 @@ impl Harvester {
     ///
     /// # Errors
     /// As [`Harvester::restore`].
-    pub fn restore_placed(parameters: &Parameters, snapshot: &Snapshot) -> Result<Self, ModelError> {
-        let mut harvester = Self::rebuild(parameters, snapshot, MAX_LAG)?;
+    pub fn restore_placed<'a>(setup: impl Into<Setup<'a>>, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        let mut harvester = Self::rebuild(&setup.into(), snapshot, MAX_LAG)?;
         harvester.leave_to_integrator();
         Ok(harvester)
     }
 
     /// `lag`: how many phase-noise samples may be due and not taken.
-    fn rebuild(p: &Parameters, snapshot: &Snapshot, lag: f64) -> Result<Self, ModelError> {
-        p.validate()?;
+    fn rebuild(setup: &Setup<'_>, snapshot: &Snapshot, lag: f64) -> Result<Self, ModelError> {
+        setup.validate()?;
+        let p = setup.parameters;
         snapshot.validate(p, lag)?;
-        let noise = Noise::new(p, snapshot.noise_sample, snapshot.noise_walk);
-        let drive = Drive::new(p, noise.phase(noise.sample), [snapshot.external, snapshot.external_rate]);
+        if snapshot.recording != setup.recording.map_or(0, Recording::fingerprint) {
+            return Err(ModelError::OtherRecording);
+        }
+        let mut noise = Noise::new(p, snapshot.noise_sample, snapshot.noise_walk);
+        let mut drive = Drive::new(p, noise.phase(noise.sample), [snapshot.external, snapshot.external_rate]);
+        let playback = setup.playback();
+        if let Some(playback) = &playback {
+            noise.pass_singly();
+            drive.recorded = playback.segment(snapshot.segment);
+        }
+        let Segment { number, start, .. } = drive.recorded;
+        check("segment of the recording", snapshot.segment as f64, number == snapshot.segment)?;
+        // An integrator stops at a sample to rounding.
+        let has_begun = number == 0 || start <= snapshot.cylinder.time + 2.0 * f64::EPSILON * start.abs();
+        check("segment of the recording that begins at", start, has_begun)?;
         let ball = match (snapshot.contact, snapshot.resting) {
             (Some(state), _) => Ball::InContact(Contact::resumed(state)),
             (None, Some(side)) => Ball::Resting(side),
@@ -147,7 +171,7 @@ impl Harvester {
         let relative = Start { velocity: rate, ..snapshot.relative };
         let mut motion = Motion::new(p, snapshot.cylinder, drive, snapshot.ball, (ball, snapshot.slip), relative);
         motion.cylinder.damped = snapshot.damped;
-        motion.search = Search::none();
+        (motion.search, motion.playback) = (Search::none(), playback);
         let tangent = snapshot
             .changes
             .map_or_else(Tangent::none, |changes| Tangent { changes, ..Tangent::of_force(changes.since, p) });

@@ -41,7 +41,7 @@ pub enum Tail {
 impl Motion {
     /// Whether a ball that leaves the `wall` at `side` with relative speed `rebound`, m/s, comes to rest there, because that
     /// pushes and the next bounce is lower than rounding, or at least very low, with all that follow so short that the push is
-    /// constant meanwhile. Up to `limit`, s, the phase of the force is known.
+    /// constant meanwhile. Up to `limit`, s, the phase of the force is known; a recording has a line up to the next sample.
     #[inline]
     pub fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState, limit: f64) -> Option<Tail> {
         let push = side.sign() * self.free_acceleration(wall);
@@ -70,6 +70,7 @@ impl Motion {
         [highest, unresolved, tolerance]: [f64; 3],
     ) -> Option<Tail> {
         let CylinderState { time, jerk, .. } = *wall;
+        let limit = limit.min(self.cylinder.drive.recorded.end);
         let height = rebound * rebound / (2.0 * leaving);
         if returning > 0.0 {
             let slower = (returning / leaving).sqrt();

@@ -82,8 +82,8 @@ impl Motion {
         let Ball::InContact(contact) = ball else { return };
         let period_end = contact.state.start.time + 1.0 / forces.parameters.frequency;
         let limit = limit.map_or(period_end, |limit| limit.min(period_end));
-        // The motion of a suspended cylinder is known to the end of its piece.
-        let limit = flight.piece().map_or(limit, |length| limit.min(flight.start + length));
+        // The motion of the cylinder is known to the end of its piece.
+        let limit = limit.min(flight.end_of_series()).min(cylinder.drive.recorded.end);
         contact.plan(&forces.law((cylinder, mount), flight, contact.state.side), limit);
     }
 
@@ -102,13 +102,14 @@ impl Motion {
             let voltage = law.voltage.at(time);
             return Err(ModelError::TooDeep { time, deflection, bound: law.deepest(), voltage });
         }
-        if steps == 0 {
+        let is_at_end = self.end_of_piece() <= time;
+        if steps == 0 && !is_at_end {
             return Err(budget.exceeded(time)); // no step is short enough
         }
         (0..STEP_COST * steps).try_for_each(|_| budget.spend(time))?;
         self.book_pass(forces.membrane, ledger, time);
-        if self.end_of_piece().is_some_and(|end| end <= time) {
-            self.restart_contact_booked(forces, limit, (time, self.drive_at(time)));
+        if is_at_end {
+            self.restart_contact_booked(forces, limit, (time, self.drive_after(&self.cylinder, time)));
             return Ok(());
         }
         let Some(contact) = self.ball.contact() else { return Ok(()) };

@@ -8,8 +8,9 @@ use crate::numerics::elementary::{round, sin_cos};
 use crate::numerics::product::cycle_fraction;
 use crate::paper::excitation;
 use crate::parameters::Parameters;
+use crate::recording::Segment;
 
-/// Force on the cylinder over its mass: harmonic, plus an external part that is linear in time.
+/// Force on the cylinder over its mass: harmonic, plus an external and a recorded part that are linear in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// A / M, m/s^2.
@@ -22,6 +23,8 @@ pub struct Drive {
     pub external: f64,
     /// Its rate, m/s^3.
     pub external_rate: f64,
+    /// The recorded part.
+    pub recorded: Segment,
 }
 
 impl Drive {
@@ -29,7 +32,7 @@ impl Drive {
     /// m/s^3.
     pub fn new(p: &Parameters, phase: f64, [external, external_rate]: [f64; 2]) -> Self {
         let amplitude = p.harmonic_acceleration();
-        Self { amplitude, frequency: p.frequency, phase, external, external_rate }
+        Self { amplitude, frequency: p.frequency, phase, external, external_rate, recorded: Segment::NONE }
     }
 
     /// 2 pi `f_0`, rad/s.
@@ -39,7 +42,8 @@ impl Drive {
 
     /// True if the force never changes.
     pub fn is_constant(&self) -> bool {
-        self.amplitude == 0.0 && self.external_rate == 0.0
+        let Segment { rate, end, .. } = self.recorded;
+        self.amplitude == 0.0 && self.external_rate == 0.0 && rate == 0.0 && end == f64::INFINITY
     }
 
     /// 2 pi `f_0` t + phase at `time` t, s, reduced by whole turns before the phase is added, so that a long run loses
@@ -127,8 +131,10 @@ impl CylinderMotion {
         let own_turns = drive.own_turns();
         let [sin_start, cos_start] = sin_cos(4.0 * (cycle_fraction(drive.frequency, start) + own_turns));
         let amplitude = load.share * drive.amplitude;
-        let external =
-            [load.share * (load.give * drive.external + load.push), load.share * (load.give * drive.external_rate)];
+        let external = [
+            load.share * (load.give * drive.external + drive.recorded.at(start) + load.push),
+            load.share * (load.give * drive.external_rate + drive.recorded.rate),
+        ];
         let damped = 0.0;
         let speed = amplitude / drive.omega();
         let swing = speed / drive.omega();
@@ -211,6 +217,12 @@ impl CylinderMotion {
     /// Position and velocity `elapsed`, s, after the start, of a suspended cylinder to which that adds this.
     pub(super) fn after(&self, elapsed: f64, [farther, faster]: [f64; 2]) -> [f64; 2] {
         [self.position + (self.velocity * elapsed + farther), self.velocity + faster]
+    }
+
+    /// The drive as it is at `time`, s, for a motion that starts there.
+    pub fn drive_at(&self, time: f64) -> Drive {
+        let drive = self.drive;
+        Drive { external: drive.external + drive.external_rate * (time - self.start), ..drive }
     }
 
     /// The same motion described from `time`, s, on, under another drive.
@@ -302,7 +314,14 @@ mod tests {
 
     #[test]
     fn velocity_and_acceleration_are_the_derivatives_of_position() {
-        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: -0.2 };
+        let drive = Drive {
+            amplitude: 4.0,
+            frequency: 2.0,
+            phase: 0.3,
+            external: 0.7,
+            external_rate: -0.2,
+            recorded: Segment::NONE,
+        };
         let motion =
             CylinderMotion::new(0.37, 0.01, -0.2, drive, Load { mass: 1.25, share: 0.8, push: 0.3, ..Load::NONE });
         for k in 0..50 {
@@ -317,7 +336,14 @@ mod tests {
 
     #[test]
     fn a_motion_continued_with_the_same_force_goes_on_as_before() {
-        let drive = Drive { amplitude: 4.0, frequency: 2.0, phase: 0.3, external: 0.7, external_rate: 0.0 };
+        let drive = Drive {
+            amplitude: 4.0,
+            frequency: 2.0,
+            phase: 0.3,
+            external: 0.7,
+            external_rate: 0.0,
+            recorded: Segment::NONE,
+        };
         let motion = CylinderMotion::new(0.0, 0.01, -0.2, drive, Load::NONE);
         let continued = motion.continued(1.3, drive);
         assert_relative_eq!(motion.at(2.9).position, continued.at(2.9).position, max_relative = 1e-13);

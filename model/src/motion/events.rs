@@ -1,6 +1,7 @@
 //! What comes next, and how far the way ahead has been searched.
 
 use super::ball::Start;
+use super::cylinder::Drive;
 use super::side::Side;
 use crate::noise::intervals::{Anchored, HoldState};
 
@@ -40,7 +41,7 @@ impl Prediction {
     }
 }
 
-/// The begin of a piece of the motion over a suspended cylinder.
+/// The begin of a piece of the motion, for which a power series holds, or a segment of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// The cylinder.
@@ -49,12 +50,14 @@ pub struct Piece {
     pub relative: [f64; 2],
     /// Energy that the damper has taken so far, over M, J/kg.
     pub damped: f64,
+    /// What drives it.
+    pub drive: Drive,
 }
 
 /// How far the present flight (or rest) has been searched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// Windows before this one hold no event.
+    /// Windows of the present piece, or of that ahead, before this one hold no event.
     pub(super) window: u64,
     pub found: Option<Prediction>,
     /// Relative speed, m/s, of the impact that has been found.
@@ -67,7 +70,7 @@ pub struct Search {
     pub ahead: Option<Anchored>,
     /// With phase noise: the begin of an earlier hold interval of the block, which the present one follows from.
     pub anchor: Option<HoldState>,
-    /// Over a suspended cylinder: the begin of the first piece that has not been searched, or of that in which the event is
+    /// Over a suspended cylinder, or with a recording: the begin of the first piece that has not been searched, or of that in which the event is
     /// that has been found, unless it is the present one.
     pub piece: Option<Piece>,
     /// No event will ever come.

@@ -116,6 +116,11 @@ impl Flight {
         (self.piece < f64::INFINITY).then_some(self.piece)
     }
 
+    /// When that ends, s.
+    pub fn end_of_series(&self) -> f64 {
+        self.start + self.piece
+    }
+
     /// The angle at `tau`, s, in turns.
     fn turns_at(&self, tau: f64) -> f64 {
         self.turns + self.turns_since_start(tau)

@@ -86,7 +86,8 @@ impl Motion {
     /// The cylinder's motion when the event comes that is predicted.
     pub fn predicted_cylinder(&self, noise: &Noise) -> CylinderMotion {
         let ahead = self.search.ahead;
-        ahead.map_or(self.cylinder, |Anchored { here, .. }| self.cylinder_from(noise, &here, noise.phase(here.sample)))
+        let in_interval = ahead.map(|Anchored { here, .. }| self.cylinder_from(noise, &here, noise.phase(here.sample)));
+        in_interval.or_else(|| self.cylinder_of_predicted_piece()).unwrap_or(self.cylinder)
     }
 
     /// Enters the hold interval ahead in which the event is that has been found.

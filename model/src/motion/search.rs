@@ -1,6 +1,6 @@
 //! The search for the next event.
 
-use super::cylinder::CylinderState;
+use super::cylinder::{CylinderState, Drive};
 use super::events::{Prediction, Search};
 use super::flight::{End, Flight};
 use super::side::Side;
@@ -43,7 +43,7 @@ impl Motion {
             let change = Prediction::ContactChange { time: end };
             return Some(sample.map_or(change, |time| Prediction::NoiseSample { time }));
         }
-        if self.flight.piece().is_some() {
+        if self.goes_in_pieces() {
             return self.next_event_in_pieces(limit, until);
         }
         let start = self.flight.start;
@@ -88,18 +88,16 @@ impl Motion {
         if let Ball::InContact(contact) = &self.ball {
             return contact.end();
         }
-        if let Some(end) = self.end_of_piece() {
-            // Within the present piece nothing happens before the event.
-            let searched = self.search.piece.map_or(end, |piece| piece.cylinder.time);
-            let calm = self.search.found.map_or_else(|| self.before_horizon_of(searched), Prediction::time);
-            return calm.min(end);
-        }
-        let Search { window, found, exhausted, .. } = &self.search;
-        match found {
+        let Search { window, found, exhausted, piece, .. } = &self.search;
+        let calm = match found {
             Some(event) => event.time(),
             None if *exhausted => f64::INFINITY,
-            None => self.before_horizon_of(self.flight.start + *window as f64 * self.flight.window_length()),
-        }
+            None => {
+                let front = piece.as_ref().map_or(self.flight.start, |piece| piece.cylinder.time);
+                self.before_horizon_of(front + *window as f64 * self.flight.window_length())
+            }
+        };
+        calm.min(self.end_of_piece()) // there the next piece is to be entered
     }
 
     /// The last time, s, from which the search need not go farther than `searched`, s.
@@ -111,14 +109,20 @@ impl Motion {
 
     /// Searches one window of the flight or of the rest; both limits mean the end of the hold interval, s since the start and s.
     fn search_window(&mut self, limit: f64, end: f64) {
-        let Self { mount, cylinder, ball, slip, flight, search, .. } = self;
+        let Self { cylinder, flight, .. } = *self;
+        self.search_window_of(&cylinder.drive, &flight, limit, end);
+    }
+
+    /// The same of any flight or rest, under this `drive`.
+    pub(super) fn search_window_of(&mut self, drive: &Drive, flight: &Flight, limit: f64, end: f64) {
+        let Self { mount, ball, slip, search, .. } = self;
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if ball.is_carried() {
             let release = flight.departure_in_window(ball.support(), mount, search.window, limit);
             search.found = release.map(|elapsed| Prediction::Release { time: time(elapsed) });
             search.window += 1;
             // Without a force that changes, the ball rests for ever.
-            search.exhausted = release.is_none() && cylinder.drive.is_constant() && limit == f64::INFINITY;
+            search.exhausted = release.is_none() && drive.is_constant() && limit == f64::INFINITY;
             return;
         }
         let next = if *slip == 0.0 { flight.skip(search.window) } else { Some(search.window) };

@@ -179,6 +179,7 @@ mod tests {
     use super::*;
     use crate::motion::cylinder::{CylinderMotion, Drive};
     use crate::motion::mount::Load;
+    use crate::recording::Segment;
     use core::f64::consts::TAU;
     use proptest::prelude::*;
 
@@ -201,7 +202,7 @@ mod tests {
             for k in 0..BLOCK {
                 let sample = number * BLOCK as u64 + k as u64;
                 let phase = phase + intensity * normal::normal(seed, sample);
-                let drive = Drive { amplitude, frequency, phase, external: 0.0, external_rate: 0.0 };
+                let drive = Drive { amplitude, frequency, phase, external: 0.0, external_rate: 0.0, recorded: Segment::NONE };
                 let [start, end] = [sample, sample + 1].map(|sample| sample as f64 * hold);
                 let motion = CylinderMotion::new(start, 0.0, 0.0, drive, Load::NONE);
                 // Rounding of the times, of the angles and of the differences that the closed form consists of.

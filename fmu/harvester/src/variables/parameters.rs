@@ -75,6 +75,7 @@ const fn real_rows<const N: usize>(table: &[Quantity<Harvester>]) -> [V; N] {
 
 const REACTION: Choice<Harvester> = Choice::REACTION;
 const FEEDBACK: Choice<Harvester> = Choice::ELECTROSTATIC_FEEDBACK;
+const REPEAT: Choice<Harvester> = Choice::FILE_REPEAT;
 const SEED: Choice<Harvester> = Choice::SEED;
 
 /// Every real parameter of the model.
@@ -98,6 +99,8 @@ static CHOICES: [V; Parameters::CHOICES.len()] = [
     V::boolean_parameter(REACTION.name, REACTION.start != 0, REACTION.description)
         .access(|slave| slave.parameters.reaction, |slave, on| slave.parameters.reaction = on),
     enumeration(&Choice::EXCITATION_KIND, &EXCITATION_KIND),
+    V::boolean_parameter(REPEAT.name, REPEAT.start != 0, REPEAT.description)
+        .access(|slave| slave.parameters.file_repeat, |slave, on| slave.parameters.file_repeat = on),
 ];
 
 /// Choices number `from` to `to`, likewise.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::motion::cylinder::Drive;
 use crate::motion::mount::Load;
+use crate::recording::Segment;
 use proptest::prelude::*;
 
 const HALF_TRAVEL: f64 = 0.02;
@@ -23,7 +24,7 @@ prop_compose! {
         external_rate in prop_oneof![Just(0.0), -10.0..10.0_f64],
     ) -> Flight {
         let amplitude = swing * (TAU * frequency).powi(2);
-        let drive = Drive { amplitude, frequency, phase, external, external_rate };
+        let drive = Drive { amplitude, frequency, phase, external, external_rate, recorded: Segment::NONE };
         let cylinder = CylinderMotion::new(start, 0.0, 0.0, drive, Load::NONE);
         Flight::new(&cylinder, &cylinder.at(start), [place * HALF_TRAVEL, -velocity], HALF_TRAVEL, 0.0)
     }
