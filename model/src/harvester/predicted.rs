@@ -67,16 +67,18 @@ impl Harvester {
         Some(ahead)
     }
 
+    /// Looks one period beyond the release, counted from there and not from the present time, which a caller chooses.
     pub(super) fn look_beyond_release(&mut self) {
-        if self.motion.search.after_release.is_none() {
-            let mut ahead = self.at_release();
+        if self.motion.search.after_release.is_none()
+            && let Some(mut ahead) = self.at_release()
+        {
+            let horizon = ahead.time + 1.0 / self.parameters.frequency;
             // Friction may hold the ball some times before it arrives.
             for _ in 0..STARTS {
-                let next = ahead.as_ref().filter(|ahead| ahead.time - self.time < 1.0 / self.parameters.frequency);
-                let Some(next) = next.and_then(Self::at_release) else { break };
-                ahead = Some(next);
+                let Some(next) = ahead.at_release().filter(|next| next.time < horizon) else { break };
+                ahead = next;
             }
-            self.motion.search.after_release = ahead.map(|ahead| ahead.next_impact().unwrap_or(f64::INFINITY));
+            self.motion.search.after_release = Some(ahead.next_impact().unwrap_or(f64::INFINITY));
         }
     }
 

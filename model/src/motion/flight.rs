@@ -230,45 +230,56 @@ impl Flight {
     }
 
     /// The first contact inside window number `window`, which ends at `limit`, s since the start, at the latest.
+    #[inline]
     pub fn contact_in_window(&self, window: u64, limit: f64) -> Option<Crossing> {
-        match self.end_in_window(window, limit, 0.0)? {
-            End::Contact(crossing) => Some(crossing),
-            End::Turn { .. } => None,
-        }
+        self.first_in_window(window, limit, true, |from, to| self.contact_in_piece(from, to))
     }
 
-    /// The first contact, or before it the first place where dz' no longer has the sign `slip` (0 for none), inside window number
-    /// `window`, which ends at `limit`, s since the start, at the latest.
-    #[inline]
+    /// The first contact, or before it the first place where dz' no longer has the sign `slip`, inside window number `window`,
+    /// which ends at `limit`, s since the start, at the latest.
+    #[inline(never)] // what a ball without friction does stays small
     pub fn end_in_window(&self, window: u64, limit: f64, slip: f64) -> Option<End> {
+        self.first_in_window(window, limit, false, |from, to| self.end_in_piece(from, to, slip))
+    }
+
+    /// What `find` finds first in the pieces of window number `window` on which dz is monotone; if it looks for contacts only, where
+    /// the ball comes near a membrane.
+    #[inline]
+    fn first_in_window<T>(
+        &self,
+        window: u64,
+        limit: f64,
+        contacts_only: bool,
+        find: impl Fn(&Knot, &Knot) -> Option<T>,
+    ) -> Option<T> {
         let (begin, end) = self.window_bounds(window, limit);
         let mut from = if begin == 0.0 { self.first_knot() } else { self.knot(0, begin, self.angle(begin)) };
-        if slip == 0.0 && end == limit && !self.within_reach(&from, end) {
+        if contacts_only && end == limit && !self.within_reach(&from, end) {
             return None;
         }
         // After one period the angle is what it was; of many periods the end is not that exact.
         let is_first_period = begin == 0.0 && end == self.period;
         let at_end = || if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
         if self.has_curvature_only() {
-            return self.end_between_inflections(from, self.knot(0, end, at_end()), slip);
+            return self.first_between_inflections(from, self.knot(0, end, at_end()), contacts_only, find);
         }
         for zero in self.zeros(1, begin, end).iter() {
             let to = self.knot_at(0, zero);
-            let found = self.end_in_piece(&from, &to, slip);
+            let found = find(&from, &to);
             if found.is_some() {
                 return found;
             }
             from = to;
         }
         let last = self.knot(0, end, at_end());
-        self.end_in_piece(&from, &last, slip)
+        find(&from, &last)
     }
 
     /// The end in a piece on which dz is monotone: it begins with a turn if it leads back, by more than rounding, as it may where
     /// the ball has just set out.
     #[inline]
     fn end_in_piece(&self, from: &Knot, to: &Knot, slip: f64) -> Option<End> {
-        if slip != 0.0 && slip * (to.value - from.value) < -self.rounding(to.tau) {
+        if slip * (to.value - from.value) < -self.rounding(to.tau) {
             return Some(End::Turn { elapsed: from.tau });
         }
         self.contact_in_piece(from, to).map(End::Contact)

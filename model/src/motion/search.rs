@@ -54,7 +54,7 @@ impl Motion {
             None => f64::INFINITY,
         };
         while !self.search.has_ended() {
-            if let Some(ahead) = self.search.ahead {
+            if in_blocks && let Some(ahead) = self.search.ahead {
                 self.search_ahead(noise, ahead, until, follow);
                 break;
             }
@@ -135,13 +135,21 @@ impl Motion {
             return;
         };
         search.window = window + 1;
-        match flight.end_in_window(window, limit, *slip) {
-            Some(End::Contact(there)) => {
-                search.found = Some(Prediction::Impact { time: time(there.elapsed), side: there.side });
-                search.speed = there.speed;
+        let contact = if *slip == 0.0 {
+            flight.contact_in_window(window, limit)
+        } else {
+            match flight.end_in_window(window, limit, *slip) {
+                Some(End::Contact(crossing)) => Some(crossing),
+                Some(End::Turn { elapsed }) => {
+                    search.found = Some(Prediction::Turn { time: time(elapsed) });
+                    None
+                }
+                None => None,
             }
-            Some(End::Turn { elapsed }) => search.found = Some(Prediction::Turn { time: time(elapsed) }),
-            None => {}
+        };
+        if let Some(there) = contact {
+            search.found = Some(Prediction::Impact { time: time(there.elapsed), side: there.side });
+            search.speed = there.speed;
         }
     }
 

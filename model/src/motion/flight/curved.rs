@@ -3,8 +3,8 @@
 //! The extrema of dz have no closed form then, but its inflections have. Between two of these dz is convex or concave: it has one
 //! extremum at most, which lies within its tangents. Only where these leave a doubt the extremum is worked out.
 
+use super::Flight;
 use super::zeros::{Knot, Zero};
-use super::{End, Flight};
 use crate::motion::side::Side;
 use crate::numerics::roots::root_near;
 
@@ -14,17 +14,24 @@ impl Flight {
         self.external[0] != 0.0 && self.external[1] == 0.0
     }
 
-    /// The end of the flight between these places of one window.
+    /// What `find` finds first in the pieces between these places of one window; if it looks for contacts only, where the ball comes
+    /// near a membrane.
     #[inline(never)] // what a level, free capsule does stays small
-    pub(super) fn end_between_inflections(&self, mut from: Knot, last: Knot, slip: f64) -> Option<End> {
+    pub(super) fn first_between_inflections<T>(
+        &self,
+        mut from: Knot,
+        last: Knot,
+        contacts_only: bool,
+        find: impl Fn(&Knot, &Knot) -> Option<T>,
+    ) -> Option<T> {
         let mut slope = self.slope(from.tau, &from.angle.swept);
         let inflections = self.zeros(2, from.tau, last.tau);
         for to in inflections.iter().map(|zero| self.knot_at(0, zero)).chain(core::iter::once(last)) {
             let slope_to = self.slope(to.tau, &to.angle.swept);
             let found = if slope * slope_to >= 0.0 {
-                self.end_in_piece(&from, &to, slip)
+                find(&from, &to)
             } else {
-                self.end_about_extremum((&from, slope), (&to, slope_to), slip)
+                self.first_about_extremum((&from, slope), (&to, slope_to), contacts_only, &find)
             };
             if found.is_some() {
                 return found;
@@ -34,15 +41,21 @@ impl Flight {
         None
     }
 
-    /// The end between two places with these slopes of other signs, between which dz is convex or concave.
-    fn end_about_extremum(&self, (from, slope): (&Knot, f64), (to, slope_to): (&Knot, f64), slip: f64) -> Option<End> {
+    /// The same between two places with these slopes of other signs, between which dz is convex or concave.
+    fn first_about_extremum<T>(
+        &self,
+        (from, slope): (&Knot, f64),
+        (to, slope_to): (&Knot, f64),
+        contacts_only: bool,
+        find: impl Fn(&Knot, &Knot) -> Option<T>,
+    ) -> Option<T> {
         let ahead = if slope > 0.0 { Side::Left } else { Side::Right };
         let behind = if slope > 0.0 { Side::Right } else { Side::Left };
         // Where the tangents meet, dz is farther than it comes.
         let elapsed = (to.value - from.value - slope_to * (to.tau - from.tau)) / (slope - slope_to);
         let farthest = from.value + slope * elapsed;
         let is_open = |side: Side, value: f64| self.room(side) - side.sign() * value > self.rounding(to.tau);
-        if slip == 0.0 && is_open(ahead, farthest) && is_open(behind, to.value) {
+        if contacts_only && is_open(ahead, farthest) && is_open(behind, to.value) {
             return None;
         }
         let sign = slope.signum();
@@ -53,6 +66,6 @@ impl Flight {
             (sign * slope, sign * curvature)
         });
         let extremum = self.knot_at(0, Zero::new(tau, self.angle(tau).sine));
-        self.end_in_piece(from, &extremum, slip).or_else(|| self.end_in_piece(&extremum, to, slip))
+        find(from, &extremum).or_else(|| find(&extremum, to))
     }
 }
