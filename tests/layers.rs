@@ -10,17 +10,18 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 10] = [
+const PACKAGES: [(&str, &[&str]); 11] = [
     ("model", &[]),
     ("circuit", &[]),
+    ("input", &[]),
     ("system", &[]),
     ("report", &["system"]),
     ("fmu/abi", &[]),
     ("fmu/export", &["fmu/abi"]),
-    ("fmu/import", &["fmu/abi", "system"]),
-    ("fmu/harvester", &["fmu/export", "model"]),
+    ("fmu/import", &["fmu/abi", "input", "system"]),
+    ("fmu/harvester", &["fmu/export", "input", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
-    (".", &["circuit", "fmu/import", "model", "report", "system"]),
+    (".", &["circuit", "fmu/import", "input", "model", "report", "system"]),
 ];
 
 /// Dependencies that serve the command line, and have no place in a shared library.

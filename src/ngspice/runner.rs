@@ -11,10 +11,10 @@ use super::capacitance::CapacitanceTable;
 use super::result::ResultReader;
 use super::template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
 use super::{CapacitanceSource, Complaints, Elements, NgspiceError, Run, Waveforms};
+use videg_system::atomic_file;
 use videg_system::output::{KeptOutput, Part};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
-use videg_system::{atomic_file, input};
 
 /// The program.
 #[derive(Debug, Clone)]
@@ -221,7 +221,7 @@ impl BatchOutput {
     /// The result, if there is one.
     pub fn raw(&self) -> Result<Option<BufReader<File>>, NgspiceError> {
         let path = self.folder.path().join(RAW_FILE);
-        match input::open_regular(&path) {
+        match videg_input::open_regular(&path) {
             Ok(file) => Ok(Some(BufReader::with_capacity(1 << 16, file))),
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(cause) => Err(NgspiceError::File { path, cause }),

@@ -9,7 +9,6 @@ use object::{Architecture, BinaryFormat};
 use super::FMUS;
 use super::error::PackageError;
 use super::platform::Platform;
-use videg_system::input;
 
 /// The function that makes a library an FMU's.
 const ENTRY_POINT: &str = "fmi2Instantiate";
@@ -43,7 +42,7 @@ impl AddedBinary {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
         let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: path.clone() })?;
-        let data = input::read(&path).map_err(PackageError::io("read", &path))?;
+        let data = videg_input::read(&path).map_err(PackageError::io("read", &path))?;
         match check(&data, platform) {
             Ok(()) => Ok(Self { platform, identifier, path }),
             Err(Fault::Is(found)) => Err(PackageError::AddedLibrary { path, found, platform }),

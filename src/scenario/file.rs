@@ -21,7 +21,6 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{Origin, ScenarioError, Setting, characters};
-use videg_system::input;
 
 /// Content of a case file.
 #[derive(Debug, Clone, Default)]
@@ -135,7 +134,7 @@ fn read_text(path: &Path) -> Result<String, ScenarioError> {
     const LARGEST: u64 = 16 << 20;
     let shown = path.display().to_string();
     let mut text = String::new();
-    let read = input::open_once(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
+    let read = videg_input::open_once(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
     match read {
         Err(cause) => Err(ScenarioError::Unreadable { path: shown, cause }),
         Ok(_) if text.len() as u64 > LARGEST => {

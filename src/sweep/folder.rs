@@ -9,7 +9,6 @@ use super::files::{remove, rename, write_synced};
 use super::unfinished::{Unfinished, complete_name, unfinished};
 use super::{Shard, SweepError, table};
 use videg_system::atomic_file::partial;
-use videg_system::input;
 
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
@@ -77,7 +76,7 @@ fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError 
 /// The document in the folder, if there is one, without checksums.
 fn read_document(folder: &Path) -> Result<Option<String>, SweepError> {
     let path = folder.join(DOCUMENT);
-    match input::read_text(&path) {
+    match videg_input::read_text(&path) {
         Ok(there) => Ok(Some(identity(&there))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(SweepError::file("read", &path)(error)),

@@ -11,7 +11,6 @@ use super::run::Report;
 use super::unfinished::Unfinished;
 use super::{Shard, SweepError, column, files, lines, sums, table};
 use videg_system::atomic_file::{self, Part};
-use videg_system::input;
 
 /// Version of this program: tables that another one writes may have other bytes.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -66,7 +65,7 @@ fn common_document(folders: &[PathBuf]) -> Result<String, SweepError> {
     let mut first = None;
     for folder in folders {
         let path = folder.join(DOCUMENT);
-        let text = document::identity(&input::read_text(&path).map_err(SweepError::file("read", &path))?);
+        let text = document::identity(&videg_input::read_text(&path).map_err(SweepError::file("read", &path))?);
         match &first {
             None => first = Some(text),
             Some(first) if *first == text => {}
@@ -138,7 +137,7 @@ fn join(shards: &[(Shard, PathBuf)], kept: &Kept, results: &Unfinished) -> Resul
     out.rewind().and_then(|()| file.set_len(0)).and_then(|()| out.write_all(&heading)).map_err(written)?;
     for (shard, path) in shards {
         let range = shard.range(kept.runs);
-        let from = BufReader::new(input::open_regular(path).map_err(SweepError::file("open", path))?);
+        let from = BufReader::new(videg_input::open_regular(path).map_err(SweepError::file("open", path))?);
         let extent = lines::follow(from, &kept.columns, &range, |line| out.write_all(line).map_err(Broken::Written));
         let extent = extent.map_err(|broken| match broken {
             Broken::Read(cause) => SweepError::file("read", path)(cause),

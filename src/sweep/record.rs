@@ -10,7 +10,6 @@ use super::folder::{self, RESULTS};
 use super::lines::{self, Extent, Rest};
 use super::unfinished::Unfinished;
 use super::{Column, Shard, Sweep, SweepError, column, sums, table};
-use videg_system::input;
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
@@ -134,7 +133,7 @@ impl Record {
 
 /// How far the results at `path` are complete; none if there are none.
 fn complete(path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
-    let file = match input::open_regular(path) {
+    let file = match videg_input::open_regular(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(SweepError::file("open", path)(error)),

@@ -62,7 +62,7 @@ impl Slave for Harvesting {
         out.write(&(self.capacitance, self.rate, circuit.map(Circuit::state)))
     }
 
-    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+    fn read_state(from: &mut StateReader<'_>, _: &Self) -> Result<Self, StateError> {
         let mut slave = Self::new();
         from.read_parameters(&mut slave)?;
         let state: Option<State>;

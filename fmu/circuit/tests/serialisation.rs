@@ -12,7 +12,7 @@ fn bytes(slave: &Harvesting) -> Vec<u8> {
 
 fn restored(bytes: &[u8]) -> Result<Harvesting, StateError> {
     let mut reader = StateReader::new(bytes);
-    let slave = Harvesting::read_state(&mut reader)?;
+    let slave = Harvesting::read_state(&mut reader, &Harvesting::new())?;
     reader.finish()?;
     Ok(slave)
 }

@@ -69,7 +69,7 @@ impl Slave for Lag {
         out.write(&[self.time_constant, self.initial_output, self.input, self.rate, self.output])
     }
 
-    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+    fn read_state(from: &mut StateReader<'_>, _: &Self) -> Result<Self, StateError> {
         let [time_constant, initial_output, input, rate, output] = from.take()?;
         Ok(Self { time_constant, initial_output, input, rate, output })
     }

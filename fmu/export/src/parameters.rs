@@ -2,17 +2,18 @@
 
 use crate::serialize::{StateError, StateReader, StateWriter};
 use crate::slave::Slave;
-use crate::variable::{AsBoolean, AsInteger, AsReal, Causality, Transfer, Variable};
+use crate::variable::{AsBoolean, AsInteger, AsReal, AsString, Causality, Transfer, Variable};
 
 impl StateWriter {
-    /// Writes the parameters of a model in the order of its table: the Reals, then those that choose, count or switch.
+    /// Writes the parameters of a model in the order of its table: the Reals, then those that choose, count or switch, then the Strings.
     ///
     /// # Errors
     /// As [`write`](Self::write).
     pub fn write_parameters<S: Slave>(&mut self, slave: &S) -> Result<(), StateError> {
         let reals: Vec<f64> = parameters().filter_map(|row| AsReal::get(row, slave)).collect();
         let choices: Vec<i32> = parameters().filter_map(|row| choice(row, slave)).collect();
-        self.write(&(reals, choices))
+        self.write(&(reals, choices))?;
+        parameters().filter_map(|row| AsString::get(row, slave)).try_for_each(|text| self.write(&text))
     }
 }
 
@@ -37,7 +38,20 @@ impl StateReader<'_> {
                 }
             }
         }
-        if reals.next().is_none() && choices.next().is_none() { Ok(()) } else { Err(other_number()) }
+        if reals.next().is_some() || choices.next().is_some() {
+            return Err(other_number());
+        }
+        for row in parameters::<S>() {
+            if AsString::get(row, slave).is_none() {
+                continue;
+            }
+            let text: &str = self.take()?;
+            if let Some(Err(refused)) = AsString::check(row, Ok(text)) {
+                return Err(StateError::Invalid(refused.to_string()));
+            }
+            AsString::set(row, slave, Ok(text));
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,7 @@
 //! The resource location that an importer hands to `fmi2Instantiate`.
 
+use std::path::PathBuf;
+
 /// Why a resource location is none.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum ResourceError {
@@ -11,30 +13,30 @@ pub(crate) enum ResourceError {
     BadEncoding(String),
 }
 
-/// Whether it is `file:///path` as the standard has it, `file:/path` or `file://localhost/path` as importers write it.
-pub(crate) fn check_resource_location(uri: &str) -> Result<(), ResourceError> {
+/// The folder that a resource location names: `file:///path` as the standard has it, `file:/path` or `file://localhost/path` as
+/// importers write it.
+pub(crate) fn resource_folder(uri: &str) -> Result<PathBuf, ResourceError> {
     let rest = uri.split_at_checked(5).filter(|(scheme, _)| scheme.eq_ignore_ascii_case("file:"));
     let path = rest.map(|(_, rest)| match rest.strip_prefix("//") {
         None => rest,
         Some(authority) => authority.strip_prefix("localhost").unwrap_or(authority),
     });
-    match path.filter(|path| path.starts_with('/')) {
-        None => Err(ResourceError::NoFileUri(uri.to_owned())),
-        Some(path) if is_percent_encoded(path) => Ok(()),
-        Some(_) => Err(ResourceError::BadEncoding(uri.to_owned())),
-    }
+    let path = path.filter(|path| path.starts_with('/')).ok_or_else(|| ResourceError::NoFileUri(uri.to_owned()))?;
+    let path = decoded(path).ok_or_else(|| ResourceError::BadEncoding(uri.to_owned()))?;
+    // On Windows a drive follows the slash.
+    Ok(if cfg!(windows) { path.trim_start_matches('/').into() } else { path.into() })
 }
 
-fn is_percent_encoded(text: &str) -> bool {
+/// Text without its percent encoding.
+fn decoded(text: &str) -> Option<String> {
     let mut parts = text.split('%');
     let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
     for part in parts {
-        let Some((hex, rest)) = part.split_at_checked(2) else { return false };
-        let Some(byte) = u8::from_str_radix(hex, 16).ok().filter(|_| !hex.starts_with('+')) else { return false };
-        bytes.push(byte);
+        let (hex, rest) = part.split_at_checked(2)?;
+        bytes.push(u8::from_str_radix(hex, 16).ok().filter(|_| !hex.starts_with('+'))?);
         bytes.extend(rest.as_bytes());
     }
-    String::from_utf8(bytes).is_ok()
+    String::from_utf8(bytes).ok()
 }
 
 #[cfg(test)]
@@ -43,19 +45,25 @@ mod tests {
 
     #[test]
     fn the_spellings_of_importers_are_understood() {
-        for path in ["///tmp/fmu/resources", "/tmp/fmu", "//localhost/tmp/a", "///tmp/a%20b%C3%A9", "///C:/fmu"] {
-            assert_eq!(check_resource_location(&format!("file:{path}")), Ok(()), "{path}");
+        for (uri, path) in [
+            ("file:///tmp/fmu/resources", "/tmp/fmu/resources"),
+            ("file:/tmp/fmu", "/tmp/fmu"),
+            ("file://localhost/tmp/a", "/tmp/a"),
+            ("file:///tmp/a%20b%C3%A9", "/tmp/a b\u{e9}"),
+            ("FILE:///tmp", "/tmp"),
+        ] {
+            let path = if cfg!(windows) { &path[1..] } else { path };
+            assert_eq!(resource_folder(uri), Ok(path.into()), "{uri}");
         }
-        assert_eq!(check_resource_location("FILE:///tmp"), Ok(()));
     }
 
     #[test]
     fn what_is_no_file_is_refused() {
         for uri in ["", "file", "file:", "/tmp", "http://host/a", "file://host/a", "file:a", "f\u{e9}le:/a"] {
-            assert!(matches!(check_resource_location(uri), Err(ResourceError::NoFileUri(_))), "{uri}");
+            assert!(matches!(resource_folder(uri), Err(ResourceError::NoFileUri(_))), "{uri}");
         }
         for uri in ["file:///a%2", "file:///a%zz", "file:///a%+f", "file:///a%FF", "file:///%"] {
-            assert!(matches!(check_resource_location(uri), Err(ResourceError::BadEncoding(_))), "{uri}");
+            assert!(matches!(resource_folder(uri), Err(ResourceError::BadEncoding(_))), "{uri}");
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::info::ModelInfo;
 use crate::logger::Logger;
 use crate::serialize::{StateError, StateReader, StateWriter};
 use crate::variable::Variable;
+use std::path::Path;
 
 /// What the importer says about the experiment before initialisation.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -29,7 +30,7 @@ pub struct EventOutcome {
 
 /// A model that can be exported as an FMU for co-simulation.
 ///
-/// Life of a slave: [`new`](Self::new); the start values of the table are written; Sets, with
+/// Life of a slave: [`new`](Self::new) and [`set_resources`](Self::set_resources); the start values of the table are written; Sets, with
 /// [`update`](Self::update) before each Get that follows; [`setup_experiment`](Self::setup_experiment);
 /// more Sets; [`initialize`](Self::initialize); then [`do_step`](Self::do_step), Sets of inputs and Gets;
 /// [`terminate`](Self::terminate).
@@ -47,6 +48,12 @@ pub trait Slave: Clone + Send + 'static {
     /// A fresh model. The start values of the table are written into it afterwards, through the setters and in
     /// the order of the table, so it need not repeat them.
     fn new() -> Self;
+
+    /// Takes note of the folder `resources` of the unpacked FMU. Called right after [`new`](Self::new), if the importer names a
+    /// folder.
+    fn set_resources(&mut self, folder: &Path) {
+        let _ = folder;
+    }
 
     /// Takes note of start time, stop time and tolerance.
     ///
@@ -133,12 +140,13 @@ pub trait Slave: Clone + Send + 'static {
     }
 
     /// Rebuilds a model from what [`write_state`](Self::write_state) wrote, in the same order. The bytes have
-    /// the right checksum and come from an FMU with the same GUID; anything left over is refused.
+    /// the right checksum and come from an FMU with the same GUID; anything left over is refused. `present` is the model of the
+    /// instance that reads it: it has what no bytes hold, such as the folder of its resources.
     ///
     /// # Errors
     /// If the bytes describe no valid model.
-    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        let _ = from;
+    fn read_state(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
+        let _ = (from, present);
         Err(StateError::Unsupported)
     }
 }

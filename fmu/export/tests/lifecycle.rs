@@ -85,6 +85,22 @@ fn any_resource_location_is_accepted_an_odd_one_with_a_warning() {
 }
 
 #[test]
+fn a_model_is_told_of_the_folder_of_its_resources_once_and_after_each_reset() {
+    let mut log = Log::default();
+    let (functions, location) = (Log::callbacks(&raw mut log), Some("file:///tmp/a%20b/resources"));
+    let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), location, &raw const functions, true);
+    let told = || common::toy::RESOURCES.take();
+    let folder = std::path::PathBuf::from(if cfg!(windows) { "tmp/a b/resources" } else { "/tmp/a b/resources" });
+    assert_eq!(told(), [folder.clone()]);
+    assert_eq!(unsafe { fmi2Reset(c) }, fmi2OK);
+    assert_eq!(told(), [folder]);
+    unsafe { fmi2FreeInstance(c) };
+    let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, &raw const functions, true);
+    assert!(!c.is_null() && told().is_empty(), "there is none");
+    unsafe { fmi2FreeInstance(c) };
+}
+
+#[test]
 fn an_experiment_that_makes_no_sense_is_refused() {
     for (start, stop) in [(f64::NAN, None), (f64::INFINITY, None), (1.0, Some(0.5)), (0.0, Some(f64::NAN))] {
         let host = Host::new();

@@ -186,6 +186,6 @@ fn a_model_without_further_hooks_takes_everything_but_model_exchange_and_states(
     let outcome = sample.handle_events(&log).unwrap();
     assert_eq!((outcome.states_changed, outcome.next_event_time), (false, None));
     assert_eq!(sample.write_state(&mut StateWriter::default()), Err(StateError::Unsupported));
-    assert_eq!(Sample::read_state(&mut StateReader::new(&[])), Err(StateError::Unsupported));
+    assert_eq!(Sample::read_state(&mut StateReader::new(&[]), &Sample::new()), Err(StateError::Unsupported));
     assert_eq!(sample, Sample::default());
 }

@@ -47,6 +47,19 @@ fn a_get_before_initialization_mode_is_tolerated() {
 }
 
 #[test]
+fn a_text_beyond_its_bound_is_refused_and_shown_in_part() {
+    let host = Host::initializing();
+    assert_eq!(host.set_string(LABEL, &"\u{e9}".repeat(500)), fmi2OK);
+    let host = Host::initializing();
+    let status = host.set_string(LABEL, &"\u{e9}".repeat(501));
+    let shown = "\u{e9}".repeat(40);
+    host.refused(
+        status,
+        &format!("fmi2SetString: variable label = \"{shown}\"...: 1002 bytes are too long; at most 1000"),
+    );
+}
+
+#[test]
 fn a_value_out_of_bounds_is_an_error_that_names_variable_value_and_bound() {
     let cases = [
         (0.25, "fmi2SetReal: variable toy.gain = 0.25: below its min 0.5 N/m"),

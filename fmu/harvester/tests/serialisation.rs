@@ -21,7 +21,7 @@ fn bytes(slave: &Harvester) -> Vec<u8> {
 
 fn restored(bytes: &[u8]) -> Result<Harvester, StateError> {
     let mut reader = StateReader::new(bytes);
-    let slave = Harvester::read_state(&mut reader)?;
+    let slave = Harvester::read_state(&mut reader, &Harvester::new())?;
     reader.finish()?;
     Ok(slave)
 }

@@ -10,7 +10,6 @@ use zip::result::ZipError;
 
 use super::description::ModelDescription;
 use super::error::{FmiError, Result};
-use videg_system::input;
 use videg_system::temporary::TemporaryFolder;
 
 mod directory;
@@ -81,7 +80,7 @@ impl Archive {
     pub fn open_with(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
         let path = path.as_ref();
         let refuse = |reason| FmiError::Refused { path: path.into(), reason };
-        let mut file = input::open_regular(path).map_err(FmiError::io("open", path))?;
+        let mut file = videg_input::open_regular(path).map_err(FmiError::io("open", path))?;
         let found = file.metadata().map_err(FmiError::io("read", path))?;
         if found.len() > limits.archive_bytes {
             return Err(refuse(format!("the archive has {} bytes, allowed are {}", found.len(), limits.archive_bytes)));

@@ -29,12 +29,13 @@ fn written<S: Slave>(slave: &S) -> Vec<u8> {
 /// If it is not.
 pub fn state<S: Slave>(content: &[u8]) -> bool {
     let mut reader = StateReader::new(content);
-    let Ok(mut slave) = S::read_state(&mut reader) else { return false };
+    let Ok(mut slave) = S::read_state(&mut reader, &S::new()) else { return false };
     if reader.finish().is_err() {
         return false;
     }
     let bytes = written(&slave);
-    let again = S::read_state(&mut StateReader::new(&bytes)).unwrap_or_else(|error| panic!("refused again: {error}"));
+    let again =
+        S::read_state(&mut StateReader::new(&bytes), &slave).unwrap_or_else(|error| panic!("refused again: {error}"));
     assert_eq!(written(&again), bytes);
     for k in 0..STEPS {
         // A step from before the time of the state is refused, one from there goes on.

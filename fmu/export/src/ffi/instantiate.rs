@@ -4,7 +4,7 @@ use super::{Fmu, Handle, text};
 use crate::instance::Instance;
 use crate::logger::Logger;
 use crate::panics::{guard, panic_message};
-use crate::resource::check_resource_location;
+use crate::resource::resource_folder;
 use crate::slave::Slave;
 use core::ptr::null_mut;
 use core::sync::atomic::Ordering;
@@ -77,15 +77,22 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     if given != own_guid.to_string() {
         return Err(format!("fmuGUID = {given:?}; this FMU has {own_guid}"));
     }
-    // Nothing is read from there, so an odd location is worth a warning at most.
-    match request.resources.map(|uri| uri.map(check_resource_location)) {
-        Some(Ok(Err(e))) => logger.warning(format_args!("fmi2Instantiate: {e}")),
-        Some(Err(reason)) => logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}")),
-        None | Some(Ok(Ok(()))) => {}
-    }
+    // Few models read anything from there, so an odd location is worth a warning at most.
+    let resources = match request.resources.map(|uri| uri.map(resource_folder)) {
+        Some(Ok(Ok(folder))) => Some(folder),
+        Some(Ok(Err(e))) => {
+            logger.warning(format_args!("fmi2Instantiate: {e}"));
+            None
+        }
+        Some(Err(reason)) => {
+            logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}"));
+            None
+        }
+        None => None,
+    };
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();
-    Ok(Instance::new(exchange, logger, own_guid))
+    Ok(Instance::new(exchange, resources, logger, own_guid))
 }
 
 /// `fmi2FreeInstance`. NULL is ignored; so is an instance that is in a call, which leaks rather than vanish under

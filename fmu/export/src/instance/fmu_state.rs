@@ -37,7 +37,7 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn deserialize(&mut self, blob: &[u8], token: usize) -> Call<usize> {
         check_serializable::<S>()?;
         let mut content = StateReader::new(unseal(self.guid, blob)?);
-        let core = Core::read(&mut content)?;
+        let core = Core::read(&mut content, &self.core.model)?;
         content.finish()?;
         if core.exchange != self.core.exchange {
             return Err(StateError::Invalid("it is of an instance of the other interface type".into()).into());
@@ -74,9 +74,9 @@ impl<S: Slave> Core<S> {
         model.write_state(out)
     }
 
-    fn read(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+    fn read(from: &mut StateReader<'_>, present: &S) -> Result<Self, StateError> {
         let (state, exchange, time, dirty, experiment, last_step): Record = from.take()?;
-        let model = S::read_state(from)?;
+        let model = S::read_state(from, present)?;
         let core = Self { model, state, exchange, time, experiment, dirty, last_step };
         core.check()?;
         Ok(core)

@@ -20,6 +20,7 @@ use cores::Cores;
 use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
 
 /// Outcome of a call.
 pub(crate) type Call<T = ()> = Result<T, CallError>;
@@ -43,14 +44,19 @@ pub(crate) struct Instance<S: Slave> {
     core: Cores<S>,
     logger: Logger,
     guid: Guid,
+    /// Folder `resources` of the unpacked FMU.
+    resources: Option<PathBuf>,
     /// Results of the last `fmi2GetString`.
     strings: Vec<CString>,
 }
 
 impl<S: Slave> Core<S> {
     /// A fresh model with its start values.
-    fn new(exchange: bool) -> Self {
+    fn new(exchange: bool, resources: Option<&Path>) -> Self {
         let mut model = S::new();
+        if let Some(folder) = resources {
+            model.set_resources(folder);
+        }
         for variable in S::variables() {
             variable.kind().apply_start(&mut model);
         }
@@ -68,8 +74,9 @@ impl<S: Slave> Core<S> {
 
 impl<S: Slave> Instance<S> {
     /// A fresh instance.
-    pub(crate) fn new(exchange: bool, logger: Logger, guid: Guid) -> Self {
-        Self { core: Cores::new(Core::new(exchange)), logger, guid, strings: Vec::new() }
+    pub(crate) fn new(exchange: bool, resources: Option<PathBuf>, logger: Logger, guid: Guid) -> Self {
+        let core = Cores::new(Core::new(exchange, resources.as_deref()));
+        Self { core, logger, guid, resources, strings: Vec::new() }
     }
 
     /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would

@@ -130,8 +130,13 @@ impl<M: 'static> Transfer<M> for AsString {
     }
 
     fn check(variable: &Variable<M>, value: Self::Given<'_>) -> Option<Result<(), CallError>> {
-        let complaint = value.err().map(str::to_owned);
-        matches!(variable.kind, Kind::String(_)).then(|| refuse(variable, &"?", complaint))
+        match &variable.kind {
+            Kind::String(spec) => {
+                let complaint = value.map_or_else(|reason| Some(reason.to_owned()), |text| spec.complaint(text));
+                Some(refuse(variable, &value.map_or_else(|_| "?".to_owned(), beginning), complaint))
+            }
+            _ => None,
+        }
     }
 
     fn set(variable: &Variable<M>, model: &mut M, value: Self::Given<'_>) {
@@ -145,6 +150,19 @@ impl<M: 'static> Transfer<M> for AsString {
 
 fn refuse<M>(variable: &Variable<M>, value: &impl ToString, complaint: Option<String>) -> Result<(), CallError> {
     complaint.map_or(Ok(()), |bound| Err(CallError::BadValue { name: variable.name, value: value.to_string(), bound }))
+}
+
+/// What a message shows of a text.
+fn beginning(text: &str) -> String {
+    text.char_indices().nth(40).map_or_else(|| format!("{text:?}"), |(end, _)| format!("{:?}...", &text[..end]))
+}
+
+impl<M> StringSpec<M> {
+    /// Why a value is refused, if it is.
+    pub(crate) fn complaint(&self, value: &str) -> Option<String> {
+        let bytes = value.len();
+        (bytes > self.longest).then(|| format!("{bytes} bytes are too long; at most {}", self.longest))
+    }
 }
 
 impl<M> RealSpec<M> {

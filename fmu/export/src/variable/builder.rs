@@ -94,7 +94,7 @@ const fn boolean<M>(start: Option<bool>) -> BooleanSpec<M> {
 }
 
 const fn text<M>(start: Option<&'static str>) -> StringSpec<M> {
-    StringSpec { start, get: |_| String::new(), set: None }
+    StringSpec { start, longest: usize::MAX, get: |_| String::new(), set: None }
 }
 
 const fn enumeration<M>(of: &'static EnumerationType, start: Option<i32>) -> EnumerationSpec<M> {
@@ -320,6 +320,15 @@ impl<M, A> Declaration<IntegerSpec<M>, A> {
     /// Largest value allowed.
     pub const fn max(mut self, max: i32) -> Self {
         self.spec.max = max;
+        self
+    }
+}
+
+/// Refinements of a String.
+impl<M> Declaration<StringSpec<M>, Settable> {
+    /// Most bytes that a Set may give.
+    pub const fn longest(mut self, bytes: usize) -> Self {
+        self.spec.longest = bytes;
         self
     }
 }

@@ -88,6 +88,8 @@ pub struct BooleanSpec<M: 'static> {
 pub struct StringSpec<M: 'static> {
     /// Start value; none if the model calculates it.
     pub start: Option<&'static str>,
+    /// Most bytes that a Set may give; `usize::MAX` if there is no bound.
+    pub longest: usize,
     /// Reads the model.
     pub get: fn(&M) -> String,
     /// Writes the model.

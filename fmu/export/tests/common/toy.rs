@@ -5,9 +5,12 @@ use fmu_export::{
     StateWriter, Variable, export_fmu,
 };
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::path::{Path, PathBuf};
 
 thread_local! {
+    /// The folders that toys were told of.
+    pub static RESOURCES: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
     /// Makes `Toy::new` panic, which no variable can.
     pub static PANIC_IN_NEW: Cell<bool> = const { Cell::new(false) };
     /// Makes each call of this function on an instance panic.
@@ -108,7 +111,9 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
     V::integer_output("count", "Number of steps").get(|m| m.count),
     V::boolean_input("on", true, "Whether to integrate").access(|m| m.on, |m, v| m.on = v),
     V::boolean_output("isOn", "Whether it integrates").depends_on(&["on"]).get(|m| m.on),
-    V::string_parameter("label", "toy", "Label").access(|m| m.label.clone(), |m, v| v.clone_into(&mut m.label)),
+    V::string_parameter("label", "toy", "Label")
+        .longest(1000)
+        .access(|m| m.label.clone(), |m, v| v.clone_into(&mut m.label)),
     V::string_output("echo", "The label, with a NUL after it").get(|m| format!("{}\0", m.label)),
     V::enumeration_parameter("law", &LAW, 1, "What is integrated").access(|m| m.law, |m, v| m.law = v),
     V::enumeration_output("chosen", &LAW, "The law in force").local().get(|m| m.law),
@@ -194,6 +199,10 @@ impl Slave for Toy {
         Self::default()
     }
 
+    fn set_resources(&mut self, folder: &Path) {
+        RESOURCES.with_borrow_mut(|folders| folders.push(folder.to_owned()));
+    }
+
     fn setup_experiment(&mut self, experiment: &Experiment, log: &Logger) -> Result<(), SlaveError> {
         self.start_time = experiment.start_time;
         self.time = experiment.start_time;
@@ -257,7 +266,7 @@ impl Slave for Toy {
         out.write(self)
     }
 
-    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
+    fn read_state(from: &mut StateReader<'_>, _: &Self) -> Result<Self, StateError> {
         let toy: Self = from.take()?;
         toy.fail_in("read");
         Ok(toy)
