@@ -296,7 +296,8 @@ mod tests {
         ) {
             let mut time = 0.0;
             let rows: Vec<_> = steps.iter().map(|(step, value)| { time += step; (time, *value) }).collect();
-            let text: String = rows.iter().map(|(time, value)| format!("{time:?}, {value:e}\r\n")).collect();
+            let lines: Vec<_> = rows.iter().map(|(time, value)| format!("{time:?}, {value:e}\r\n")).collect();
+            let text = lines.concat();
             let found = parsed(format!("time,acceleration\r\n{text}").as_bytes()).unwrap();
             prop_assert_eq!(found.heading, 0);
             prop_assert_eq!(&found.values[0], &rows.iter().map(|row| row.0).collect::<Vec<_>>());

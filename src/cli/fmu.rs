@@ -36,6 +36,10 @@ enum Task {
         /// repeated
         #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
         added: Vec<String>,
+        /// Add a file to the resources of the harvester, e.g. a recording that excitation.file then names without a folder. May
+        /// be repeated
+        #[arg(long = "resource", value_name = "FILE")]
+        resources: Vec<PathBuf>,
         /// Folder for the FMUs [default: target/fmu of the source tree]
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -66,14 +70,17 @@ enum Task {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match &arguments.task {
-        Task::Build { targets, added, output, json } => build(targets, added, output.clone(), *json)?,
+        Task::Build { targets, added, resources, output, json } => {
+            let options = Options { output: output.clone(), resources: resources.clone(), ..Options::default() };
+            build(targets, added, options, *json)?;
+        }
         Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
         Task::Info { file, json } => info(file, *json)?,
     }
     Ok(Exit::Passed)
 }
 
-fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bool) -> anyhow::Result<()> {
+fn build(targets: &[String], added: &[String], options: Options, json: bool) -> anyhow::Result<()> {
     #[derive(Serialize)]
     struct Built {
         fmus: Vec<PathBuf>,
@@ -81,7 +88,7 @@ fn build(targets: &[String], added: &[String], folder: Option<PathBuf>, json: bo
     let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
     let waiting = spinner("building the FMUs");
     let (targets, progress) = (targets.to_vec(), packaging::follow);
-    let options = Options { output: folder, targets, added, progress, ..Options::default() };
+    let options = Options { targets, added, progress, ..options };
     let built = Built { fmus: package::build_all(&options)? };
     drop(waiting);
     let paths = || built.fmus.iter().map(|path| path.display().to_string()).collect::<Vec<_>>();

@@ -10,7 +10,7 @@ use super::options::CaseOptions;
 use super::{Exit, output, packaging};
 use crate::cosim::{CapacitanceRatios, CircuitRequest, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
 use crate::package::{Part, SystemPackage};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::{Scenario, Setting, find_file, is_file};
 use fmu_import::{Fmu, Kind};
 
 /// Name of the package.
@@ -46,9 +46,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let ssp = arguments.output.as_deref().unwrap_or_else(beside).join(FILE);
     let (harvester_fmu, circuit_fmu) = (Fmu::open(harvester)?, Fmu::open(circuit)?);
     let (mechanical, of_circuit) = settings_of_both(&harvester_fmu, &scenario)?;
+    let (mechanical, resources) = with_resources(mechanical);
     let (harvester_part, circuit_part) = (
-        Part { fmu: harvester, description: harvester_fmu.description(), settings: &mechanical },
-        Part { fmu: circuit, description: circuit_fmu.description(), settings: &of_circuit },
+        Part { fmu: harvester, description: harvester_fmu.description(), settings: &mechanical, resources: &resources },
+        Part { fmu: circuit, description: circuit_fmu.description(), settings: &of_circuit, resources: &[] },
     );
     let package = SystemPackage {
         case: &scenario.name,
@@ -79,6 +80,24 @@ fn settings_of_both(fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<(Vec<Setti
         of_circuit.push(Setting::new(name, format!("{value:?}")));
     }
     Ok((mechanical, of_circuit))
+}
+
+/// The settings with the names of files as they are in the FMU, and these files: the package runs where the user's are not.
+fn with_resources(mut settings: Vec<Setting>) -> (Vec<Setting>, Vec<PathBuf>) {
+    let mut resources = Vec::new();
+    for index in 0..settings.len() {
+        let (before, later) = settings.split_at_mut(index + 1);
+        let setting = &mut before[index];
+        let is_last = later.iter().all(|other| other.name != setting.name);
+        let path = if is_file(&setting.name) { find_file(&setting.value, &setting.origin) } else { None };
+        if let Some(path) = path.filter(|_| is_last) {
+            if let Some(name) = path.file_name().and_then(|name| name.to_str()) {
+                name.clone_into(&mut setting.value);
+            }
+            resources.push(path);
+        }
+    }
+    (settings, resources)
 }
 
 /// Warnings about parameters that not every tool reads.

@@ -114,7 +114,7 @@ impl HarvesterFmu {
             settings,
             |it| fmu.description().is_input(&it.name),
             |instance, setting| {
-                let set = instance.set_by_name(&setting.name, &setting.value);
+                let set = instance.set_by_name(&setting.name, &setting.value_for_fmu());
                 set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
             },
         )?;

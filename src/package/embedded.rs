@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::entries::Entries;
 use super::error::{PackageError, Result};
-use super::{AddedBinary, FMUS, FmuPackage, Options, file_name, locate};
+use super::{AddedBinary, FMUS, FmuPackage, Options, file_name, locate, resources};
 
 /// Bytes of an archive in the folder that `VIDEG_FMUS` named when the program was compiled.
 #[cfg(feature = "embedded-fmus")]
@@ -59,17 +59,23 @@ fn takes_embedded(options: &Options, around_program: Option<&Path>) -> bool {
     around_program.is_none() && options.targets.is_empty()
 }
 
-/// The archives with the added libraries, which replace those inside.
+/// The archives with the added libraries, which replace those inside, and with the resources.
 ///
 /// # Errors
 /// When an archive is broken or belongs to another version of the program, or a file cannot be read.
-pub(super) fn with_added(archives: [&[u8]; FMUS.len()], added: &[AddedBinary]) -> Result<Vec<Vec<u8>>> {
+pub(super) fn with_added(archives: [&[u8]; FMUS.len()], options: &Options) -> Result<Vec<Vec<u8>>> {
+    let Options { added, resources, .. } = options;
     let parts = FMUS.iter().zip(archives).zip(DESCRIPTIONS);
     parts
         .map(|((fmu, archive), description)| {
-            let entries = entries(fmu, archive, description, added)?;
+            let mut entries = entries(fmu, archive, description, added)?;
+            resources::add(fmu, resources, &mut entries)?;
             // The same entries, packed again, may get other bytes.
-            if added.is_empty() { Ok(archive.to_vec()) } else { entries.packed(&file_name(fmu)) }
+            if added.is_empty() && resources.is_empty() {
+                Ok(archive.to_vec())
+            } else {
+                entries.packed(&file_name(fmu))
+            }
         })
         .collect()
 }
@@ -107,7 +113,10 @@ mod tests {
     #[test]
     fn archives_come_out_with_the_bytes_that_went_in() {
         let archives = DESCRIPTIONS.map(packaged);
-        assert!(with_added(archives.each_ref().map(Vec::as_slice), &[]).unwrap() == archives, "other bytes");
+        assert!(
+            with_added(archives.each_ref().map(Vec::as_slice), &Options::default()).unwrap() == archives,
+            "other bytes"
+        );
     }
 
     #[test]

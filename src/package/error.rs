@@ -88,6 +88,9 @@ pub enum PackageError {
     /// An archive would get two libraries for one platform.
     #[error("two libraries of {identifier} for {}: {} and {other}", platform.folder, path.display())]
     AddedTwice { identifier: &'static str, platform: Platform, path: PathBuf, other: String },
+    /// A file cannot be a resource under its name.
+    #[error("resource {}: {reason}", path.display())]
+    Resource { path: PathBuf, reason: String },
     /// Two targets would share a folder of the archive.
     #[error("two targets for the platform {}: {first} and {second}; an FMU holds one", platform.folder)]
     SamePlatform { platform: Platform, first: String, second: String },

@@ -27,6 +27,7 @@ mod fresh;
 mod locate;
 mod platform;
 mod references;
+mod resources;
 mod shared_file;
 mod ssp;
 mod target;
@@ -80,6 +81,8 @@ pub struct Options {
     /// Libraries that were built elsewhere. One for this machine takes the place of the one that would be built without
     /// any target.
     pub added: Vec<AddedBinary>,
+    /// Files for the folder `resources` of the harvester: recordings of its excitation.
+    pub resources: Vec<PathBuf>,
     /// Takes the lines of Cargo's progress.
     pub progress: fn(&str),
 }
@@ -87,7 +90,15 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
-        Self { output: None, build, as_is: false, targets: Vec::new(), added: Vec::new(), progress: |_| {} }
+        Self {
+            output: None,
+            build,
+            as_is: false,
+            targets: Vec::new(),
+            added: Vec::new(),
+            resources: Vec::new(),
+            progress: |_| {},
+        }
     }
 }
 
@@ -128,7 +139,7 @@ pub fn build_for_use(options: &Options) -> Result<Placed> {
 fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     let output = |workspace| options.output.clone().unwrap_or_else(|| default_output(workspace));
     if let Some(archives) = embedded::archives(options) {
-        return Ok((embedded::with_added(archives, &options.added)?, output(None)));
+        return Ok((embedded::with_added(archives, options)?, output(None)));
     }
     let workspace = locate::workspace();
     let workspace = workspace.as_deref();
@@ -143,6 +154,7 @@ fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
         }
         documentation::add(&description, &mut entries)?;
         references::add(fmu.identifier, &mut entries);
+        resources::add(fmu, &options.resources, &mut entries)?;
         archives.push(entries.packed(&file_name(fmu))?);
     }
     Ok((archives, output(workspace)))

@@ -2,14 +2,15 @@
 //!
 //! Its documents are templates (`ssp/`). Ecos reads only documents with these very prefixes of the namespaces.
 
-use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::{fmt, io};
 
 use askama::Template;
 use askama::filters::Escaper;
 
 use super::entries::Entries;
 use super::error::{PackageError, Result};
+use super::resources;
 use crate::scenario::Setting;
 use fmu_import::{BaseUnit, Causality, Kind, ModelDescription, Value, Variable};
 
@@ -39,6 +40,8 @@ pub struct Part<'a> {
     pub description: &'a ModelDescription,
     /// What to set, the last of a name wins. Start values are left out.
     pub settings: &'a [Setting],
+    /// Files for its folder `resources`, which settings name without a folder.
+    pub resources: &'a [PathBuf],
 }
 
 /// What is packaged.
@@ -119,7 +122,7 @@ impl SystemPackage<'_> {
             let parameters = part.parameters()?;
             let fmu = format!("resources/{}.fmu", part.description.co_simulation.model_identifier);
             let values = format!("resources/{name}.ssv");
-            entries.add_file(&fmu, part.fmu)?;
+            entries.add(&fmu, part.archive()?);
             self.add_parameters(&mut entries, &values, &parameters)?;
             components.push(Component { name, fmu, values, connectors: part.connectors() });
             all.extend(parameters.into_iter().map(|it| Parameter { name: format!("{name}.{}", it.name), ..it }));
@@ -157,6 +160,18 @@ impl SystemPackage<'_> {
 }
 
 impl Part<'_> {
+    /// The bytes of the archive, with the resources.
+    fn archive(&self) -> Result<Vec<u8>> {
+        let bytes = std::fs::read(self.fmu).map_err(PackageError::io("read", self.fmu))?;
+        if self.resources.is_empty() {
+            return Ok(bytes);
+        }
+        let mut entries =
+            Entries::read(&bytes).map_err(|cause| PackageError::io("read", self.fmu)(io::Error::other(cause)))?;
+        resources::add_all(self.resources, &mut entries)?;
+        entries.packed(self.fmu)
+    }
+
     /// What differs from the start values, in the order of the model description.
     fn parameters(&self) -> Result<Vec<Parameter>> {
         for setting in self.settings {

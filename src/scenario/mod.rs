@@ -5,12 +5,14 @@ mod file;
 mod origin;
 mod preset;
 mod times;
+mod user_file;
 
 pub(crate) use characters::{check as check_characters, with_plain_ends};
 pub use file::CaseFile;
 pub(crate) use file::{dotted, read_file, toml_error, value_text};
 pub use origin::Origin;
 pub use times::check_proposed_step;
+pub(crate) use user_file::{absolute as absolute_file, find as find_file, is_file};
 
 use serde::Serialize;
 use thiserror::Error;

@@ -161,7 +161,7 @@ fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
         None,
         &choices,
         |(variable, _)| variable.is_input(),
-        |instance, (variable, value)| instance.set_value(variable.value_reference, value),
+        |instance, (variable, value)| instance.set_value(variable.value_reference, &sweep.files.for_fmu(value)),
     )?;
     instance.exit_initialization_mode()?;
     let mut slave = Slave { instance, has_gains: sweep.averages };

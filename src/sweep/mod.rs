@@ -19,6 +19,7 @@ mod lines;
 #[cfg(test)]
 mod lines_tests;
 mod merge;
+mod named_files;
 mod plan;
 mod points;
 mod random;

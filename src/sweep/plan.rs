@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::column::{self, Column, Type};
 use super::document::Document;
 use super::lines::LONGEST;
+use super::named_files::NamedFiles;
 use super::points::{MAX_RUNS, Points};
 use super::seeds::{self, Seeds};
 use super::times::Times;
@@ -62,6 +63,8 @@ pub struct Sweep {
     name: String,
     /// Variables that are the same in all runs.
     pub(super) settings: Vec<(Variable, Value)>,
+    /// Files among the values.
+    pub(super) files: NamedFiles,
     /// Times of a run.
     pub(super) times: Times,
     pub(super) points: Points,
@@ -144,7 +147,8 @@ impl Sweep {
             sha256: None,
         };
         let (document, name, times) = (document.sealed(), request.name.clone(), request.times);
-        Ok(Self { name, settings, times, points, samples, seeds, record, averages, columns, document })
+        let files = NamedFiles::of(&request.settings, &vary);
+        Ok(Self { name, settings, files, times, points, samples, seeds, record, averages, columns, document })
     }
 
     /// How it is called.

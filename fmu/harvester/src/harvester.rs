@@ -1,10 +1,21 @@
 //! What the importer sets, and the model that is driven by it.
 
-use videg_model::{Harvester as Model, ModelError, Parameters};
+use std::path::Path;
+use std::sync::Arc;
+
+use videg_model::{Harvester as Model, ModelError, Parameters, Setup};
+
+use crate::recording::Recorded;
 
 /// The harvester as a slave.
 pub struct Harvester {
     pub(crate) parameters: Parameters,
+    /// `excitation.file`
+    pub(crate) file: Arc<str>,
+    /// Folder `resources` of the unpacked FMU.
+    pub(crate) resources: Option<Arc<Path>>,
+    /// What was read from the file, or from one that was set before.
+    pub(crate) recorded: Recorded,
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
@@ -14,19 +25,23 @@ pub struct Harvester {
     pub(crate) placed: bool,
     /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
     pub(crate) checked: [f64; 2],
-    /// The model; before initialisation it is made anew from the parameters whenever they are read.
-    pub(crate) model: Result<Model, ModelError>,
+    /// The model, or why there is none; before initialisation it is made anew from the parameters whenever they are read.
+    pub(crate) model: Result<Model, String>,
 }
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        Self { model: self.model.clone(), ..*self }
+        let (file, resources, recorded) = (self.file.clone(), self.resources.clone(), self.recorded.clone());
+        Self { file, resources, recorded, model: self.model.clone(), ..*self }
     }
 
     /// Takes no memory that is there already.
     fn clone_from(&mut self, source: &Self) {
         let Self {
             parameters,
+            ref file,
+            ref resources,
+            ref recorded,
             external_force,
             external_force_rate,
             voltages,
@@ -37,6 +52,9 @@ impl Clone for Harvester {
             ref model,
         } = *source;
         self.model.clone_from(model);
+        self.file.clone_from(file);
+        self.resources.clone_from(resources);
+        self.recorded.clone_from(recorded);
         (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
         (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
         (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
@@ -69,11 +87,27 @@ impl Harvester {
         self.model.as_ref().ok()
     }
 
-    /// The model at the start, as parameters and inputs have it.
-    pub(crate) fn at_start(&self) -> Result<Model, ModelError> {
-        let mut model = Model::new(&self.parameters, self.start_time)?;
-        model.set_external_force(self.external_force, 0.0)?;
-        model.set_voltages(self.voltages, [0.0; 2])?;
-        Ok(model)
+    /// The parameters with the recording.
+    pub(crate) fn setup(&self) -> Result<Setup<'_>, String> {
+        Ok(self.parameters.with_recording(self.recorded.recording()?))
+    }
+
+    /// The model at the start, as parameters, recording and inputs have it.
+    pub(crate) fn at_start(&self) -> Result<Model, String> {
+        let setup = self.setup()?;
+        let start = || {
+            let mut model = Model::new(setup, self.start_time)?;
+            model.set_external_force(self.external_force, 0.0)?;
+            model.set_voltages(self.voltages, [0.0; 2])?;
+            Ok(model)
+        };
+        start().map_err(|error: ModelError| error.to_string())
+    }
+
+    /// Reads the file, unless it was the last one to be read.
+    pub(crate) fn read_file(&mut self) {
+        if self.recorded.file != self.file {
+            self.recorded = Recorded::read(&self.file, self.resources.as_deref());
+        }
     }
 }

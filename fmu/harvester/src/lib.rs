@@ -7,9 +7,11 @@
 
 mod harvester;
 mod limits;
+mod recording;
 mod sensitivity;
 mod slave;
 mod state;
+mod step_length;
 mod variables;
 
 pub use harvester::Harvester;

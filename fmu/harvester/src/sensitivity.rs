@@ -9,7 +9,8 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! There are none under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
+//! With a recording there are those of model exchange alone: what a change of the start or of a step does under a recorded force is not
+//! derived. There are none under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
 //! which are 0 elsewhere, they are taken upwards, by differences.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
@@ -43,7 +44,8 @@ pub(crate) struct Change<'a> {
 impl Harvester {
     /// What `read` finds in the change by one unit of `known`; NaN where no change is known.
     pub(crate) fn partial(&self, known: &Variable<Self>, read: impl FnOnce(&Change) -> f64) -> f64 {
-        if !self.parameters.has_sensitivities() {
+        let is_recorded = self.recorded.recording().is_ok_and(|recording| recording.is_some());
+        if !self.parameters.has_sensitivities() || is_recorded && !self.placed {
             return f64::NAN; // the exporter makes an error of it
         }
         read(&self.change(known.name()))
@@ -67,10 +69,12 @@ impl Harvester {
         }
         match Direction::of_parameter(name) {
             Some(direction) if !self.placed => {
-                let (p, start, force) = (&self.parameters, self.start_time, self.external_force);
-                let upwards = Model::change_upwards(p, start, force, name).ok().flatten();
-                let along = || Model::along(p, start, force, &direction).ok().map(|model| model.sensitivities());
-                let model = upwards.or_else(along);
+                let model = self.setup().ok().and_then(|setup| {
+                    let (start, force) = (self.start_time, self.external_force);
+                    let upwards = Model::change_upwards(setup, start, force, name).ok().flatten();
+                    let along = || Model::along(setup, start, force, &direction).ok();
+                    upwards.or_else(|| along().map(|model| model.sensitivities()))
+                });
                 Change { slave: self, known: Known::Parameter(Box::new(direction)), model }
             }
             _ if name == FORCE && !self.placed => {

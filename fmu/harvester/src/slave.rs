@@ -1,26 +1,17 @@
 //! The model behind the functions of FMI.
 
+use std::path::Path;
+
 use fmu_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{
-    ContactLaw, Event, Harvester as Model, Impact, Membrane, ModelError, Parameters, Peak, PulseShape, Side,
-};
+use videg_model::{ContactLaw, Event, Harvester as Model, Impact, Membrane, Parameters, Peak, PulseShape, Side};
 
 use crate::harvester::Harvester;
 use crate::limits;
+use crate::recording::Recorded;
 use crate::variables::VARIABLES;
-
-/// Longest communication step, in periods of the excitation: some ten seconds of work. A step of any length would have the
-/// importer wait without end for one that it mistook. A fuzzer has less time.
-const MAX_PERIODS: f64 = if cfg!(fuzzing) { 1e4 } else { 1e7 };
-
-/// The same, in hold intervals of the phase noise.
-const MAX_HOLDS: f64 = if cfg!(fuzzing) { 1e5 } else { 1e8 };
-
-/// The same under the compliant law, where a hold interval within a contact takes some 10 us.
-const MAX_COMPLIANT_HOLDS: f64 = if cfg!(fuzzing) { 1e3 } else { 1e7 };
 
 /// Relative tolerance at which the integrators of common importers keep a free cylinder in its place in model exchange; with
 /// 1e-4, which many take if none is given, it drifts by centimetres in 100 s. Co-simulation needs none: it is exact.
@@ -32,19 +23,6 @@ impl Harvester {
         self.external_force += core::mem::take(&mut self.external_force_rate) * h;
         let rates = core::mem::take(&mut self.voltage_rates);
         self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
-    }
-
-    #[cold]
-    fn too_long(&self, t: f64, h: f64) -> SlaveError {
-        let Parameters { frequency, noise_hold, .. } = self.parameters;
-        let (longest, bound) = if h * frequency > MAX_PERIODS {
-            (MAX_PERIODS / frequency, format!("{MAX_PERIODS} periods"))
-        } else {
-            let holds = most_holds(&self.parameters);
-            (holds * noise_hold, format!("{holds} times excitation.noiseHold"))
-        };
-        let message = format!("communicationStepSize = {h} s: it must be at most {longest} s, {bound}");
-        SlaveError::discard(t, message)
     }
 
     /// Warns of limits exceeded at present. Nothing needs looking at while the voltages have not changed since both membranes
@@ -86,6 +64,9 @@ impl Slave for Harvester {
         let parameters = Parameters::default();
         Self {
             parameters,
+            file: "".into(),
+            resources: None,
+            recorded: Recorded::nothing(),
             external_force: 0.0,
             external_force_rate: 0.0,
             voltages: [parameters.bias_voltage; 2],
@@ -93,8 +74,12 @@ impl Slave for Harvester {
             start_time: 0.0,
             placed: false,
             checked: [f64::NAN; 2],
-            model: Model::new(&parameters, 0.0),
+            model: Model::new(&parameters, 0.0).map_err(|error| error.to_string()),
         }
+    }
+
+    fn set_resources(&mut self, folder: &Path) {
+        self.resources = Some(folder.into());
     }
 
     fn setup_experiment(&mut self, experiment: &Experiment, _log: &Logger) -> Result<(), SlaveError> {
@@ -103,6 +88,7 @@ impl Slave for Harvester {
     }
 
     fn update(&mut self) {
+        self.read_file();
         self.model = self.at_start();
     }
 
@@ -128,16 +114,17 @@ impl Slave for Harvester {
 
     /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        if is_too_long(&self.parameters, h) {
+        if self.is_too_long(h) {
             return Err(self.too_long(t, h));
         }
         self.check_limits(log);
+        let time = running(&mut self.model)?.time();
+        let behind = t - time;
+        if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
+            return Err(elsewhere(t, time));
+        }
         let Self { parameters, model, .. } = self;
         let model = running(model)?;
-        let behind = t - model.time();
-        if behind > h && (behind * parameters.frequency > 1.0 || is_too_long(parameters, behind)) {
-            return Err(elsewhere(t, model.time()));
-        }
         let mut number = model.totals().impacts;
         let show = |event: &Event| match event {
             Event::Impact(impact) => {
@@ -196,25 +183,14 @@ impl Slave for Harvester {
         self.write(out)
     }
 
-    fn read_state(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        Self::read_from(from)
+    fn read_state(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
+        Self::read_from(from, present)
     }
 }
 
 /// The model, or why there is none.
-fn running(model: &mut Result<Model, ModelError>) -> Result<&mut Model, SlaveError> {
-    model.as_mut().map_err(|error| SlaveError::error(error.to_string()))
-}
-
-/// Whether a step of `h`, s, is more work than anybody waits for.
-fn is_too_long(parameters: &Parameters, h: f64) -> bool {
-    let Parameters { frequency, noise_hold, .. } = *parameters;
-    h * frequency > MAX_PERIODS || parameters.is_noisy() && h > most_holds(parameters) * noise_hold
-}
-
-/// Hold intervals that a step may have.
-fn most_holds(parameters: &Parameters) -> f64 {
-    if parameters.contact_law == ContactLaw::Compliant { MAX_COMPLIANT_HOLDS } else { MAX_HOLDS }
+fn running(model: &mut Result<Model, String>) -> Result<&mut Model, SlaveError> {
+    model.as_mut().map_err(|reason| SlaveError::error(reason.clone()))
 }
 
 /// Why no step begins at `t`, s: the model is far behind, as only a forged state has it, and could take for ever to get there.

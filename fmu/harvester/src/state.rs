@@ -1,9 +1,10 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
 use fmu_export::{Slave, StateError, StateReader, StateWriter};
-use videg_model::{Harvester as Model, Snapshot};
+use videg_model::{Harvester as Model, ModelError, Snapshot};
 
 use crate::harvester::Harvester;
+use crate::recording::{FILE, Recorded};
 
 /// External force and its rate, voltages and their rates, and the start time.
 type Inputs = ([f64; 2], [f64; 2], [f64; 2], f64);
@@ -14,14 +15,15 @@ impl Harvester {
         let force = [self.external_force, self.external_force_rate];
         let inputs: Inputs = (force, self.voltages, self.voltage_rates, self.start_time);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
-        let model = self.model().filter(|model| *model.parameters() == self.parameters);
+        let is_present = |model: &&Model| *model.parameters() == self.parameters && self.recorded.file == self.file;
+        let model = self.model().filter(is_present);
         out.write_parameters(self)?;
         out.write(&(inputs, self.placed, model.map(Model::snapshot)))
     }
 
-    /// What [`Harvester::write`] wrote.
-    pub(crate) fn read_from(from: &mut StateReader<'_>) -> Result<Self, StateError> {
-        let mut slave = Self::new();
+    /// What [`Harvester::write`] wrote, for the instance of `present`.
+    pub(crate) fn read_from(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
+        let mut slave = Self { resources: present.resources.clone(), ..Self::new() };
         from.read_parameters(&mut slave)?;
         let (inputs, placed, snapshot): (Inputs, bool, Option<Snapshot>) = from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
@@ -33,13 +35,34 @@ impl Harvester {
         [slave.external_force, slave.external_force_rate] = force;
         (slave.voltages, slave.voltage_rates, slave.start_time) = (voltages, voltage_rates, start_time);
         slave.placed = placed;
-        slave.model = if let Some(snapshot) = snapshot {
-            let p = &slave.parameters;
-            let restored = if placed { Model::restore_placed(p, &snapshot) } else { Model::restore(p, &snapshot) };
-            Ok(restored.map_err(|error| StateError::Invalid(error.to_string()))?)
-        } else {
-            slave.at_start()
+        if present.recorded.recording().is_ok() {
+            slave.recorded = present.recorded.clone();
+        }
+        slave.read_file();
+        slave.model = match snapshot {
+            Some(snapshot) => Ok(slave.restored(&snapshot).map_err(StateError::Invalid)?),
+            None => slave.at_start(),
         };
         Ok(slave)
+    }
+
+    /// The model of `snapshot`. The bytes of a state name the file of its recording and have no samples. If those that are in memory
+    /// are others, the file is read again.
+    fn restored(&mut self, snapshot: &Snapshot) -> Result<Model, String> {
+        let mut restored = self.restored_with(snapshot)?;
+        if matches!(restored, Err(ModelError::OtherRecording)) {
+            self.recorded = Recorded::read(&self.file, self.resources.as_deref());
+            restored = self.restored_with(snapshot)?;
+        }
+        restored.map_err(|error| match error {
+            ModelError::OtherRecording => format!("{FILE} = {:?}: {error}", self.file),
+            _ => error.to_string(),
+        })
+    }
+
+    /// The same with the recording that is in memory.
+    fn restored_with(&self, snapshot: &Snapshot) -> Result<Result<Model, ModelError>, String> {
+        let setup = self.setup()?;
+        Ok(if self.placed { Model::restore_placed(setup, snapshot) } else { Model::restore(setup, snapshot) })
     }
 }

@@ -8,6 +8,7 @@ use fmu_export::{Variable, concat};
 use videg_model::Side;
 
 use crate::harvester::Harvester;
+use crate::recording::{FILE, LONGEST};
 use initial::{FILM, FORCE_LAW, IMPACT, OPTIONS};
 use parameters::{choices, reals};
 
@@ -410,6 +411,17 @@ const CHOICES: &[V] = choices(0, 6);
 const MOUNT_PARAMETERS: &[V] = reals(22, 28);
 const MOUNT_CHOICES: &[V] = choices(6, 7);
 
+/// The recorded part of the excitation.
+static RECORDING_FILE: [V; 1] = [V::string_parameter(
+    FILE,
+    "",
+    "CSV file of a recorded excitation, added to the harmonic one: time,acceleration in s and m/s2 (excitation.kind = motion) or time,force in s and N, straight lines between the samples and 0 outside; looked for in the resources of the FMU and then from the working folder; none if empty",
+)
+.longest(LONGEST)
+.access(|slave| slave.file.to_string(), |slave, file| slave.file = file.into())];
+const RECORDING_PARAMETERS: &[V] = reals(28, 30);
+const RECORDING_CHOICES: &[V] = choices(7, 8);
+
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
     + CHOICES.len()
@@ -428,7 +440,10 @@ const COUNT: usize = PARAMETERS.len()
     + MOUNT_PARAMETERS.len()
     + MOUNT_CHOICES.len()
     + OTHER_ENERGIES.len()
-    + MOUNT.len();
+    + MOUNT.len()
+    + RECORDING_FILE.len()
+    + RECORDING_PARAMETERS.len()
+    + RECORDING_CHOICES.len();
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
@@ -450,4 +465,7 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     MOUNT_CHOICES,
     &OTHER_ENERGIES,
     &MOUNT,
+    &RECORDING_FILE,
+    RECORDING_PARAMETERS,
+    RECORDING_CHOICES,
 ]);

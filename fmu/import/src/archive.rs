@@ -16,6 +16,7 @@ mod directory;
 mod names;
 
 use names::Names;
+pub use names::check_name;
 
 const DESCRIPTION: &str = "modelDescription.xml";
 /// An entry may always unpack to this size, however well it is compressed.

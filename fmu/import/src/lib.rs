@@ -57,7 +57,7 @@ mod xml;
 #[cfg(test)]
 mod fake;
 
-pub use archive::{Archive, Limits};
+pub use archive::{Archive, Limits, check_name};
 pub use description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
     ModelDescription, Unit, Variability, Variable,

@@ -21,6 +21,10 @@ const DRIVE: &[&str] = &[
     "cylinder.suspensionDamping",
     "ball.mass",
     "contact.reaction",
+    "excitation.file",
+    "excitation.fileScale",
+    "excitation.fileOffset",
+    "excitation.fileRepeat",
 ];
 
 /// Whether the ball hits a membrane at the start or rests on it, how fast, and where it is then.
@@ -42,6 +46,10 @@ pub(super) const IMPACT: &[&str] = &[
     DRIVE[14],
     DRIVE[15],
     DRIVE[16],
+    DRIVE[17],
+    DRIVE[18],
+    DRIVE[19],
+    DRIVE[20],
     "cylinder.length",
     "frame.width",
     "ball.radius",

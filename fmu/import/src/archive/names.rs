@@ -62,6 +62,14 @@ impl Names {
     }
 }
 
+/// Checks the `name` of a file, without folders, for an archive that every system can unpack.
+///
+/// # Errors
+/// Why it is none.
+pub fn check_name(name: &str) -> Result<(), &'static str> {
+    if name.contains('/') { Err("its name holds a slash") } else { fault(name).map_or(Ok(()), Err) }
+}
+
 /// Why a name does not stay inside the folder, or is not a name everywhere.
 fn fault(name: &str) -> Option<&'static str> {
     let bytes = name.as_bytes();
