@@ -62,7 +62,7 @@ fn impacts(harvester: &mut Harvester, until: f64) -> Vec<Impact> {
 fn after_a_period(p: Parameters, orbit: &Orbit, delay: f64, faster: f64) -> [f64; 2] {
     let mut harvester = started(p, orbit, delay, faster);
     let impacts = impacts(&mut harvester, 1.5 / p.frequency);
-    let last = impacts.iter().find(|impact| impact.side == Side::Left).expect("an impact on the left");
+    let last = impacts.iter().find(|impact| impact.side == Side::Left).unwrap();
     [delay + last.time - 1.0 / p.frequency, p.restitution * (orbit.speeds[0] - last.speed)]
 }
 
