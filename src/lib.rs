@@ -23,7 +23,7 @@
 //! ```
 //!
 //! - [`package`] puts the FMUs together; [`fmu_import`] loads them or any other FMU for FMI 2.0 co-simulation;
-//! - [`scenario`] describes a run: a case of the paper, settings, duration;
+//! - [`scenario`] describes a run: a published case, settings, duration;
 //! - [`cosim`] couples the harvester FMU with a circuit; [`simulate`] runs the harvester alone;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] compares both with each other and with the closed forms of the paper;

@@ -431,47 +431,6 @@ proptest! {
     }
 }
 
-/// The capsule of the literature: Serdukova, Kuske and Yurchenko.
-fn capsule() -> Parameters {
-    let p = Parameters {
-        cylinder_mass: 0.1245,
-        ball_mass: 0.012_45,
-        amplitude: 5.0,
-        frequency: 2.5,
-        restitution: 0.5,
-        inclination: FRAC_PI_4,
-        ..Parameters::default()
-    };
-    let p = Parameters { cylinder_length: 0.55 - 2.0 * p.frame_width + 2.0 * p.ball_radius, ..p };
-    Parameters { ball_position: -p.travel() / 2.0, ..p }
-}
-
-/// Speeds of the impacts from 60 s on, left and right.
-fn speeds(p: &Parameters) -> [Vec<f64>; 2] {
-    let (mut harvester, mut speeds) = (Harvester::new(p, 0.0).unwrap(), [Vec::new(), Vec::new()]);
-    harvester
-        .advance_with(64.0, |event| match event {
-            Event::Impact(impact) if impact.time > 60.0 => speeds[impact.side.index()].push(impact.speed),
-            _ => {}
-        })
-        .unwrap();
-    speeds
-}
-
-#[test]
-fn the_inclined_capsule_hits_once_a_period_at_each_end() {
-    // Speeds of a brute-force integration with bisected impacts.
-    let rubbing = Parameters { friction: 0.15, inclination: 0.2, ..capsule() };
-    for (p, expected) in [(capsule(), [6.431_569, 4.582_409]), (rubbing, [5.702_423, 5.152_122])] {
-        for (speeds, expected) in speeds(&p).iter().zip(expected) {
-            assert_eq!(speeds.len(), 10);
-            for speed in speeds {
-                assert!((speed - expected).abs() < 1e-6, "{speed} against {expected}");
-            }
-        }
-    }
-}
-
 #[test]
 fn friction_lowers_the_voltage_gain_of_figure_14() {
     let p = Parameters {

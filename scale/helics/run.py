@@ -25,7 +25,7 @@ from subsystems import FMUS  # noqa: E402
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--case", default="fig14", help="case of the paper, as of videg cosim [%(default)s]")
+    parser.add_argument("--case", default="fig14", help="published case, as of videg cosim [%(default)s]")
     parser.add_argument(
         "--set", action="append", default=[], metavar="VARIABLE=VALUE", help="set a parameter; may be repeated"
     )

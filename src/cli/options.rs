@@ -9,7 +9,8 @@ use crate::scenario::{CaseFile, Request, Scenario, ScenarioError, Setting};
 /// What to run.
 #[derive(Args)]
 pub struct CaseOptions {
-    /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
+    /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
+    /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
     /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. The initial

@@ -18,7 +18,8 @@ pub struct What {
     /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
     #[arg(value_name = "FILE.toml")]
     pub file: Option<PathBuf>,
-    /// Case of the paper: fig9 to fig15, table3-2hz, table3-5hz [default: fig14]
+    /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
+    /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
     /// Set a parameter or input in all runs; may be repeated

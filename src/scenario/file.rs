@@ -1,7 +1,7 @@
 //! Case files (TOML).
 //!
 //! ```toml
-//! case = "fig14"                 # start from a case of the paper
+//! case = "fig14"                 # start from a published case
 //! name = "softer"                # optional: name of the run
 //! description = "softer membrane"
 //! until = 60.0
@@ -27,7 +27,7 @@ use super::{Origin, ScenarioError, Setting, characters};
 pub struct CaseFile {
     /// Where it was read from, if it was.
     pub path: Option<PathBuf>,
-    /// Case of the paper to start from.
+    /// Published case to start from.
     pub case: Option<String>,
     /// Name of the run.
     pub name: Option<String>,

@@ -1,4 +1,4 @@
-//! Scenario of a run: a case of the paper or a case file, settings on top of it, duration and averaging window.
+//! Scenario of a run: a published case or a case file, settings on top of it, duration and averaging window.
 
 mod characters;
 mod file;
@@ -96,7 +96,7 @@ pub struct PaperValues {
 /// A user's request. Values left out come from the case file, the case or the defaults.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
-    /// Case of the paper.
+    /// Published case.
     pub case: Option<String>,
     /// Case file.
     pub file: Option<CaseFile>,

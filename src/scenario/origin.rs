@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// Where a value was given.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Origin {
-    /// In a case of the paper, or in this program.
+    /// In a published case, or in this program.
     #[default]
     Program,
     /// On the command line.

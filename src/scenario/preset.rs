@@ -1,4 +1,4 @@
-//! The cases of the paper as settings of FMU variables.
+//! The published cases as settings of FMU variables.
 
 use videg_model::{Case, Parameters};
 
@@ -19,9 +19,13 @@ pub(super) fn has(case: &Case, setting: &Setting) -> bool {
     quantity.zip(value).is_some_and(|(quantity, value)| (quantity.get)(&(case.parameters)()) == value)
 }
 
-/// Settings of the case: every parameter whose value is not the start value. Numbers read back to the same bits.
+/// Settings of the case: every parameter whose value is not the start value. Numbers read back to the same bits, choices are
+/// their numbers.
 pub(super) fn settings(case: &Case) -> Vec<Setting> {
     let parameters = (case.parameters)();
     let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
-    changed.map(|quantity| Setting::new(quantity.name, format!("{:?}", (quantity.get)(&parameters)))).collect()
+    let numbers = changed.map(|quantity| Setting::new(quantity.name, format!("{:?}", (quantity.get)(&parameters))));
+    let chosen = Parameters::CHOICES.iter().filter(|choice| (choice.get)(&parameters) != choice.start);
+    let choices = chosen.map(|choice| Setting::new(choice.name, (choice.get)(&parameters).to_string()));
+    numbers.chain(choices).collect()
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fmu_import::{Causality, Kind, ModelDescription, Variable};
-use videg::package::FMUS;
+use videg::package::{FMUS, FmuPackage};
 use videg_model::{Case, Parameters};
 
 use crate::clone::Clone;
@@ -45,9 +45,8 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
          All outputs are Reals, because many importers read every output as a Real and connect no other type. Integers and booleans are local \
          variables, which every tool can read; `impact.countReal` and `contact.restingReal` give them as Reals.\n"
     );
-    for fmu in FMUS {
-        let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
-        let description = ModelDescription::parse(&std::fs::read(&path).unwrap(), fmu.identifier).unwrap();
+    for fmu in &FMUS {
+        let description = description(fmu);
         writeln!(page, "\n## {}\n\n{}.", description.model_name, description.description.as_deref().unwrap()).unwrap();
         if description.model_name == "HarvestingCircuit" {
             page.push_str(CIRCUIT_DEFAULTS);
@@ -110,29 +109,54 @@ fn scientific(value: f64) -> String {
     if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// Lists the cases of the paper with what they set.
+/// Lists the published cases with what they set.
 #[test]
 fn the_page_of_cases_is_that_of_the_model() {
     let mut page = format!(
-        "# Cases\n\n{MADE}\nA case of the paper is a set of parameters. `--case NAME` starts from it, and so does `case = \
-         \"NAME\"` in a case file. All other parameters have their start values. [Case files](files.md#case-files) define \
-         other cases.\n\n| case | description | paper | sets |\n|---|---|---|---|\n"
+        "# Cases\n\n{MADE}\nA case is a set of parameters. `--case NAME` starts from it, and so does `case = \"NAME\"` in a case \
+         file. All other parameters have their start values. [Case files](files.md#case-files) define other cases.\n\n\
+         ## The paper\n\n| case | description | paper | sets |\n|---|---|---|---|\n"
     );
-    for case in Case::ALL {
-        let paper = match (case.paper_voltage_gain, case.paper_power) {
+    let is_paper = |case: &&Case| case.source == Case::PAPER;
+    for case in Case::ALL.iter().filter(is_paper) {
+        let printed = match (case.paper_voltage_gain, case.paper_power) {
             (Some(gain), _) => format!("{gain} V/s"),
             (_, Some(power)) => format!("{power} W"),
             _ => String::new(),
         };
-        let parameters = (case.parameters)();
-        let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
-        let sets: Vec<_> =
-            changed.map(|quantity| format!("`{}={}`", quantity.name, (quantity.get)(&parameters))).collect();
-        writeln!(page, "| `{}` | {} | {paper} | {} |", case.name, case.description, sets.join("<br>")).unwrap();
+        writeln!(page, "| `{}` | {} | {printed} | {} |", case.name, case.description, sets(case)).unwrap();
     }
     page.push_str(
         "\n[The paper and videg](../results/paper.md) has the results. The chaotic cases, `fig11` to `fig13`, agree with the paper in \
-         the mean over nearby starts, not one by one.\n",
+         the mean over nearby starts, not one by one.\n\n## The capsule of the literature\n\n| case | description | source | sets \
+         |\n|---|---|---|---|\n",
     );
+    for case in Case::ALL.iter().filter(|case| !is_paper(case)) {
+        writeln!(page, "| `{}` | {} | {} | {} |", case.name, case.description, case.source, sets(case)).unwrap();
+    }
+    page.push_str("\n[The capsule in the literature](../results/literature.md) compares.\n");
     GOLDEN.file(root().join("docs/reference/cases.md"), &page);
+}
+
+/// What a case changes, by the names that `--set` takes.
+fn sets(case: &Case) -> String {
+    let parameters = (case.parameters)();
+    let changed = Parameters::TABLE.iter().filter(|quantity| (quantity.get)(&parameters) != quantity.start);
+    let numbers = changed.map(|quantity| format!("`{}={}`", quantity.name, (quantity.get)(&parameters)));
+    let chosen = Parameters::CHOICES.iter().filter(|choice| (choice.get)(&parameters) != choice.start);
+    let choices = chosen.map(|choice| format!("`{}={}`", choice.name, item(choice.name, (choice.get)(&parameters))));
+    numbers.chain(choices).collect::<Vec<_>>().join("<br>")
+}
+
+/// Name of an item of one of the harvester's enumerations; the number itself if the variable is none.
+fn item(variable: &str, value: i32) -> String {
+    let description = description(&FMUS[0]);
+    let variable = description.variables.iter().find(|it| it.name == variable).unwrap();
+    let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
+    items.iter().find(|item| item.value == value).map_or_else(|| value.to_string(), |item| item.name.clone())
+}
+
+fn description(fmu: &FmuPackage) -> ModelDescription {
+    let path = root().join(format!("modelDescription/{}.xml", fmu.identifier));
+    ModelDescription::parse(&std::fs::read(&path).unwrap(), fmu.identifier).unwrap()
 }
