@@ -14,6 +14,9 @@ use proptest::prelude::*;
 use steady::Motion;
 use videg_model::{Case, Event, ExcitationKind, Harvester, Impact, Parameters, Side};
 
+/// Periods after which a motion has settled.
+const SETTLED: u32 = 500;
+
 prop_compose! {
     /// A capsule that is free or on a shaker.
     fn any_capsule()(
@@ -128,7 +131,7 @@ fn fastest(p: &Parameters) -> Orbit {
 fn the_capsule_settles_on_the_orbit_of_the_closed_form() {
     for (name, expected) in [("capsule-1-1", [6.431_569, 4.582_409]), ("capsule-friction", [5.702_423, 5.152_122])] {
         let (p, orbit) = (case(name), fastest(&case(name)));
-        let motion = Motion::of(&p);
+        let motion = Motion::of(&p, SETTLED);
         assert_eq!((motion.sequence().as_str(), orbit.is_stable()), ("1:1", true), "{name}");
         for (k, side) in [Side::Left, Side::Right].into_iter().enumerate() {
             for speed in [orbit.speeds[k], motion.speeds(side)[0]] {
@@ -142,7 +145,7 @@ fn the_capsule_settles_on_the_orbit_of_the_closed_form() {
 #[test]
 fn the_cases_move_as_their_names_say() {
     for (name, sequence) in [("capsule-2-1", "2:1"), ("capsule-3-1", "3:1"), ("capsule-soft", "1:1")] {
-        assert_eq!(Motion::of(&case(name)).sequence(), sequence, "{name}");
+        assert_eq!(Motion::of(&case(name), SETTLED).sequence(), sequence, "{name}");
     }
 }
 
@@ -158,7 +161,7 @@ fn the_period_doubles_where_the_closed_form_says() {
         let motion = |travel| {
             let orbit = capsule(travel).nearest(&first).unwrap();
             // Off the orbit, so that a stable one attracts it and an unstable one repels it.
-            Motion::of(&start(at(travel), &orbit, 0.0, 1e-3)).sequence()
+            Motion::of(&start(at(travel), &orbit, 0.0, 1e-3), SETTLED).sequence()
         };
         // Disturbances fall and rise by some 1 % a period.
         assert_eq!(

@@ -118,7 +118,7 @@ impl Capsule {
     /// All solutions of the equations, with those in which a ball would have to pass a membrane.
     pub fn solutions(&self) -> Vec<Orbit> {
         // Odd: equal flights, where the determinant of a level capsule is 0, are no sample.
-        const SAMPLES: u32 = 4001;
+        const SAMPLES: u32 = 1001;
         let period = self.period();
         let mut found = self.symmetric();
         let at = |k: u32| period * f64::from(k) / f64::from(SAMPLES);
@@ -277,7 +277,7 @@ impl Capsule {
 /// # Panics
 /// If the orbit is lost on the way.
 pub fn root(capsule: impl Fn(f64) -> Capsule, orbit: Orbit, function: fn(&Orbit) -> f64, [low, high]: [f64; 2]) -> f64 {
-    const STEPS: u32 = 200;
+    const STEPS: u32 = 50;
     let mut here = (low, orbit);
     for k in 1..=STEPS {
         let next = low + (high - low) * f64::from(k) / f64::from(STEPS);

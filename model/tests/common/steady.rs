@@ -4,8 +4,7 @@
 
 use videg_model::{Event, Harvester, Impact, Parameters, Side};
 
-/// Periods of the transient, and periods after it in which a motion has to come back.
-const TRANSIENT: f64 = 500.0;
+/// Periods after the transient in which a motion has to come back.
 const TAKEN: f64 = 60.0;
 /// Longest return that is looked for, in periods.
 const LONGEST: u32 = 16;
@@ -25,13 +24,14 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The motion from the start that the parameters give.
-    pub fn of(p: &Parameters) -> Self {
+    /// The motion from the start that the parameters give, after a transient of so many periods.
+    pub fn of(p: &Parameters, transient: u32) -> Self {
         let mut harvester = Harvester::new(p, 0.0).unwrap();
-        harvester.advance(TRANSIENT / p.frequency).unwrap();
+        let transient = f64::from(transient);
+        harvester.advance(transient / p.frequency).unwrap();
         let (before, mut taken) = (harvester.totals().energy, Vec::new());
         harvester
-            .advance_with((TRANSIENT + TAKEN) / p.frequency, |event| {
+            .advance_with((transient + TAKEN) / p.frequency, |event| {
                 if let Event::Impact(impact) = event {
                     taken.push(*impact);
                 }
@@ -46,10 +46,11 @@ impl Motion {
     }
 
     /// The same from where this motion has got to: how a diagram is followed along a parameter. The cylinder must be free.
-    pub fn followed(&self, p: &Parameters) -> Self {
+    pub fn followed(&self, p: &Parameters, transient: u32) -> Self {
         let [place, rate] = self.end;
         let ball_position = p.cylinder_position - place.clamp(-1.0, 1.0) * p.travel() / 2.0;
-        Self::of(&Parameters { ball_position, ball_velocity: p.cylinder_velocity - rate, ..*p })
+        let start = Parameters { ball_position, ball_velocity: p.cylinder_velocity - rate, ..*p };
+        Self::of(&start, transient)
     }
 
     /// Impacts until the motion comes back, or all that were taken.

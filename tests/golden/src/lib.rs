@@ -80,6 +80,18 @@ pub fn model_description(path: &str, made: &str, changed: impl Fn(&str, &str) ->
     Golden::new("UPDATE_MODEL_DESCRIPTION", "cargo test --workspace").file(path, made);
 }
 
+/// Whether words are equal, and numbers within a relative `tolerance`. A number before `%` is a deviation: the difference of two
+/// numbers.
+pub fn agree(written: &str, now: &str, tolerance: f64) -> bool {
+    let (written, now): (Vec<_>, Vec<_>) = (written.split_whitespace().collect(), now.split_whitespace().collect());
+    let equal = |k: usize| match (written[k].parse::<f64>(), now[k].parse::<f64>()) {
+        (Ok(a), Ok(b)) if written.get(k + 1) == Some(&"%") => (a - b).abs() <= 100.0 * tolerance,
+        (Ok(a), Ok(b)) => (a - b).abs() <= tolerance * a.abs(),
+        _ => written[k] == now[k],
+    };
+    written.len() == now.len() && (0..written.len()).all(equal)
+}
+
 fn write(path: &Path, text: &str) {
     fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
@@ -157,6 +169,15 @@ mod tests {
     #[should_panic(expected = "docs/releasing.md:\nx moved")]
     fn a_value_reference_that_moves_is_told() {
         model_description("no/such/file", "one\n", |_, _| vec!["x moved".to_owned()]);
+    }
+
+    #[test]
+    fn a_number_that_changed_and_a_word_that_changed_are_seen() {
+        let agree = |now| agree("| fig14 | 8078.9 | -0.00 % |", now, 1e-3);
+        assert!(agree("| fig14 | 8079.0 | +0.00 % |"));
+        for other in ["| fig14 | 8100.0 | -0.00 % |", "| fig14 | 8078.9 | -0.20 % |", "| fig13 | 8078.9 | -0.00 % |"] {
+            assert!(!agree(other), "{other}");
+        }
     }
 
     #[test]
