@@ -29,3 +29,24 @@ pub(super) fn settings(case: &Case) -> Vec<Setting> {
     let choices = chosen.map(|choice| Setting::new(choice.name, (choice.get)(&parameters).to_string()));
     numbers.chain(choices).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_make_the_parameters_of_every_case() {
+        for case in Case::ALL {
+            let mut made = Parameters::default();
+            for setting in settings(case) {
+                if let Some(quantity) = Parameters::TABLE.iter().find(|it| it.name == setting.name) {
+                    (quantity.set)(&mut made, setting.value.parse().unwrap());
+                } else {
+                    let choice = Parameters::CHOICES.iter().find(|it| it.name == setting.name).unwrap();
+                    (choice.set)(&mut made, setting.value.parse().unwrap());
+                }
+            }
+            assert_eq!(made, (case.parameters)(), "{}", case.name);
+        }
+    }
+}

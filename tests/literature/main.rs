@@ -21,6 +21,9 @@ const GOLDEN: Golden = Golden::new("UPDATE_BOOK", "cargo test --test literature"
 /// Largest relative difference between a number on the page and one computed now, as in `tests/readme.rs`.
 const TOLERANCE: f64 = 1e-3;
 
+/// The same of lengths at which an irregular motion ends, which takes a last bit elsewhere.
+const OF_IRREGULAR: f64 = 0.02;
+
 /// Inclinations of the tables, as they are printed.
 const INCLINATIONS: [(&str, f64); 5] =
     [("0.1", 0.1), ("0.3", 0.3), ("π/6", FRAC_PI_6), ("π/4", FRAC_PI_4), ("π/3", FRAC_PI_3)];
@@ -42,7 +45,7 @@ fn length(travel: f64, p: &Parameters) -> f64 {
     travel * p.cylinder_mass * omega * omega / (p.amplitude * PI * PI)
 }
 
-fn check(name: &str, table: &str) {
+fn check(name: &str, table: &str, tolerance: f64) {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results/literature.md");
-    GOLDEN.section_as(page, name, table, |written, now| agree(written, now, TOLERANCE));
+    GOLDEN.section_as(page, name, table, |written, now| agree(written, now, tolerance));
 }
