@@ -344,6 +344,11 @@ fn an_error_about_a_value_names_the_file_and_key_or_the_option_that_said_it() {
         &["simulate", "--case-file", path, "--law", "impulsive"],
         &[&format!("--law impulsive: {path}: set.contact.law = compliant says otherwise")],
     );
+    // A law of the case is none that the user gave.
+    let gain =
+        |case, more: &[&str]| simulate(case, &[&["--until", "20"], more].concat())["average_voltage_gain"].clone();
+    assert_eq!(gain("capsule-soft", &["--law", "impulsive"]), gain("capsule-1-1", &[]));
+    assert_ne!(gain("capsule-soft", &[]), gain("capsule-1-1", &[]));
 }
 
 fn assert_refused(arguments: &[&str], parts: &[&str]) {

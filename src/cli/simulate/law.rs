@@ -35,13 +35,13 @@ impl Law {
     }
 }
 
-/// The scenario of the options under `law`; with both laws, their common part. Settings that ask for another law are an
-/// error.
+/// The scenario of the options under `law`, whatever the law of the case; with both laws, their common part. Settings that ask
+/// for another law are an error.
 pub fn scenario(law: Option<Law>, options: &RunOptions) -> anyhow::Result<Scenario> {
     let scenario = options.scenario()?;
     let Some(law) = law else { return Ok(scenario) };
     let is_law = |value: &str| law != Law::Both && (value == law.name() || value == (law as u8).to_string());
-    match scenario.settings.iter().rfind(|setting| setting.name == VARIABLE) {
+    match scenario.changes().iter().rfind(|setting| setting.name == VARIABLE) {
         Some(set) if !is_law(&set.value) => {
             let (name, place, value) = (law.name(), set.place(), &set.value);
             anyhow::bail!("--law {name}: {place} = {value} says otherwise; leave one of the two out")
