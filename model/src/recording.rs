@@ -4,6 +4,7 @@
 //! samples are multiplied by the first and come later by the second. Before the first sample there is nothing. After the last
 //! one there is nothing either, or the recording begins again.
 
+use core::f64::consts::TAU;
 use core::fmt;
 use std::sync::Arc;
 
@@ -151,6 +152,16 @@ impl Setup<'_> {
             return Err(ModelError::RepeatedTooFast { spacing, min: MIN_REPEATED_SPACING });
         }
         Ok(())
+    }
+
+    /// The excitation without phase noise at these `times`, s: the force on the cylinder, N, or the acceleration that a shaker
+    /// prescribes, m/s^2.
+    pub fn excitation(&self, times: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let (p, playback) = (self.parameters, self.playback());
+        let mass = if p.excitation_kind == ExcitationKind::Force { p.cylinder_mass } else { 1.0 };
+        let harmonic = |time: f64| p.harmonic_acceleration() * (TAU * p.frequency * time + p.phase).cos();
+        let recorded = |time: f64| playback.as_ref().map_or(0.0, |playback| playback.segment_at(time).at(time));
+        times.into_iter().map(|time| mass * (harmonic(time) + recorded(time))).collect()
     }
 
     /// The recording as it excites the harvester.

@@ -10,7 +10,7 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading, mechanics};
-use super::{Exit, cosim_report, output, packaging, picture, time_series};
+use super::{Exit, cosim_report, excitation, output, packaging, picture, time_series};
 use crate::cosim::{
     CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance,
     LabelledCircuit, Method, Options, Results,
@@ -94,7 +94,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let csv = folder.join("timeseries.csv");
     let results = record(cosimulation, &scenario, &csv)?;
     let svg = picture::cosim(&results.trace, &scenario)?.svg;
-    let html = cosim_report::html(&scenario, &results, svg.clone())?;
+    let report = cosim_report::report(&scenario, &results, svg.clone());
+    let html = videg_report::render_html(&excitation::described(report, &harvester, &scenario)?)?;
     let files = run_output::write(&folder, &[csv], &svg, &html)?;
     let (first, comparison) = results.circuits.split_first().context("a co-simulation without a circuit")?;
     let output = Output {

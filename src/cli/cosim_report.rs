@@ -4,7 +4,7 @@ use super::format::{Sheet, significant};
 use super::run_output;
 use crate::cosim::{CouplingSummary, EnergyBalance, LabelledCircuit, Results};
 use crate::scenario::Scenario;
-use videg_report::{self, ReportError, Section};
+use videg_report::{Report, Section};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
 pub const EXPLANATION: [&str; 10] = [
@@ -91,13 +91,12 @@ pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances an
     of the run; (d) energies of the first circuit since its start.";
 
 /// The HTML report.
-pub fn html(scenario: &Scenario, results: &Results, svg: String) -> Result<String, ReportError> {
+pub fn report(scenario: &Scenario, results: &Results, svg: String) -> Report {
     let mechanics = run_output::mechanics(scenario, &results.mechanics);
     let energies = Section::new("Where the energy goes").text(EXPLANATION.join(" ")).table(energies(results).html());
-    let report = run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
+    run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
         .section(run_output::result(&results.warnings).table(mechanics.html()))
         .section(energies)
         .section(Section::new("Coupling").text(coupling_lines(results)))
-        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, FIGURE_CAPTION));
-    videg_report::render_html(&report)
+        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, FIGURE_CAPTION))
 }

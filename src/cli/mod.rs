@@ -11,6 +11,7 @@ mod cosim;
 mod cosim_report;
 mod crosscheck;
 mod crosscheck_report;
+mod excitation;
 mod fmu;
 mod fmu_check;
 mod format;

@@ -12,7 +12,7 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading};
-use super::{Exit, output, picture, time_series};
+use super::{Exit, excitation, output, picture, time_series};
 use crate::cosim::CsvRecorder;
 use crate::scenario::Scenario;
 use crate::simulate::{Options, Results, Simulation};
@@ -50,6 +50,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let page = run_output::report(format!("Simulation of {}", scenario.name), &scenario)
         .section(run_output::result(&warnings).table(table.html()))
         .section(Section::new("Motion, capacitances and gains").figure(svg.clone(), CAPTION));
+    let page = excitation::described(page, &fmu, &scenario)?;
     let files = run_output::write(&folder, &[csv], &svg, &videg_report::render_html(&page)?)?;
     let output = RunOutput::new(&scenario, mechanics, &warnings, &files);
     let text = [heading("simulate", &scenario), text, file_list(&files)];

@@ -4,7 +4,8 @@ use super::CosimError;
 use super::balance::ENERGIES;
 use super::instance::{SavedState, read, references};
 use crate::scenario::{Scenario, Setting};
-use fmu_import::{Fmu, Instance, Logging, Status};
+use fmu_import::{Fmu, Instance, Logging, Status, Value};
+use videg_model::Parameters;
 
 /// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
 const REALS: [&str; 16] = [
@@ -126,6 +127,25 @@ impl HarvesterFmu {
         let [bias_voltage] = read(&instance, &bias)?;
         let feedback = Feedback::of(fmu, &instance, &voltages)?;
         Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, saved: SavedState::default() })
+    }
+
+    /// The parameters, and the file of the recording; none if the FMU lacks one of them or has another type for it.
+    pub(super) fn parameters(&self) -> Option<(Parameters, String)> {
+        let mut parameters = Parameters::default();
+        for quantity in Parameters::TABLE {
+            let Ok(Value::Real(value)) = self.instance.get_by_name(quantity.name) else { return None };
+            (quantity.set)(&mut parameters, value);
+        }
+        for choice in Parameters::CHOICES {
+            let value = match self.instance.get_by_name(choice.name).ok()? {
+                Value::Integer(value) | Value::Enumeration { value, .. } => value,
+                Value::Boolean(on) => i32::from(on),
+                _ => return None,
+            };
+            (choice.set)(&mut parameters, value);
+        }
+        let Ok(Value::String(file)) = self.instance.get_by_name("excitation.file") else { return None };
+        Some((parameters, file))
     }
 
     /// Warnings of the FMU so far.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use videg_model::{Harvester as Model, ModelError, Parameters, Setup};
 
-use crate::recording::Recorded;
+use crate::recording::{FILE, Recorded};
 
 /// The harvester as a slave.
 pub struct Harvester {
@@ -101,7 +101,12 @@ impl Harvester {
             model.set_voltages(self.voltages, [0.0; 2])?;
             Ok(model)
         };
-        start().map_err(|error: ModelError| error.to_string())
+        start().map_err(|error| match error {
+            ModelError::RecordingKind { .. } | ModelError::RepeatedTooFast { .. } => {
+                format!("{FILE} = {:?}: {error}", self.file)
+            }
+            _ => error.to_string(),
+        })
     }
 
     /// Reads the file, unless it was the last one to be read.
