@@ -35,15 +35,17 @@ fn caption(excitation: &Excitation) -> String {
     let [quantity, unit] = excitation.quantity();
     let what = if quantity == "force" { "Force on the cylinder" } else { "Prescribed acceleration of the cylinder" };
     let mut parts = excitation.file.rsplit(['/', '\\']);
-    let recorded = match parts.next() {
-        Some(name) if !name.is_empty() => format!(" with the recording {name}"),
-        _ => String::new(),
+    let (recorded, between) = match parts.next() {
+        Some(name) if !name.is_empty() => {
+            (format!(" with the recording {name}"), ", on straight lines between those of the recording")
+        }
+        _ => (String::new(), ""),
     };
     let noise = if excitation.has_noise { ", without its phase noise" } else { "" };
     let Excitation { start, spacing, values, .. } = excitation;
     format!(
         "(a) {what}{recorded}{noise}; (b) its one-sided amplitude spectrum in {unit}, from {count} samples, {spacing} s apart, from \
-         {start} to {end} s (straight lines between the samples of a recording), without their mean, under a Hann window; a harmonic \
+         {start} to {end} s{between}, without their mean, under a Hann window; a harmonic \
          shows with its amplitude.",
         count = values.len(),
         spacing = rounded(*spacing),
