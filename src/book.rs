@@ -9,4 +9,5 @@ macro_rules! chapters {
 
 chapters! {
     circuit: "/docs/howto/circuit.md";
+    dynamics: "/docs/howto/dynamics.md";
 }

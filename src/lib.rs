@@ -28,6 +28,7 @@
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] compares both with each other and with the closed forms of the paper;
 //! - [`paper`] reproduces every table and figure of the paper;
+//! - [`dynamics`] finds what the motion of a case is like for long: bifurcations, periodic orbits, basins;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`cli`] is the command-line tool.
 //!
@@ -39,12 +40,14 @@
     reason = "the messages of the error types say it; a section says what is beyond them"
 )]
 
+mod artefact;
 #[cfg(doctest)]
 mod book;
 mod circuit_sample;
 pub mod cli;
 pub mod cosim;
 pub mod crosscheck;
+pub mod dynamics;
 pub mod ngspice;
 pub mod package;
 pub mod paper;

@@ -28,9 +28,10 @@ const PACKAGES: [(&str, &[&str]); 11] = [
 const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 12] = [
+const DOWNWARDS: [&str; 14] = [
     "cli",
     "paper",
+    "dynamics",
     "crosscheck",
     "sweep",
     "package",
@@ -39,6 +40,7 @@ const DOWNWARDS: [&str; 12] = [
     "ngspice",
     "scenario",
     "circuit_sample",
+    "artefact",
     "threads",
     "progress",
 ];

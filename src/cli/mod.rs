@@ -11,6 +11,8 @@ mod cosim;
 mod cosim_report;
 mod crosscheck;
 mod crosscheck_report;
+mod dynamics;
+mod dynamics_report;
 mod excitation;
 mod fmu;
 mod fmu_check;
@@ -59,6 +61,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Run many simulations over parameters and seeds, on all cores; resumes interrupted sweeps, merges shards
     Sweep(Box<sweep::Arguments>),
+    /// Bifurcation diagram, Poincare section, Lyapunov exponent, periodic orbits and basins of attraction of any case
+    Dynamics(dynamics::Arguments),
     /// Reproduce the tables and figures of the paper as data, pictures and one report
     Reproduce(reproduce::Arguments),
     /// Build, describe and check FMUs
@@ -97,6 +101,7 @@ impl Verb {
             Self::Crosscheck(arguments) => crosscheck::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Sweep(arguments) => sweep::run(arguments, &interruption),
+            Self::Dynamics(arguments) => dynamics::run(arguments),
             Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),

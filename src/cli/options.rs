@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use fmu_import::ModelDescription;
 
+use super::output;
+use crate::cosim::{CircuitRequest, CosimError};
 use crate::scenario::{CaseFile, Request, Scenario, ScenarioError, Setting};
 
 /// What to run.
@@ -55,6 +58,15 @@ pub fn parse_window(text: &str) -> Result<Window, String> {
         Some(&[from, to]) => Ok(Window([from, to])),
         _ => Err("two times with a comma between them are expected, e.g. 50,100".to_owned()),
     }
+}
+
+/// The settings of the harvester. Those of a circuit are left out with a warning that the `verb` runs none.
+pub fn mechanical(description: &ModelDescription, scenario: &Scenario, verb: &str) -> Result<Vec<Setting>, CosimError> {
+    let (mechanical, circuit) = CircuitRequest::split(description, &scenario.settings)?;
+    if let Some(names) = circuit.names() {
+        output::warn(&[format!("{names} left out: {verb} runs no circuit")]);
+    }
+    Ok(mechanical)
 }
 
 impl CaseOptions {

@@ -134,7 +134,7 @@ impl Wanted {
 
 impl Reproduction<'_> {
     fn add(&mut self, item: &Item, artefact: Artefact) -> anyhow::Result<()> {
-        let files = files::write(self.folder, &artefact)?;
+        let files = files::write(self.folder, &artefact.sheets, &artefact.pictures)?;
         self.chapters.push(Chapter::new(item.name, item.title, artefact, files));
         Ok(())
     }

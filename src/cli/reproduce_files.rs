@@ -1,25 +1,26 @@
-//! The files of `videg reproduce`: data as CSV, pictures as SVG and PNG.
+//! The files of `videg reproduce` and `videg dynamics`: data as CSV, pictures as SVG and PNG.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
 use super::{output, reproduce_report as page};
-use crate::paper::{Artefact, Finding, Sheet};
+use crate::artefact::{Picture, Sheet};
+use crate::paper::Finding;
 use videg_report::render_png;
 
 /// Pixels of a PNG for each px of the figure.
 const DENSITY: f64 = 2.0;
 
-/// Writes data and pictures of `artefact` into `folder`; returns the files.
-pub fn write(folder: &Path, artefact: &Artefact) -> anyhow::Result<Vec<PathBuf>> {
+/// Writes data and pictures into `folder`; returns the files.
+pub fn write(folder: &Path, sheets: &[Sheet], pictures: &[Picture]) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    for sheet in &artefact.sheets {
+    for sheet in sheets {
         let path = folder.join(&sheet.name).with_extension("csv");
         output::write(&path, &csv(sheet)?)?;
         files.push(path);
     }
-    for picture in &artefact.pictures {
+    for picture in pictures {
         let path = folder.join(&picture.name);
         let (svg, png) = (path.with_extension("svg"), path.with_extension("png"));
         output::write(&svg, &picture.drawing.svg)?;
@@ -33,9 +34,10 @@ pub fn write(folder: &Path, artefact: &Artefact) -> anyhow::Result<Vec<PathBuf>>
 fn csv(sheet: &Sheet) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&sheet.columns)?;
-    for row in &sheet.rows {
+    for (index, row) in sheet.rows.iter().enumerate() {
         let cell = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
-        writer.write_record(row.iter().map(cell))?;
+        let words = sheet.words.get(index).into_iter().flatten().cloned();
+        writer.write_record(words.chain(row.iter().map(cell)))?;
     }
     text(writer).with_context(|| format!("sheet {}", sheet.name))
 }

@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use clap::Args;
 
-use super::options::{Window, parse_window};
-use super::output;
-use crate::cosim::CircuitRequest;
+use super::options::{Window, mechanical, parse_window};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
 use crate::sweep::{Request, Sampling, SweepFile, Times, Vary};
 use fmu_import::{Bounds, ModelDescription};
@@ -72,7 +70,11 @@ impl What {
             description,
             fmu: fingerprint,
             isolation,
-            settings: if is_harvester { mechanical(description, &scenario)? } else { scenario.changes().to_vec() },
+            settings: if is_harvester {
+                mechanical(description, &scenario, "sweep")?
+            } else {
+                scenario.changes().to_vec()
+            },
             times: Times { until: scenario.until, step, window: scenario.window },
             name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
             vary: [vary, asked].concat(),
@@ -120,15 +122,6 @@ fn own_step(description: &ModelDescription, until: f64) -> anyhow::Result<f64> {
     scenario::check_proposed_step(step, until)
         .map_err(|bound| anyhow!("DefaultExperiment of {model}: stepSize = {step} s: {bound}, or give --step"))?;
     Ok(step)
-}
-
-/// The settings of the harvester. Those of a circuit are left out with a warning.
-fn mechanical(description: &ModelDescription, scenario: &Scenario) -> anyhow::Result<Vec<Setting>> {
-    let (mechanical, circuit) = CircuitRequest::split(description, &scenario.settings)?;
-    if let Some(names) = circuit.names() {
-        output::warn(&[format!("{names} left out: sweep runs no circuit")]);
-    }
-    Ok(mechanical)
 }
 
 #[cfg(test)]

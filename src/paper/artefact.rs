@@ -2,9 +2,9 @@
 
 use serde::{Serialize, Serializer};
 
-use videg_report::{Column, Drawing, Figure, Table};
+use videg_report::{Column, Table};
 
-use super::PaperError;
+pub use crate::artefact::{Picture, Sheet};
 
 /// A table or figure, reproduced.
 #[derive(Debug, Clone, Default)]
@@ -113,52 +113,7 @@ impl Serialize for Verdict {
     }
 }
 
-/// Columns of numbers that become a CSV file.
-#[derive(Debug, Clone)]
-pub struct Sheet {
-    /// Name of the file, without extension.
-    pub name: String,
-    /// Headings with the unit, e.g. `time (s)`.
-    pub columns: Vec<String>,
-    /// One value a column; NaN for an empty cell.
-    pub rows: Vec<Vec<f64>>,
-}
-
-impl Sheet {
-    /// The file `name` with these headings and rows.
-    pub(super) fn new<C: Into<String>>(
-        name: impl Into<String>,
-        columns: impl IntoIterator<Item = C>,
-        rows: impl IntoIterator<Item = Vec<f64>>,
-    ) -> Self {
-        let columns = columns.into_iter().map(Into::into).collect();
-        Self { name: name.into(), columns, rows: rows.into_iter().collect() }
-    }
-}
-
 /// A table with a column of words and columns of numbers.
 pub(super) fn table<C: Into<String>>(words: impl Into<String>, numbers: impl IntoIterator<Item = C>) -> Table {
     Table::new(std::iter::once(Column::words(words)).chain(numbers.into_iter().map(Column::numbers)))
-}
-
-/// A figure, drawn.
-#[derive(Debug, Clone)]
-pub struct Picture {
-    /// Name of the file, without extension.
-    pub name: String,
-    /// The drawing.
-    pub drawing: Drawing,
-    /// Text below it, with the parameters.
-    pub caption: String,
-}
-
-impl Picture {
-    /// Draws `figure`.
-    pub(super) fn new(
-        name: impl Into<String>,
-        figure: &Figure<'_>,
-        caption: impl Into<String>,
-    ) -> Result<Self, PaperError> {
-        Ok(Self { name: name.into(), drawing: Drawing::new(figure)?, caption: caption.into() })
-    }
 }

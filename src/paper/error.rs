@@ -1,6 +1,7 @@
 //! Errors of making an item.
 
 use crate::cosim::CosimError;
+use crate::dynamics::DynamicsError;
 use crate::scenario::ScenarioError;
 use fmu_import::FmiError;
 use videg_report::ReportError;
@@ -15,6 +16,8 @@ pub enum PaperError {
     Fmi(#[from] FmiError),
     #[error(transparent)]
     Cosim(#[from] CosimError),
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use videg_model::Parameters;
+
 use super::{PaperError, Study};
 use crate::scenario::Setting;
 
@@ -30,11 +32,6 @@ impl Cylinder {
         Ok(Self { mass, travel })
     }
 
-    /// s, m.
-    pub fn travel(&self) -> f64 {
-        self.travel
-    }
-
     /// A, N, of the normalised amplitude `gamma` at `frequency`, Hz: Eq. (16).
     pub fn force(&self, gamma: f64, frequency: f64) -> f64 {
         gamma * self.mass * (TAU * frequency).powi(2) * self.travel / 2.0
@@ -43,6 +40,22 @@ impl Cylinder {
     /// The normalised amplitude of the `force`, N, at `frequency`, Hz: Eq. (16).
     pub fn gamma(&self, force: f64, frequency: f64) -> f64 {
         force / self.force(1.0, frequency)
+    }
+
+    /// The start of Figures 10, 11, 14 and 15 at r = `restitution`, the normalised amplitude `gamma` and `frequency`, Hz:
+    /// `z_m`(0) = `z_M`(0) + s/2, `z_m`'(0) = -4 `f_0` `z_m`(0).
+    pub fn saw_tooth(&self, restitution: f64, gamma: f64, frequency: f64) -> Parameters {
+        let half = self.travel / 2.0;
+        let cylinder_position = -gamma * half;
+        Parameters {
+            restitution,
+            amplitude: self.force(gamma, frequency),
+            frequency,
+            cylinder_position,
+            ball_position: cylinder_position + half,
+            ball_velocity: -4.0 * frequency * half * (1.0 - gamma),
+            ..Parameters::default()
+        }
     }
 
     /// Zero start, r = 1, at the normalised amplitude `gamma` and `frequency`, Hz: Section 5.1. The ball starts with

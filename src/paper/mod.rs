@@ -6,7 +6,6 @@
 
 mod artefact;
 mod basins;
-mod bifurcation;
 mod coupled;
 mod dynamics;
 mod ensemble;
@@ -18,17 +17,14 @@ mod fig4;
 mod fig7;
 mod fig8;
 mod fixed_step;
-mod lyapunov;
 mod motion;
 mod orbit;
 mod patterns;
 mod peak;
-mod poincare;
 mod power;
 mod recording;
 mod stability;
 mod statistics;
-mod stroboscope;
 mod study;
 mod table1;
 mod table2;

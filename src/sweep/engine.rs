@@ -91,6 +91,11 @@ impl BuiltIn {
         Some(Self { parameters, setters })
     }
 
+    /// The parameters of run number `number` of its `sweep`.
+    pub(crate) fn parameters_of(&self, sweep: &Sweep, number: u64) -> Parameters {
+        self.parameters(&sweep.run(number))
+    }
+
     /// The parameters of `run`.
     fn parameters(&self, run: &Run) -> Parameters {
         let mut parameters = self.parameters;

@@ -1,0 +1,41 @@
+//! Errors of a look at the dynamics.
+
+use videg_model::ModelError;
+use videg_report::ReportError;
+
+use crate::sweep::SweepError;
+
+/// Why the dynamics of a case could not be looked at.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
+pub enum DynamicsError {
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// Something that is set is no parameter of the model.
+    #[error("{name}: the dynamics are those of constant parameters of the model, and this is none of them")]
+    NoParameter { name: String },
+    /// What varies has no numbers between its ends.
+    #[error(
+        "--vary {name}: dynamics follows one real parameter over a range, name=from:to:count with a count of at least 2"
+    )]
+    NoRange { name: String },
+    #[error("--vary {name}: {count} values; at most {most} are followed")]
+    TooMany { name: String, count: u64, most: u64 },
+    /// The excitation does not repeat.
+    #[error("{name} = {value}: dynamics needs an excitation that repeats; with noise no motion comes back")]
+    NotPeriodic { name: &'static str, value: f64 },
+    #[error(
+        "contact.law = compliant: periodic orbits need the first-order changes of the impulsive law; diagram, section, \
+         exponent and basins work"
+    )]
+    CompliantOrbits,
+    #[error("--vary {name}: an orbit does not depend on where a motion starts")]
+    InitialState { name: &'static str },
+    /// The observer wants no more.
+    #[error("stopped")]
+    Stopped,
+}

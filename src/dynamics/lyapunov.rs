@@ -1,0 +1,62 @@
+//! How fast nearby motions part: the largest Lyapunov exponent.
+
+use videg_model::{Harvester, ModelError, Parameters};
+
+use super::motion::Flash;
+
+/// Distance, m, of the neighbour at the start of each period.
+const DISTANCE: f64 = 1e-9;
+/// Distance, m, below which nothing but rounding is left of it.
+const NOTHING: f64 = 1e-17;
+
+/// The largest Lyapunov exponent, 1/s, along `periods` that go on from `flash`: the mean growth, by logarithm, of the distance to a
+/// neighbour, which is scaled back along its direction after each period (Benettin's method). Above 0 the motion is chaotic, below 0
+/// its neighbours approach it. Where the ball rests on a membrane at the start of a period its neighbour starts there, too. A ball
+/// that has a compliant membrane pressed in then cannot start anew: the distance grows on until it is free.
+///
+/// # Errors
+/// A parameter out of its bounds; more events than can be resolved.
+pub fn exponent(parameters: &Parameters, flash: Flash, periods: u32) -> Result<f64, ModelError> {
+    let frequency = parameters.frequency;
+    // Velocities count by the distance that they cover in 1/(2 pi f0).
+    let scale = 1.0 / (std::f64::consts::TAU * frequency);
+    let half = parameters.travel() / 2.0;
+    let is_suspended = parameters.is_suspended();
+    let mut apart = if is_suspended { [0.5 * DISTANCE; 4] } else { [DISTANCE * 0.6, DISTANCE * 0.8, 0.0, 0.0] };
+    let start = |flash: Flash| Harvester::new(&flash.start(*parameters), 0.0);
+    let neighbour_of = |flash: Flash, apart: [f64; 4]| Flash {
+        displacement: flash.displacement + apart[0],
+        velocity: flash.velocity + apart[1] / scale,
+        cylinder: [flash.cylinder[0] + apart[2], flash.cylinder[1] + apart[3] / scale],
+        ..flash
+    };
+    let mut pair = [start(flash)?, start(neighbour_of(flash, apart))?];
+    let mut elapsed = 0.0;
+    let mut sum = 0.0;
+    for _ in 0..periods {
+        elapsed += 1.0 / frequency;
+        for harvester in &mut pair {
+            harvester.advance(elapsed)?;
+        }
+        let [flash, neighbour] = [Flash::of(&pair[0]), Flash::of(&pair[1])];
+        if [flash, neighbour].iter().any(|flash| flash.displacement.abs() > half * (1.0 + 1e-9)) {
+            continue;
+        }
+        let of_cylinder = [0, 1].map(|k| if is_suspended { neighbour.cylinder[k] - flash.cylinder[k] } else { 0.0 });
+        let now = [
+            neighbour.displacement - flash.displacement,
+            (neighbour.velocity - flash.velocity) * scale,
+            of_cylinder[0],
+            of_cylinder[1] * scale,
+        ];
+        let distance = now[0].hypot(now[1]).hypot(now[2].hypot(now[3]));
+        sum += (distance.max(NOTHING) / DISTANCE).ln();
+        // A neighbour at no distance starts again in the old direction.
+        if distance > NOTHING {
+            apart = now.map(|part| part * DISTANCE / distance);
+        }
+        pair = [start(flash)?, start(neighbour_of(flash, apart))?];
+        elapsed = 0.0;
+    }
+    Ok(sum * frequency / f64::from(periods))
+}

@@ -1,0 +1,78 @@
+//! What the dynamics of is looked at: the parameters of a case, and one of them that varies.
+
+use videg_model::{ContactLaw, Parameters, Quantity};
+
+use super::DynamicsError;
+
+/// A case, and the parameter over which it is followed.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// The one that varies.
+    pub varied: Option<Varied>,
+}
+
+/// A real parameter that varies.
+#[derive(Debug, Clone)]
+pub struct Varied {
+    /// The parameter.
+    pub quantity: &'static Quantity,
+    /// Its values, at least two, the first and the last at the ends.
+    pub values: Vec<f64>,
+}
+
+impl Varied {
+    /// Smallest and largest value.
+    pub fn range(&self) -> [f64; 2] {
+        let ends = [self.values.first(), self.values.last()].map(|end| end.copied().unwrap_or(f64::NAN));
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    }
+
+    /// Axis label: name and unit.
+    pub fn label(&self) -> String {
+        format!("{} ({})", self.quantity.name, self.quantity.unit)
+    }
+}
+
+impl Problem {
+    /// The parameters where the one that varies has this `value`.
+    pub fn at(&self, value: f64) -> Parameters {
+        let mut parameters = self.parameters;
+        if let Some(varied) = &self.varied {
+            (varied.quantity.set)(&mut parameters, value);
+        }
+        parameters
+    }
+
+    /// The value in the parameters themselves; NaN if none varies.
+    pub fn own_value(&self) -> f64 {
+        self.varied.as_ref().map_or(f64::NAN, |varied| (varied.quantity.get)(&self.parameters))
+    }
+
+    /// Checks that the excitation is periodic: without noise.
+    pub(super) fn check_periodic(&self) -> Result<(), DynamicsError> {
+        let name = "excitation.phaseNoise";
+        let varies = self.varied.as_ref().is_some_and(|varied| varied.quantity.name == name);
+        if self.parameters.is_noisy() || varies {
+            let value = self.parameters.phase_noise;
+            return Err(DynamicsError::NotPeriodic { name, value });
+        }
+        Ok(())
+    }
+
+    /// Checks that periodic orbits can be followed: under a periodic excitation and the impulsive law, over a parameter of the
+    /// motion.
+    pub(super) fn check_orbits(&self) -> Result<(), DynamicsError> {
+        self.check_periodic()?;
+        if self.parameters.contact_law == ContactLaw::Compliant {
+            return Err(DynamicsError::CompliantOrbits);
+        }
+        match &self.varied {
+            Some(varied) if varied.quantity.name.starts_with("initial.") => {
+                Err(DynamicsError::InitialState { name: varied.quantity.name })
+            }
+            _ => Ok(()),
+        }
+    }
+}
