@@ -9,7 +9,7 @@ use videg_report::{Report, Section};
 use super::format::{Sheet, significant};
 use super::{output, run_output};
 use crate::artefact::Picture;
-use crate::dynamics::orbits::{Branch, Orbit};
+use crate::dynamics::orbits::{Branch, End, Orbit};
 use crate::dynamics::{Basins, Diagram, Motion, Problem, periods};
 use crate::scenario::{Scenario, Setting};
 
@@ -95,7 +95,7 @@ fn branch(branch: &Branch) -> Value {
     json!({
         "name": branch.name(), "points": branch.orbits.len(),
         "from": value(branch.orbits.first()), "to": value(branch.orbits.last()),
-        "ends": branch.ends.map(|end| end.words()), "bifurcations": bifurcations.collect::<Vec<_>>(),
+        "ends": branch.ends.map(End::words), "bifurcations": bifurcations.collect::<Vec<_>>(),
     })
 }
 

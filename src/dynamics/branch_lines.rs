@@ -13,7 +13,7 @@ const GAP: (f64, f64) = (f64::NAN, f64::NAN);
 /// What is drawn over the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Height {
-    /// z_M - z_m, mm, at the start of each period.
+    /// `z_M` - `z_m`, mm, at the start of each period.
     Displacement,
     /// Largest modulus of a multiplier.
     Multiplier,
@@ -30,10 +30,16 @@ impl Height {
 
 /// Lines and marks.
 pub(super) struct BranchLines {
-    /// Label, points with gaps, colour, and whether they are of stable orbits.
-    lines: Vec<(String, Vec<(f64, f64)>, usize, bool)>,
-    /// Kind, points, style and colour.
-    marks: Vec<(Bifurcation, Vec<(f64, f64)>, Style, usize)>,
+    /// The lines, then the marks.
+    parts: Vec<Part>,
+}
+
+struct Part {
+    label: String,
+    /// Points, with gaps between lines.
+    points: Vec<(f64, f64)>,
+    style: Style,
+    color: usize,
 }
 
 const MARKS: [(Bifurcation, Style, usize); 5] = [
@@ -51,37 +57,31 @@ impl BranchLines {
         periods.sort_unstable();
         periods.dedup();
         let reach = reach(branches, height);
-        let mut lines = Vec::new();
-        for (color, period) in periods.into_iter().enumerate() {
-            for is_stable in [true, false] {
+        let mut parts = Vec::new();
+        for (index, period) in periods.into_iter().enumerate() {
+            for (kind, style) in [("stable", Style::Line), ("unstable", Style::Dashed)] {
                 let own = branches.iter().filter(|branch| branch.orbits.first().is_some_and(|it| it.period == period));
-                let points: Vec<_> = own.flat_map(|branch| stretches(branch, height, is_stable, reach)).collect();
-                let kind = if is_stable { "stable" } else { "unstable" };
+                let points = own.flat_map(|branch| stretches(branch, height, kind == "stable", reach)).collect();
                 let unit = if period == 1 { "period" } else { "periods" };
-                if !points.is_empty() {
-                    lines.push((format!("{kind}, {period} {unit}"), points, color % COLORS, is_stable));
-                }
+                parts.push(Part { label: format!("{kind}, {period} {unit}"), points, style, color: index % COLORS });
             }
         }
-        let all = || branches.iter().flat_map(|branch| &branch.marks);
-        let marks = MARKS.iter().map(|(kind, style, color)| {
-            let of_kind = all().filter(|mark| mark.kind == *kind);
-            let points = of_kind.flat_map(|mark| {
-                height.of(&mark.orbit).into_iter().map(|y| (mark.orbit.point.value, y)).collect::<Vec<_>>()
+        for (kind, style, color) in MARKS {
+            let marks = branches.iter().flat_map(|branch| &branch.marks).filter(|mark| mark.kind == kind);
+            let dots = marks.flat_map(|mark| {
+                let value = mark.orbit.point.value;
+                height.of(&mark.orbit).into_iter().map(move |y| (value, y))
             });
-            (*kind, points.collect::<Vec<_>>(), *style, *color)
-        });
-        Self { lines, marks: marks.filter(|(_, points, ..)| !points.is_empty()).collect() }
+            parts.push(Part { label: kind.words().to_owned(), points: dots.collect(), style, color });
+        }
+        parts.retain(|part| !part.points.is_empty());
+        Self { parts }
     }
 
     /// Adds them to a panel.
     pub(super) fn draw<'a>(&'a self, panel: Panel<'a>) -> Panel<'a> {
-        let panel = self.lines.iter().fold(panel, |panel, (label, points, color, is_stable)| {
-            let style = if *is_stable { Style::Line } else { Style::Dashed };
-            panel.series(Series::points(label.clone(), points).style(style).color(*color))
-        });
-        self.marks.iter().fold(panel, |panel, (kind, points, style, color)| {
-            panel.series(Series::points(kind.words(), points).style(*style).color(*color))
+        self.parts.iter().fold(panel, |panel, Part { label, points, style, color }| {
+            panel.series(Series::points(label.clone(), points).style(*style).color(*color))
         })
     }
 }

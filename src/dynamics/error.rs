@@ -18,6 +18,8 @@ pub enum DynamicsError {
     /// Something that is set is no parameter of the model.
     #[error("{name}: the dynamics are those of constant parameters of the model, and this is none of them")]
     NoParameter { name: String },
+    #[error("excitation.file: dynamics needs an excitation that repeats, and a recording has no period of its own")]
+    Recording,
     /// What varies has no numbers between its ends.
     #[error(
         "--vary {name}: dynamics follows one real parameter over a range, name=from:to:count with a count of at least 2"

@@ -64,6 +64,9 @@ fn resolve(settings: &[Setting], vary: Option<&Vary>) -> Result<Vec<Parameters>,
     let is_parameter = |name: &str| {
         Parameters::TABLE.iter().any(|it| it.name == name) || Parameters::CHOICES.iter().any(|it| it.name == name)
     };
+    if settings.iter().any(|setting| setting.name == "excitation.file" && !setting.value.is_empty()) {
+        return Err(DynamicsError::Recording);
+    }
     let Some(built_in) = BuiltIn::new(&sweep) else {
         let names = settings.iter().map(|setting| &setting.name).chain(vary.map(|vary| &vary.name));
         let name = names.into_iter().find(|name| !is_parameter(name)).cloned().unwrap_or_default();

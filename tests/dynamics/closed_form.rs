@@ -182,7 +182,7 @@ fn compare(found: &Orbit, p: &Parameters, tolerance: f64) {
     assert_relative_eq!(determinant, capsule.r.powi(4), max_relative = 1e-9);
 }
 
-fn is_one_to_one(orbit: &&Orbit) -> bool {
+fn is_one_to_one(orbit: &Orbit) -> bool {
     orbit.period == 1 && orbit.pattern.letters() == "LR"
 }
 
@@ -192,7 +192,7 @@ fn the_orbit_of_the_literatures_capsule_is_the_closed_form() {
     let found = orbits::orbits(&at(p), &Search::default()).unwrap();
     let stable: Vec<_> = found.iter().filter(|orbit| orbit.is_stable()).collect();
     let [orbit] = stable[..] else { panic!("{} stable orbits", stable.len()) };
-    assert!(is_one_to_one(&orbit));
+    assert!(is_one_to_one(orbit));
     compare(orbit, &p, 1e-9);
     // Brute force with bisected impacts: 6.431569 and 4.582409 m/s.
     let exact = Capsule::of(&p).main_orbit();
@@ -205,7 +205,7 @@ fn the_period_doubling_is_the_root_of_the_closed_form() {
         let search = Search { periods: 1, ..Search::default() };
         let branches = orbits::branches(problem, &search, &()).unwrap();
         let marks = branches.iter().flat_map(|branch| &branch.marks);
-        let marks = marks.filter(|mark| mark.kind == Bifurcation::PeriodDoubling && is_one_to_one(&&mark.orbit));
+        let marks = marks.filter(|mark| mark.kind == Bifurcation::PeriodDoubling && is_one_to_one(&mark.orbit));
         marks.map(|mark| mark.orbit.point.value).collect()
     };
     let by_travel = root(0.45, 0.5, |s| Capsule::of(&capsule(s, FRAC_PI_4)).doubling());
@@ -222,7 +222,8 @@ fn every_point_of_a_branch_is_the_closed_form() {
     let problem = over(capsule(0.55, FRAC_PI_4), "excitation.frequency", 2.2, 3.0);
     let search = Search { periods: 1, ..Search::default() };
     let branches = orbits::branches(&problem, &search, &()).unwrap();
-    let points: Vec<_> = branches.iter().flat_map(|branch| &branch.orbits).filter(is_one_to_one).collect();
+    let points: Vec<_> =
+        branches.iter().flat_map(|branch| &branch.orbits).filter(|orbit| is_one_to_one(orbit)).collect();
     assert!(points.len() > 40 && points.iter().any(|orbit| !orbit.is_stable()));
     // Near a grazing impact the closed form itself is badly conditioned.
     for orbit in points.into_iter().filter(|orbit| orbit.least_speed > 0.3) {
@@ -251,13 +252,13 @@ proptest! {
             let away = |value: &nalgebra::Complex<f64>| (value.re - 1.0).hypot(value.im) > 0.05;
             orbit.multipliers.largest() < 50.0 && orbit.multipliers.0.iter().all(away)
         };
-        for orbit in found.iter().filter(is_one_to_one).filter(is_clear) {
+        for orbit in found.iter().filter(|orbit| is_one_to_one(orbit)).filter(is_clear) {
             compare(orbit, &p, 1e-7);
         }
         // Times are counted from where the excitation has its initial phase.
         let shifted = orbits::orbits(&at(Parameters { phase, ..p }), &Search { periods: 1, starts: 12, ..Search::default() });
         let stable = |orbits: &[Orbit]| {
-            let stable: Vec<Orbit> = orbits.iter().filter(is_one_to_one).filter(|orbit| orbit.is_stable()).cloned().collect();
+            let stable: Vec<Orbit> = orbits.iter().filter(|orbit| is_one_to_one(orbit)).filter(|orbit| orbit.is_stable()).cloned().collect();
             stable
         };
         for (a, b) in stable(&found).iter().zip(stable(&shifted.unwrap())).take(1) {

@@ -73,7 +73,7 @@ fn figure_10_is_a_saddle_with_the_multiplier_of_the_closed_form() {
     assert_relative_eq!(saddle.multipliers.0[0].re, half * half, max_relative = 1e-9);
     assert_relative_eq!(saddle.multipliers.0[1].re, 1.0 / (half * half), max_relative = 1e-9);
     assert!((saddle.multipliers.0[0].re - 2.605).abs() < 1e-3);
-    assert_relative_eq!(saddle.voltage_gain, 1830.484_897_238_41, max_relative = 1e-9);
+    assert_relative_eq!(saddle.voltage_gain, 1_830.484_897_238_41, max_relative = 1e-9);
     // With the force of opposite sign it is a centre.
     assert!(found.iter().any(|orbit| (orbit.multipliers.largest() - 1.0).abs() < 1e-9));
 }
@@ -89,7 +89,7 @@ fn figure_14_is_an_orbit_of_two_periods_beside_its_mirror_image() {
     assert_eq!(motion.recurrence(), Some(2));
     assert!(exponent(&p, motion.last(), 100).unwrap() < 0.0);
     for orbit in &stable {
-        assert_relative_eq!(orbit.voltage_gain, 8078.869_538_542_804, max_relative = 1e-9);
+        assert_relative_eq!(orbit.voltage_gain, 8_078.869_538_542_804, max_relative = 1e-9);
         let [a, b] = [trace_and_determinant(orbit), by_differences(&p, orbit)];
         assert!((a[0] - b[0]).abs() < 1e-5 && (a[1] - b[1]).abs() < 1e-5, "{a:?} {b:?}");
         // Each impact takes r^2 from the area of neighbouring states.

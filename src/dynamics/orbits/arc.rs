@@ -142,7 +142,7 @@ impl<'a> Arc<'a> {
                 step *= LONGEST / length;
             }
             point.value += step[n] * self.span();
-            point.state = inside(&self.flow, &point, step.rows(0, n).component_mul(&self.scale))?;
+            point.state = inside(self.flow, &point, step.rows(0, n).component_mul(&self.scale))?;
         }
         None
     }

@@ -99,7 +99,7 @@ impl Branch {
     }
 
     /// Whether `orbit` lies on it.
-    pub(super) fn has(&self, flow: &Flow<'_>, orbit: &Orbit) -> bool {
+    pub(super) fn has(&self, flow: Flow<'_>, orbit: &Orbit) -> bool {
         let value = orbit.point.value;
         let is_like = |other: &Orbit| (other.period, &other.pattern) == (orbit.period, &orbit.pattern);
         if !self.orbits.first().is_some_and(is_like) {
@@ -210,7 +210,7 @@ fn reach(
     if there.dot(tangent) < 0.9 && step > 1e-5 {
         return None;
     }
-    let next = Orbit::measured(&arc.flow, point.clone(), arc.period)?;
+    let next = Orbit::measured(arc.flow, &point, arc.period)?;
     if next.period == here.period && next.pattern != here.pattern {
         return None;
     }

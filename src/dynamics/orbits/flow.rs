@@ -51,30 +51,30 @@ impl<'a> Flow<'a> {
     }
 
     /// The problem.
-    pub fn problem(&self) -> &'a Problem {
+    pub fn problem(self) -> &'a Problem {
         self.problem
     }
 
     /// Numbers of a state.
-    pub fn dimension(&self) -> usize {
+    pub fn dimension(self) -> usize {
         let varied = self.problem.varied.as_ref().map(|varied| self.problem.at(varied.range()[1]));
         if self.problem.parameters.is_suspended() || varied.is_some_and(|p| p.is_suspended()) { 4 } else { 2 }
     }
 
     /// Period of the excitation, s, at a value of what varies.
-    pub fn period(&self, value: f64) -> f64 {
+    pub fn period(self, value: f64) -> f64 {
         1.0 / self.problem.at(value).frequency
     }
 
     /// Half of the travel, m, and what the motion covers in 1 / (2 pi f0), as a rate, m/s: what states are measured in.
-    pub fn scale(&self, value: f64) -> State {
+    pub fn scale(self, value: f64) -> State {
         let p = self.problem.at(value);
         let (length, rate) = (p.travel() / 2.0, p.travel() / 2.0 * TAU * p.frequency);
         self.state_of([length, rate], [length, rate])
     }
 
     /// A state of relative motion and, if it is suspended, of the cylinder.
-    pub fn state_of(&self, relative: [f64; 2], cylinder: [f64; 2]) -> State {
+    pub fn state_of(self, relative: [f64; 2], cylinder: [f64; 2]) -> State {
         DVector::from_column_slice(&[relative, cylinder].concat()[..self.dimension()])
     }
 
@@ -82,11 +82,11 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// A parameter out of its bounds.
-    pub fn start(&self, point: &Point) -> Result<Harvester, ModelError> {
+    pub fn start(self, point: &Point) -> Result<Harvester, ModelError> {
         Harvester::new(&self.parameters(point), 0.0)
     }
 
-    fn parameters(&self, point: &Point) -> Parameters {
+    fn parameters(self, point: &Point) -> Parameters {
         let mut p = self.problem.at(point.value);
         p.phase = (p.phase + TAU * point.phase) % TAU;
         let state = &point.state;
@@ -101,7 +101,7 @@ impl<'a> Flow<'a> {
     }
 
     /// The state of a harvester.
-    pub fn state(&self, harvester: &Harvester) -> State {
+    pub fn state(self, harvester: &Harvester) -> State {
         let [position, velocity] = [harvester.cylinder_position(), harvester.cylinder_velocity()];
         let relative = [harvester.relative_displacement(), velocity - harvester.ball_velocity()];
         self.state_of(relative, [position, velocity])
@@ -111,7 +111,7 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// A parameter out of its bounds; more events than can be resolved.
-    pub fn after(&self, point: &Point, periods: f64, mut show: impl FnMut(&Impact)) -> Result<State, ModelError> {
+    pub fn after(self, point: &Point, periods: f64, mut show: impl FnMut(&Impact)) -> Result<State, ModelError> {
         let mut harvester = self.start(point)?;
         harvester.advance_with(periods * self.period(point.value), |event| {
             if let Event::Impact(impact) = event {
@@ -125,7 +125,7 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// As [`Flow::after`].
-    pub fn change(&self, point: &Point, periods: f64) -> Result<Change, ModelError> {
+    pub fn change(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
         // Beside what varies from 0 on, changes that are known at 0 only would be those of another motion.
         let varied = self.problem.varied.as_ref().map_or(point.value, |varied| varied.range()[1]);
         if [point.value, varied].iter().all(|value| self.problem.at(*value).has_sensitivities()) {
@@ -135,7 +135,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn exact_change(&self, point: &Point, periods: f64) -> Result<Change, ModelError> {
+    fn exact_change(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
         let parameters = self.parameters(point);
         let time = periods * self.period(point.value);
         let along = |direction: &Direction| -> Result<(Harvester, State), ModelError> {
@@ -167,7 +167,7 @@ impl<'a> Flow<'a> {
     }
 
     /// The state's derivative with respect to time.
-    fn rate(&self, harvester: &Harvester) -> State {
+    fn rate(self, harvester: &Harvester) -> State {
         let acceleration = harvester.cylinder_acceleration();
         let state = self.state(harvester);
         let relative = [state[1], acceleration - harvester.ball_acceleration()];
@@ -175,13 +175,13 @@ impl<'a> Flow<'a> {
         self.state_of(relative, cylinder)
     }
 
-    fn changed(&self, of: &Sensitivities) -> State {
+    fn changed(self, of: &Sensitivities) -> State {
         let relative = [of.relative_displacement, of.cylinder[1] - of.ball[1]];
         self.state_of(relative, [of.cylinder[0], of.cylinder[1]])
     }
 
     /// Where first-order changes are not known: central differences, at a bound of the parameter one-sided ones.
-    fn change_by_differences(&self, point: &Point, periods: f64) -> Result<Change, ModelError> {
+    fn change_by_differences(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
         let (dimension, scale) = (self.dimension(), self.scale(point.value));
         let mut by_state = DMatrix::zeros(dimension, dimension);
         for column in 0..dimension {

@@ -77,7 +77,7 @@ impl Mark {
                 let guess = arc.along(&self.orbit.point, &normal, *step);
                 let (point, change) = arc.correct(&guess, &normal)?;
                 let tangent = arc.tangent(&change, &normal)?;
-                let orbit = Orbit::measured(&flow, point.clone(), period)?;
+                let orbit = Orbit::measured(flow, &point, period)?;
                 let is_other = orbit.period == period;
                 let carried = arc.carried(&point, &tangent, orbit.elapsed)?;
                 is_other.then_some((orbit, carried))
@@ -98,8 +98,11 @@ fn null_vector(matrix: &DMatrix<f64>) -> Option<DVector<f64>> {
     Some(rows.row(svd.singular_values.imin()).transpose())
 }
 
-/// Functions that are zero at the bifurcations, of the return map and of the parameter's part in the tangent.
-const TESTS: [(Bifurcation, fn(&Change, f64) -> f64); 4] = [
+/// A function of the return map and of the parameter's part in the tangent.
+type Test = fn(&Change, f64) -> f64;
+
+/// Functions that are zero at the bifurcations.
+const TESTS: [(Bifurcation, Test); 4] = [
     (Bifurcation::Fold, |_, turn| turn),
     (Bifurcation::BranchPoint, |change, _| (&change.by_state - identity(change)).determinant()),
     (Bifurcation::PeriodDoubling, |change, _| (&change.by_state + identity(change)).determinant()),
@@ -150,7 +153,7 @@ pub(super) fn between(
             Some((value, point))
         };
         let (place, point) = zero(at, (0.0, ends[0]), (step, ends[1]));
-        let orbit = point.and_then(|point| Orbit::measured(&arc.flow, point, arc.period));
+        let orbit = point.and_then(|point| Orbit::measured(arc.flow, &point, arc.period));
         // At the very bifurcation the orbit may not be told from one of a continuum: a neighbour stands for it.
         let orbit = orbit.unwrap_or_else(|| here.clone());
         found.push((place, Mark { kind, orbit }));

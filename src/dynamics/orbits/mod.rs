@@ -93,7 +93,7 @@ impl Followed<'_> {
     fn add(&mut self, orbit: Orbit, direction: Option<DVector<f64>>, observer: &dyn Progress) {
         let mut waiting = vec![(orbit, direction)];
         while let Some((orbit, direction)) = waiting.pop() {
-            let is_known = |orbit: &Orbit| self.branches.iter().any(|branch| branch.has(&self.flow, orbit));
+            let is_known = |orbit: &Orbit| self.branches.iter().any(|branch| branch.has(self.flow, orbit));
             if self.branches.len() >= MOST || observer.is_stopped() || is_known(&orbit) {
                 continue;
             }
@@ -119,7 +119,7 @@ impl Followed<'_> {
                 starts.extend(BEYOND.iter().filter_map(|step| {
                     let value = point.value + step * (self.range[1] - self.range[0]);
                     let guess = Point { value, ..point.clone() };
-                    let orbit = Orbit::find(&self.flow, &guess, mark.orbit.period)?;
+                    let orbit = Orbit::find(self.flow, &guess, mark.orbit.period)?;
                     (orbit.pattern != mark.orbit.pattern).then_some((orbit, None))
                 }));
             } else if mark.kind != Bifurcation::PeriodDoubling || 2 * mark.orbit.period <= self.search.periods {

@@ -49,7 +49,7 @@ pub struct Orbit {
 impl Orbit {
     /// The orbit that Newton's method finds from `guess`, and that comes back after `period` periods or a part of them. None if it
     /// finds none, or one of a continuum.
-    pub fn find(flow: &Flow<'_>, guess: &Point, period: u32) -> Option<Self> {
+    pub fn find(flow: Flow<'_>, guess: &Point, period: u32) -> Option<Self> {
         let scale = flow.scale(guess.value);
         let mut point = guess.clone();
         let mut before = f64::INFINITY;
@@ -67,7 +67,7 @@ impl Orbit {
             point.state = inside(flow, &point, step.component_mul(&scale))?;
             // Rounding is all that is left once steps do not shrink any more.
             if length < SMALL && length >= 0.5 * before || length < 1e-15 {
-                return Self::measured(flow, point, period).filter(|orbit| orbit.is_isolated(flow));
+                return Self::measured(flow, &point, period).filter(|orbit| orbit.is_isolated(flow));
             }
             before = length;
         }
@@ -75,11 +75,11 @@ impl Orbit {
     }
 
     /// The orbit through `point`, which comes back after `period` periods.
-    pub(super) fn measured(flow: &Flow<'_>, point: Point, period: u32) -> Option<Self> {
-        let period = shortest(flow, &point, period).ok()?;
-        let found = Survey::along(flow, &point, period).ok()??;
+    pub(super) fn measured(flow: Flow<'_>, point: &Point, period: u32) -> Option<Self> {
+        let period = shortest(flow, point, period).ok()?;
+        let found = Survey::along(flow, point, period).ok()??;
         let (elapsed, state) = found.middle;
-        let point = Point { phase: (point.phase + elapsed) % 1.0, state, ..point };
+        let point = Point { value: point.value, phase: (point.phase + elapsed) % 1.0, state };
         // Once more from there: times of impacts count from the new beginning.
         let survey = Survey::along(flow, &point, period).ok()??;
         let change = flow.change(&point, f64::from(period)).ok()?;
@@ -106,7 +106,7 @@ impl Orbit {
     }
 
     /// Whether it is none of a continuum of orbits.
-    fn is_isolated(&self, flow: &Flow<'_>) -> bool {
+    fn is_isolated(&self, flow: Flow<'_>) -> bool {
         let matrix = scaled(&less_identity(&self.change), &flow.scale(self.point.value));
         matrix.singular_values().min() > SINGULAR
     }
@@ -125,7 +125,7 @@ impl Orbit {
     }
 
     /// Whether this is the same motion as the other, perhaps some periods later.
-    pub fn is_same(&self, other: &Self, flow: &Flow<'_>) -> bool {
+    pub fn is_same(&self, other: &Self, flow: Flow<'_>) -> bool {
         if (self.period, &self.pattern) != (other.period, &other.pattern) {
             return false;
         }
@@ -155,7 +155,7 @@ pub(super) fn scaled(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64
 }
 
 /// The state of `point` moved by `step`, or by a part of it that leaves the ball between the membranes. None if no part does.
-pub(super) fn inside(flow: &Flow<'_>, point: &Point, mut step: State) -> Option<State> {
+pub(super) fn inside(flow: Flow<'_>, point: &Point, mut step: State) -> Option<State> {
     let half = flow.problem().at(point.value).travel() / 2.0;
     for _ in 0..8 {
         let moved = &point.state + &step;
@@ -168,9 +168,9 @@ pub(super) fn inside(flow: &Flow<'_>, point: &Point, mut step: State) -> Option<
 }
 
 /// The smallest part of `period` after which the motion has come back.
-fn shortest(flow: &Flow<'_>, point: &Point, period: u32) -> Result<u32, ModelError> {
+fn shortest(flow: Flow<'_>, point: &Point, period: u32) -> Result<u32, ModelError> {
     let scale = flow.scale(point.value);
-    for part in (1..period).filter(|part| period % part == 0) {
+    for part in (1..period).filter(|part| period.is_multiple_of(*part)) {
         let end = flow.after(point, f64::from(part), |_| {})?;
         if (end - &point.state).component_div(&scale).norm() < SAME {
             return Ok(part);

@@ -15,7 +15,7 @@ pub struct Pattern {
 impl Pattern {
     /// That of these impacts.
     pub fn of(impacts: &[Impact]) -> Self {
-        let letters: Vec<char> = leading(impacts).iter().map(|impact| letter(impact)).collect();
+        let letters: Vec<char> = leading(impacts).iter().map(letter).collect();
         let round = |start: usize| (0..letters.len()).map(|k| letters[(start + k) % letters.len()]).collect::<String>();
         Self { letters: (0..letters.len()).map(round).min().unwrap_or_default() }
     }

@@ -49,24 +49,24 @@ impl Search {
         let mut rng = Rng::with_seed(self.seed);
         let mut found = Vec::new();
         let mut add = |guess: &Point, period: u32| {
-            if let Some(orbit) = Orbit::find(&flow, guess, period)
-                && !found.iter().any(|other: &Orbit| other.is_same(&orbit, &flow))
+            if let Some(orbit) = Orbit::find(flow, guess, period)
+                && !found.iter().any(|other: &Orbit| other.is_same(&orbit, flow))
             {
                 found.push(orbit);
             }
         };
         let at = |state: State| Point { value, phase: PHASE, state };
-        let starts: Vec<State> = (0..SETTLED).map(|_| random_state(&flow, value, &mut rng)).collect();
+        let starts: Vec<State> = (0..SETTLED).map(|_| random_state(flow, value, &mut rng)).collect();
         for start in starts {
             // A motion that cannot be followed, for its many events, leads nowhere.
-            let Ok(states) = self.settle(&flow, at(start)) else { continue };
-            for (state, period) in self.returns(&flow, value, &states) {
-                add(&in_flight(&flow, at(state), period), period);
+            let Ok(states) = Self::settle(flow, at(start)) else { continue };
+            for (state, period) in self.returns(flow, value, &states) {
+                add(&in_flight(flow, at(state), period), period);
             }
         }
         for period in 1..=self.periods {
             for _ in 0..self.starts {
-                add(&at(random_state(&flow, value, &mut rng)), period);
+                add(&at(random_state(flow, value, &mut rng)), period);
             }
         }
         found.retain(|orbit| orbit.period <= self.periods);
@@ -75,7 +75,7 @@ impl Search {
     }
 
     /// States once a period, when the motion from `start` has settled.
-    fn settle(&self, flow: &Flow<'_>, start: Point) -> Result<Vec<State>, ModelError> {
+    fn settle(flow: Flow<'_>, start: Point) -> Result<Vec<State>, ModelError> {
         let mut point = start;
         let mut states = Vec::new();
         for k in 0..TRANSIENT + TAKEN {
@@ -89,7 +89,7 @@ impl Search {
 
     /// States that come back, and after how many periods: of a motion that has settled the last one, of another those that come
     /// nearest.
-    fn returns(&self, flow: &Flow<'_>, value: f64, states: &[State]) -> Vec<(State, u32)> {
+    fn returns(&self, flow: Flow<'_>, value: f64, states: &[State]) -> Vec<(State, u32)> {
         let scale = flow.scale(value);
         let apart = |k: usize, period: u32| {
             let other = states.get(k + period as usize)?;
@@ -112,7 +112,7 @@ impl Search {
 }
 
 /// The motion through `point` in the middle of its longest flight: Newton's method cannot begin where the ball rests.
-fn in_flight(flow: &Flow<'_>, point: Point, period: u32) -> Point {
+fn in_flight(flow: Flow<'_>, point: Point, period: u32) -> Point {
     match Survey::along(flow, &point, period) {
         Ok(Some(Survey { middle: (elapsed, state), .. })) => {
             Point { phase: (point.phase + elapsed) % 1.0, state, ..point }
@@ -122,7 +122,7 @@ fn in_flight(flow: &Flow<'_>, point: Point, period: u32) -> Point {
 }
 
 /// A state somewhere between the membranes, as fast as the excitation and the travel make typical.
-fn random_state(flow: &Flow<'_>, value: f64, rng: &mut Rng) -> State {
+fn random_state(flow: Flow<'_>, value: f64, rng: &mut Rng) -> State {
     let (p, scale) = (flow.problem().at(value), flow.scale(value));
     let omega = TAU * p.frequency;
     let swing = p.harmonic_acceleration() / (omega * omega);

@@ -26,7 +26,7 @@ pub struct Survey {
 
 impl Survey {
     /// Follows the motion from `point` over `periods`. None if it has too many impacts.
-    pub fn along(flow: &Flow<'_>, point: &Point, periods: u32) -> Result<Option<Self>, ModelError> {
+    pub fn along(flow: Flow<'_>, point: &Point, periods: u32) -> Result<Option<Self>, ModelError> {
         let (period, half) = (flow.period(point.value), flow.problem().at(point.value).travel() / 2.0);
         let count = LOOKS * periods;
         let step = period / f64::from(LOOKS);
