@@ -47,7 +47,7 @@ const PATHS: [Path; 2] = [
 /// Makes the pictures.
 pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
     let cylinder = Cylinder::new(study)?;
-    let sections = sections(study)?;
+    let sections = sections(study, &cylinder)?;
     let motions: Vec<_> = sections.iter().map(|section| (section.title, &section.motion)).collect();
     let mut artefact = Artefact {
         findings: sections.iter().map(Section::finding).collect(),
@@ -79,18 +79,19 @@ struct Section {
 }
 
 /// The sections of the elastic and of the inelastic cases.
-fn sections(study: &Study<'_>) -> Result<Vec<Section>, PaperError> {
+fn sections(study: &Study<'_>, cylinder: &Cylinder) -> Result<Vec<Section>, PaperError> {
     let many = study.effort.of(4000, 400);
     let cases = [
-        ("fig13", "Figure 13, r = 1", many),
-        ("fig14", "Figure 14, r = 0.6", 100),
-        ("fig15", "Figure 15, r = 0.3", many),
+        ("fig13", "Figure 13, r = 1", 1.0, many),
+        ("fig14", "Figure 14, r = 0.6", 0.6, 100),
+        ("fig15", "Figure 15, r = 0.3", 0.3, many),
     ];
-    study.each(&cases, |&(case, title, periods)| {
+    study.each(&cases, |&(case, title, restitution, periods)| {
         let Problem { parameters, .. } = Problem::new(&Study::case(case)?, None)?;
+        let start = cylinder.saw_tooth(restitution, cylinder.gamma(FORCE, FREQUENCY), FREQUENCY);
         let take = || -> Result<Section, crate::dynamics::DynamicsError> {
             let motion = Motion::take(&parameters, TRANSIENT, periods)?;
-            let exponent = exponent(&parameters, motion.last(), many / 4)?;
+            let exponent = exponent(&start, motion.last(), many / 4)?;
             Ok(Section { case, title, motion, exponent })
         };
         Ok(take()?)
