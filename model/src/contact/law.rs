@@ -146,11 +146,16 @@ impl Law<'_> {
         self.parameters.electrostatic_feedback && x > self.deepest()
     }
 
-    /// Size of the terms of the push about `time`, s, whose rounding it carries, m/s^2.
-    pub(super) fn push_size(&self, time: f64) -> f64 {
+    /// Size of the terms of the push within `length`, s, from `time`, s, on, whose rounding it carries, m/s^2.
+    pub(super) fn push_size(&self, time: f64, length: f64) -> f64 {
         let drive = &self.cylinder.drive;
         let external = drive.external + drive.external_rate * (time - self.cylinder.start);
-        drive.amplitude + (external + self.mount.incline).abs() + drive.recorded.at(time).abs()
+        let change = length * (drive.external_rate.abs() + drive.recorded.rate.abs());
+        drive.amplitude
+            + (external + self.mount.incline).abs()
+            + drive.recorded.at(time).abs()
+            + change
+            + self.cylinder.size_of_mount(time, length)
     }
 
     /// Force on the ball, N, outwards.

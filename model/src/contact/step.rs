@@ -72,7 +72,7 @@ impl Step {
             law.cylinder.at(time).velocity + law.recoil(time, x[j], v[j]).velocity
         });
         let largest = |values: &Values| values.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
-        let forces = law.push_size(from.time) + (largest(&spring) + largest(&maxwell)) / law.mass();
+        let forces = law.push_size(from.time, length) + (largest(&spring) + largest(&maxwell)) / law.mass();
         let scale = largest(&v) + FLOOR * length * forces;
         let error = length * push.tail() / DEGREE as f64 / scale.max(f64::MIN_POSITIVE);
         if !error.is_finite() {

@@ -301,6 +301,16 @@ impl CylinderMotion {
         self.amplitude + external.abs() + (stiffness * here.position).abs() + (damping * here.velocity).abs()
     }
 
+    /// Sum of the absolute terms of `z_M''`, m/s^2, of spring and damper within `length`, s, from `time`, s, on.
+    pub fn size_of_mount(&self, time: f64, length: f64) -> f64 {
+        if !self.is_suspended() {
+            return 0.0;
+        }
+        let (Suspension { stiffness, damping }, here) = (self.suspension(), self.at(time));
+        let [velocity, acceleration] = [here.velocity, here.acceleration].map(f64::abs);
+        stiffness * (here.position.abs() + length * velocity) + damping * (velocity + length * acceleration)
+    }
+
     /// What `acceleration`, `z_M''`, m/s^2, would be if the ball did not act on the cylinder.
     pub fn unloaded(&self, acceleration: f64) -> f64 {
         acceleration * self.load.mass - self.load.push

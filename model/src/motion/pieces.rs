@@ -86,6 +86,9 @@ impl Motion {
     /// Searches a piece over a suspended cylinder with these terms, which ends at `end`, s.
     fn search_series(&mut self, flight: &Flight, terms: &Series, end: f64) {
         let length = end - flight.start;
+        if length == 0.0 {
+            return; // an event has come at its end
+        }
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         self.search.found = if self.ball.is_carried() {
             let departure = flight.departure_in_piece_of(terms, length, (self.ball.support(), &self.mount));
@@ -106,17 +109,14 @@ impl Motion {
     /// suspended.
     fn piece_after(&self, cylinder: &CylinderMotion, flight: &Flight, terms: Option<&Series>, time: f64) -> Piece {
         let length = time - flight.start;
-        let ([position, velocity], relative, damped) = match terms {
-            Some(terms) => {
-                let by_cylinder = suspended::change(terms, length);
-                let damping = cylinder.load.suspension.damping;
-                let damped = cylinder.damped + suspended::damped_energy(damping, terms, length);
-                (cylinder.after(length, by_cylinder), flight.after(length, by_cylinder), damped)
-            }
-            None => {
-                let here = cylinder.at(time);
-                ([here.position, here.velocity], flight.at(length), cylinder.damped)
-            }
+        let ([position, velocity], relative, damped) = if let Some(terms) = terms {
+            let by_cylinder = suspended::change(terms, length);
+            let damping = cylinder.load.suspension.damping;
+            let damped = cylinder.damped + suspended::damped_energy(damping, terms, length);
+            (cylinder.after(length, by_cylinder), flight.after(length, by_cylinder), damped)
+        } else {
+            let here = cylinder.at(time);
+            ([here.position, here.velocity], flight.at(length), cylinder.damped)
         };
         let relative = if self.ball.is_carried() { [flight.dz, 0.0] } else { relative };
         Piece {

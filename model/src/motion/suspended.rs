@@ -93,12 +93,15 @@ impl Oscillation {
 
     /// What `tau`, s, add to position, m, beyond the way of the first velocity, and to velocity, m/s.
     pub fn change(&self, tau: f64) -> [f64; 2] {
-        if tau > 0.0 { change(&self.terms(tau), tau) } else { [0.0; 2] }
+        change(&self.terms(tau), tau)
     }
 }
 
 /// The same from the terms after `tau`, s.
 pub fn change(terms: &Series, tau: f64) -> [f64; 2] {
+    if tau == 0.0 {
+        return [0.0; 2];
+    }
     let (mut position, mut velocity) = (0.0, 0.0);
     for n in (2..=ORDER).rev() {
         position += terms[n];
