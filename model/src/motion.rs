@@ -6,6 +6,7 @@ mod contacts;
 pub mod cylinder;
 mod events;
 pub mod flight;
+mod glide;
 mod intervals;
 pub mod mount;
 mod pieces;

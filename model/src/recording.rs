@@ -262,6 +262,21 @@ impl Playback {
         Segment { number, start, end: self.begin_of(number + 1), value, rate }
     }
 
+    /// The segment that follows.
+    #[inline]
+    pub fn segment_after(&self, segment: &Segment) -> Segment {
+        let Samples { times, values, .. } = &*self.recording.0;
+        let number = segment.number + 1;
+        if self.last().is_some_and(|last| number >= last) {
+            return self.segment(number);
+        }
+        let (cycle, index) = self.place(number);
+        let [[t0, t1], [v0, v1]] = [times, values].map(|list| [list[index], list[index + 1]]);
+        let end = if cycle == 0 && !self.repeats { self.offset + t1 } else { self.begin_of(number + 1) };
+        let [value, rate] = [v0, (v1 - v0) / (t1 - t0)].map(|value| self.factor * value);
+        Segment { number, start: segment.end, end, value, rate }
+    }
+
     /// The segment at `time`, s: where two meet, that which begins.
     pub fn segment_at(&self, time: f64) -> Segment {
         let Samples { times, .. } = &*self.recording.0;

@@ -40,6 +40,16 @@ impl Drive {
         TAU * self.frequency
     }
 
+    /// The part of the acceleration that is linear in time, of a cylinder under `load`, at `start`, s, where this drive begins,
+    /// m/s^2, and its rate, m/s^3.
+    #[inline]
+    pub fn line(&self, load: &Load, start: f64) -> [f64; 2] {
+        [
+            load.share * (load.give * self.external + self.recorded.at(start) + load.push),
+            load.share * (load.give * self.external_rate + self.recorded.rate),
+        ]
+    }
+
     /// True if the force never changes.
     pub fn is_constant(&self) -> bool {
         let Segment { rate, end, .. } = self.recorded;
@@ -56,6 +66,35 @@ impl Drive {
     fn own_turns(&self) -> f64 {
         let own = self.phase / TAU;
         own - round(own)
+    }
+}
+
+/// The harmonic part of the motion of a cylinder.
+#[derive(Debug, Clone, Copy)]
+pub struct Harmonic {
+    /// Amplitude of the acceleration, m/s^2.
+    pub amplitude: f64,
+    /// The same over omega, m/s, and over omega^2, m.
+    pub speed: f64,
+    pub swing: f64,
+    /// `f_0`, Hz.
+    pub frequency: f64,
+    /// The phase of the force, in turns.
+    own_turns: f64,
+}
+
+impl Harmonic {
+    pub fn new(drive: &Drive, load: &Load) -> Self {
+        let amplitude = load.share * drive.amplitude;
+        let speed = amplitude / drive.omega();
+        let swing = speed / drive.omega();
+        Self { amplitude, speed, swing, frequency: drive.frequency, own_turns: drive.own_turns() }
+    }
+
+    /// Sine and cosine of the angle of the force at `time`, s.
+    #[inline]
+    pub fn sine(&self, time: f64) -> [f64; 2] {
+        sin_cos(4.0 * (cycle_fraction(self.frequency, time) + self.own_turns))
     }
 }
 
@@ -128,16 +167,10 @@ pub struct CylinderState {
 impl CylinderMotion {
     /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive` and `load`.
     pub fn new(start: f64, position: f64, velocity: f64, drive: Drive, load: Load) -> Self {
-        let own_turns = drive.own_turns();
-        let [sin_start, cos_start] = sin_cos(4.0 * (cycle_fraction(drive.frequency, start) + own_turns));
-        let amplitude = load.share * drive.amplitude;
-        let external = [
-            load.share * (load.give * drive.external + drive.recorded.at(start) + load.push),
-            load.share * (load.give * drive.external_rate + drive.recorded.rate),
-        ];
-        let damped = 0.0;
-        let speed = amplitude / drive.omega();
-        let swing = speed / drive.omega();
+        let harmonic = Harmonic::new(&drive, &load);
+        let [sin_start, cos_start] = harmonic.sine(start);
+        let Harmonic { amplitude, own_turns, speed, swing, .. } = harmonic;
+        let (external, damped) = (drive.line(&load, start), 0.0);
         Self {
             start,
             position,

@@ -7,7 +7,7 @@
 //! closed form; between them the next lower derivative is monotone, its zeros are bracketed, and so on down to the
 //! extrema of dz. Between two extrema dz is monotone and meets a membrane at most once.
 
-mod angle;
+pub(super) mod angle;
 mod crossing;
 mod curved;
 mod piece;

@@ -29,9 +29,12 @@ impl Motion {
     /// known.
     #[inline(never)]
     pub(super) fn next_event_in_pieces(&mut self, limit: Option<f64>, until: f64) -> Option<Prediction> {
-        let mut ahead = self.search.piece.map(|piece| (piece, self.motion_from(&piece)));
         while !self.search.has_ended() {
-            let (cylinder, flight) = ahead.map_or((self.cylinder, self.flight), |(_, motion)| motion);
+            if self.search.piece.is_some_and(|piece| piece.cylinder.time > until) {
+                break;
+            }
+            let ahead = self.search.piece.map(|piece| self.motion_from(&piece));
+            let (cylinder, flight) = ahead.unwrap_or((self.cylinder, self.flight));
             if flight.start > until {
                 break;
             }
@@ -43,13 +46,10 @@ impl Motion {
             let is_last = limit.is_some_and(|limit| limit <= end);
             let end = limit.map_or(end, |limit| limit.min(end));
             let terms = flight.piece().map(|_| cylinder.oscillation().terms(end - flight.start));
-            match &terms {
-                Some(terms) => self.search_series(&flight, terms, end),
-                None => {
-                    if !self.search_windows(&cylinder, &flight, end, until) {
-                        break;
-                    }
-                }
+            if let Some(terms) = &terms {
+                self.search_series(&flight, terms, end);
+            } else if !self.search_windows(&cylinder, &flight, end, until) {
+                break;
             }
             if self.search.found.is_some() {
                 break;
@@ -58,11 +58,12 @@ impl Motion {
                 self.search.found = limit.map(|time| Prediction::NoiseSample { time });
                 break;
             }
-            let piece = self.piece_after(&cylinder, &flight, terms.as_ref(), end);
-            ahead = Some((piece, self.motion_from(&piece)));
-            self.search.window = 0;
+            let mut piece = self.piece_after(&cylinder, &flight, terms.as_ref(), end);
+            if terms.is_none() {
+                self.pass_quiet(&mut piece, limit, until);
+            }
+            (self.search.piece, self.search.window) = (Some(piece), 0);
         }
-        self.search.piece = ahead.map(|(piece, _)| piece);
         self.search.found
     }
 
@@ -108,6 +109,10 @@ impl Motion {
     /// The piece that begins at `time`, s, where the one of this cylinder and flight ends, which has these terms if it is
     /// suspended.
     fn piece_after(&self, cylinder: &CylinderMotion, flight: &Flight, terms: Option<&Series>, time: f64) -> Piece {
+        if let Some(mut piece) = Self::begun_piece(cylinder, flight).filter(|_| terms.is_none()) {
+            self.pass(&mut piece);
+            return piece;
+        }
         let length = time - flight.start;
         let ([position, velocity], relative, damped) = if let Some(terms) = terms {
             let by_cylinder = suspended::change(terms, length);
@@ -153,7 +158,10 @@ impl Motion {
         while self.ball.contact().is_none() && self.has_piece_after(time) {
             let end = self.end_of_piece();
             let terms = self.flight.piece().map(|_| self.cylinder.oscillation().terms(end - self.flight.start));
-            let piece = self.piece_after(&self.cylinder, &self.flight, terms.as_ref(), end);
+            let mut piece = self.piece_after(&self.cylinder, &self.flight, terms.as_ref(), end);
+            if terms.is_none() {
+                self.pass_to(&mut piece, time);
+            }
             let has_caught_up = self.search.piece.is_some_and(|ahead| ahead.cylinder.time <= piece.cylinder.time);
             if has_caught_up {
                 self.search.piece = None;

@@ -6,13 +6,13 @@ use crate::numerics::elementary::sin_cos;
 
 /// Functions of the angle phi that the force has passed through, each to its own digits however small phi is.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Swept {
+pub struct Swept {
     /// sin phi.
-    pub(super) sine: f64,
+    pub sine: f64,
     /// 1 - cos phi.
-    pub(super) versine: f64,
+    pub versine: f64,
     /// phi - sin phi.
-    pub(super) lag: f64,
+    pub lag: f64,
 }
 
 /// The angle at a place.
@@ -30,10 +30,7 @@ impl Angle {
     /// The angle that lies `phi`, rad, that is `turns` but for whole ones, after one with this sine and cosine.
     #[inline]
     pub(super) fn new(start: [f64; 2], phi: f64, turns: f64) -> Self {
-        let [sin, cos] = sin_cos(2.0 * turns);
-        let (sine, versine) = (2.0 * sin * cos, 2.0 * sin * sin);
-        let lag = if phi.abs() < Self::SMALL { small_lag(phi) } else { phi - sine };
-        Self::swept(start, Swept { sine, versine, lag })
+        Self::swept(start, Swept::new(phi, turns))
     }
 
     /// The angle that lies so far after one with this sine and cosine.
@@ -58,6 +55,15 @@ impl Angle {
 }
 
 impl Swept {
+    /// The same for the angle `phi`, rad, that is `turns` but for whole ones.
+    #[inline]
+    pub fn new(phi: f64, turns: f64) -> Self {
+        let [sin, cos] = sin_cos(2.0 * turns);
+        let (sine, versine) = (2.0 * sin * cos, 2.0 * sin * sin);
+        let lag = if phi.abs() < Angle::SMALL { small_lag(phi) } else { phi - sine };
+        Self { sine, versine, lag }
+    }
+
     /// The same for an angle that is larger by `angle`, rad, a small one.
     #[inline]
     pub(super) fn further(&self, angle: f64) -> Self {
