@@ -150,12 +150,11 @@ impl Law<'_> {
     pub(super) fn push_size(&self, time: f64, length: f64) -> f64 {
         let drive = &self.cylinder.drive;
         let external = drive.external + drive.external_rate * (time - self.cylinder.start);
-        let change = length * (drive.external_rate.abs() + drive.recorded.rate.abs());
-        drive.amplitude
-            + (external + self.mount.incline).abs()
-            + drive.recorded.at(time).abs()
-            + change
-            + self.cylinder.size_of_mount(time, length)
+        let given = self.cylinder.load.give * (external.abs() + length * drive.external_rate.abs());
+        let recorded = drive.recorded.at(time).abs() + length * drive.recorded.rate.abs();
+        // Terms that cancel each other leave their rounding.
+        let free = drive.amplitude + given + self.mount.incline.abs() + recorded;
+        free + self.cylinder.size_of_mount(time, length)
     }
 
     /// Force on the ball, N, outwards.
