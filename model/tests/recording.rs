@@ -13,7 +13,9 @@ use std::f64::consts::TAU;
 use brute::{Brute, Recorded, small_steps};
 use mounts::{any_mount, compliant, difference, positions, sensitivity_of};
 use proptest::prelude::*;
-use videg_model::{Case, Event, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Recording};
+use videg_model::{
+    Case, Direction, Event, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Quantity, Recording,
+};
 
 prop_compose! {
     /// Samples at irregular times, with jumps and stretches without a change.
@@ -229,6 +231,54 @@ proptest! {
         let open = (0..4).fold(0.0, |largest: f64, k| largest.max((coarse[k] - fine[k]).abs()));
         prop_assert!((found[0] - expected[0]).abs() < 1e-5 + 3.0 * open);
         prop_assert!((found[1] - expected[1]).abs() < 1e-5 + 3.0 * open, "{found:?}, {expected:?}, {open:e}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Changes that are carried along, across samples, impacts and rests, against those of two runs.
+    #[test]
+    fn derivatives_are_the_limits_of_differences(
+        excitation in any_excitation(), which in 0_usize..6, force in -0.3..0.3_f64, inclination in -0.3..0.3,
+    ) {
+        let plain = |p: Parameters| Parameters { friction: 0.0, suspension_stiffness: 0.0, suspension_damping: 0.0, reaction: false, inclination, ..p };
+        let excitation = excitation.with(plain);
+        let names = ["excitation.amplitude", "excitation.frequency", "membrane.restitution", "initial.ballVelocity", "gravity", "initial.cylinderPosition"];
+        let direction = Direction::of_parameter(names[which]).unwrap();
+        let quantity: &Quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == names[which]).unwrap();
+        let run = |step: f64| {
+            let mut p = excitation.p;
+            (quantity.set)(&mut p, (quantity.get)(&excitation.p) + step);
+            let mut harvester = Harvester::along(p.with_recording(Some(&excitation.recording)), 0.0, force, &direction).unwrap();
+            harvester.advance(0.7).unwrap();
+            harvester
+        };
+        let value = (quantity.get)(&excitation.p);
+        prop_assume!(value > quantity.min + 1e-4 && value < quantity.max - 1e-4);
+        let (here, h) = (run(0.0), 1e-7);
+        let changes = here.sensitivities();
+        let [below, above] = [-h, h].map(run);
+        let far = [-4.0 * h, 4.0 * h].map(run);
+        let slope = |a: &Harvester, b: &Harvester, h: f64| (b.relative_displacement() - a.relative_displacement()) / (2.0 * h);
+        let (near, wide) = (slope(&below, &above, h), slope(&far[0], &far[1], 4.0 * h));
+        // Where an impact, a rest or chaos lies between the runs, there is no derivative to compare with.
+        let same = [&below, &above, &far[0], &far[1]].iter().all(|other| other.totals().events() == here.totals().events());
+        prop_assume!(same && (near - wide).abs() < 1e-4 * (1.0 + near.abs()) && near.abs() < 1e3);
+        prop_assert!((changes.relative_displacement - near).abs() < 1e-3 * (1.0 + near.abs()), "{} {near} {wide}", changes.relative_displacement);
+    }
+}
+
+#[test]
+fn derivatives_with_respect_to_the_recording_itself_are_refused_by_name() {
+    let recording = Recording::new(ExcitationKind::Force, vec![0.0, 1.0], vec![1.0, 2.0]).unwrap();
+    let p = Parameters::default();
+    for name in ["excitation.fileScale", "excitation.fileOffset"] {
+        let direction = Direction::of_parameter(name).unwrap();
+        let error = Harvester::along(p.with_recording(Some(&recording)), 0.0, 0.0, &direction).unwrap_err();
+        assert_eq!(error, ModelError::NoRecordedDerivative { name });
+        let alone = Harvester::along(&p, 0.0, 0.0, &direction).unwrap().sensitivities();
+        assert_eq!(alone.cylinder, [0.0; 3]);
     }
 }
 

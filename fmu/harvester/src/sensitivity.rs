@@ -9,8 +9,7 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! With a recording there are those of model exchange alone: what a change of the start or of a step does under a recorded force is not
-//! derived. There are none under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
+//! With a recording there are none with respect to its scale and offset. There are none at all under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
 //! which are 0 elsewhere, they are taken upwards, by differences.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
@@ -44,8 +43,7 @@ pub(crate) struct Change<'a> {
 impl Harvester {
     /// What `read` finds in the change by one unit of `known`; NaN where no change is known.
     pub(crate) fn partial(&self, known: &Variable<Self>, read: impl FnOnce(&Change) -> f64) -> f64 {
-        let is_recorded = self.recorded.recording().is_ok_and(|recording| recording.is_some());
-        if !self.parameters.has_sensitivities() || is_recorded && !self.placed {
+        if !self.parameters.has_sensitivities() {
             return f64::NAN; // the exporter makes an error of it
         }
         read(&self.change(known.name()))

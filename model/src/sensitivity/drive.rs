@@ -2,6 +2,7 @@
 
 use super::{ParameterChange, Tangential, bounded};
 use crate::motion::cylinder::{CylinderMotion, Drive, DriveChange};
+use crate::recording::Segment;
 
 impl Tangential<'_> {
     /// Changes of `z_M`, m, and `z_M'`, m/s, at `time`, s, in the present hold interval or one ahead.
@@ -9,6 +10,9 @@ impl Tangential<'_> {
         let noise = self.noise;
         let (mut sample, mut motion, mut sum) = (noise.sample, self.motion.cylinder, [0.0; 2]);
         (motion.drive.external, motion.drive.external_rate) = (0.0, 0.0);
+        if self.begin() != motion.start {
+            motion = CylinderMotion::new(self.begin(), 0.0, 0.0, motion.drive, motion.load);
+        }
         while noise.in_blocks() && noise.begin_of(sample + 1) < time {
             let end = noise.begin_of(sample + 1);
             sum = self.carried(sum, &motion, end, sample, change);
@@ -20,6 +24,12 @@ impl Tangential<'_> {
             motion = next;
         }
         self.carried(sum, &motion, time, sample, change)
+    }
+
+    /// From here on, s, changes with the harmonic force are those of one motion: the samples of a recording leave them alone.
+    pub(super) fn begin(&self) -> f64 {
+        let is_one = self.motion.playback.is_some() && self.noise.limit().is_none();
+        if is_one { self.tangent.changes.since } else { self.motion.cylinder.start }
     }
 
     /// Changes `from` the start of `motion`, in hold interval `sample`, carried on to `time`, s.
@@ -67,6 +77,10 @@ impl Tangential<'_> {
             return self.tangent.of(|change| sample as f64 * change.of.noise_hold);
         }
         let by_drive = self.tangent.of(|change| cylinder.acceleration_change(time, &self.drive_change(sample, change)));
+        let Segment { number, start, .. } = cylinder.drive.recorded;
+        if number > 0 && time == start {
+            return 0.0; // a jump of the recording
+        }
         bounded(-(self.tangent.push + self.tangent.incline() + by_drive) / cylinder.at(time).jerk)
     }
 }
