@@ -6,6 +6,21 @@ fn case(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
     refused(what, &["simulate", "--output", "out", "--case-file", "evil.toml"], vec![("evil.toml", text.into())])
 }
 
+fn recording(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
+    let command = &["simulate", "--output", "out", "--until", "1", "--set", "excitation.file=evil.csv"];
+    refused(what, command, vec![("evil.csv", text.into())])
+}
+
+/// A recording that no file holds.
+fn no_recording(what: &'static str, file: &'static str) -> Input {
+    let setting: &'static str = match file {
+        "out" => "excitation.file=out",
+        "/dev/zero" => "excitation.file=/dev/zero",
+        _ => "excitation.file=missing.csv",
+    };
+    refused(what, &["simulate", "--output", "out", "--until", "1", "--set", setting], Vec::new())
+}
+
 fn sweep(what: &'static str, text: &str) -> Input {
     refused(what, &["sweep", "evil.toml", "--output", "out/sweep"], vec![("evil.toml", text.into())])
 }
@@ -22,6 +37,12 @@ fn merge(what: &'static str, files: Vec<(&'static str, Vec<u8>)>) -> Input {
     refused(what, &["sweep", "merge", "shards", "--output", "out/merged"], files)
 }
 
+/// A recording of so many samples.
+fn samples(count: u32) -> String {
+    let rows: Vec<_> = (0..count).map(|k| format!("{k},0\n")).collect();
+    format!("time,force\n{}", rows.concat())
+}
+
 /// All of them.
 pub fn inputs() -> Vec<Input> {
     let endless =
@@ -36,6 +57,26 @@ pub fn inputs() -> Vec<Input> {
         case("a setting that commands the terminal", "[set]\n\"\\u001b[2J\" = 1"),
         case("a number out of range", "[set]\nmembrane.restitution = 7"),
         endless,
+        recording("no heading in a recording", "0,1\n1,2\n"),
+        recording("a recording in milliseconds", "time [ms],acceleration\n0,1\n1,2\n"),
+        recording("a hole in a recording", "time,force\n0,1\n1\n2,1\n"),
+        recording("an empty line in a recording", "time,force\n0,1\n\n2,1\n"),
+        recording("text in a recording", "time,force\n0,1\n1,much\n"),
+        recording("NaN in a recording", "time,force\n0,1\n1,NaN\n"),
+        recording("an infinite force in a recording", "time,force\n0,1\n1,inf\n"),
+        recording("a force beyond all bounds", "time,force\n0,1\n1,1e300\n"),
+        recording("a time that goes back", "time,force\n0,1\n2,1\n1,1\n"),
+        recording("a time twice", "time,force\n0,1\n0,2\n"),
+        recording("a single sample", "time,force\n0,1\n"),
+        recording("a recording of the other kind", "time,acceleration\n0,1\n1,1\n"),
+        recording("a decimal comma in a recording", "time;force\n0,0;1,5\n"),
+        recording("a recording that is not UTF-8", b"time,force\n0,\xff\n".as_slice()),
+        recording("a recording of zero bytes", vec![0; 1 << 20]),
+        recording("a recording of 1,000,001 samples", samples(1_000_001)),
+        recording("a recording that commands the terminal", "time,\u{1b}[2J\n"),
+        no_recording("a recording that is not there", "missing.csv"),
+        no_recording("a recording without end", "/dev/zero"),
+        no_recording("a folder in place of a recording", "out"),
         sweep("an unknown design", "design = 'square'"),
         sweep("a negative number of points", "points = -1"),
         sweep("values that are none", "[vary]\na.b = 3"),

@@ -42,12 +42,13 @@ impl Recorded {
 
 /// Looks for a relative name in `resources` first, so that an FMU with its recording is the same wherever it runs.
 fn read(file: &Path, resources: Option<&Path>) -> Result<Recording, String> {
-    let packed = resources.filter(|_| is_below(file)).map(|folder| folder.join(file));
+    let packed = resources.filter(|folder| is_below(file) && folder.is_dir()).map(|folder| folder.join(file));
     let found = packed.as_deref().filter(|path| path.exists()).unwrap_or(file);
     let samples = recording::read(found).map_err(|error| {
         let here = std::path::absolute(found).unwrap_or_else(|_| found.to_owned());
         match packed.as_deref().filter(|packed| *packed != found) {
             Some(packed) => format!("{error} (looked for as {} and {})", packed.display(), here.display()),
+            None if here == file => error.to_string(),
             None => format!("{error} ({})", here.display()),
         }
     })?;

@@ -13,6 +13,7 @@ mod description;
 pub mod fmu;
 pub mod kept;
 mod raw_file;
+mod recording;
 mod sweep_file;
 mod sweep_merge;
 mod sweep_record;
@@ -29,12 +30,13 @@ pub struct Target {
 }
 
 /// All targets but those of the FMUs.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     archive::TARGET,
     arguments::TARGET,
     case_file::TARGET,
     description::TARGET,
     raw_file::TARGET,
+    recording::TARGET,
     sweep_file::TARGET,
     sweep_merge::TARGET,
     sweep_record::TARGET,
