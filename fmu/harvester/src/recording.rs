@@ -42,7 +42,7 @@ impl Recorded {
 
 /// Looks for a relative name in `resources` first, so that an FMU with its recording is the same wherever it runs.
 fn read(file: &Path, resources: Option<&Path>) -> Result<Recording, String> {
-    let packed = resources.filter(|folder| is_below(file) && folder.is_dir()).map(|folder| folder.join(file));
+    let packed = resources.filter(|folder| is_below(file) && has_files(folder)).map(|folder| folder.join(file));
     let found = packed.as_deref().filter(|path| path.exists()).unwrap_or(file);
     let samples = recording::read(found).map_err(|error| {
         let here = std::path::absolute(found).unwrap_or_else(|_| found.to_owned());
@@ -55,6 +55,11 @@ fn read(file: &Path, resources: Option<&Path>) -> Result<Recording, String> {
     let Samples { is_acceleration, times, values } = samples;
     let kind = if is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
     Recording::new(kind, times, values).map_err(|error| error.to_string())
+}
+
+/// Whether there is anything in a folder. Importers make one for FMUs without resources, too.
+fn has_files(folder: &Path) -> bool {
+    folder.read_dir().is_ok_and(|mut files| files.next().is_some())
 }
 
 /// Whether a path leads to a place below that from which it starts.
