@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         circuit: circuit_part,
     };
     let parameters = package.write(&ssp).with_context(|| format!("cannot package {FILE}"))?;
-    let warnings: Vec<_> = enumerations(&parameters, [&harvester_fmu, &circuit_fmu]).collect();
+    let warnings: Vec<_> = unread(&parameters, [&harvester_fmu, &circuit_fmu]).collect();
     let packaged = Packaged { case: &scenario.name, ssp: &ssp, parameters: &parameters, warnings: &warnings };
     output::show(arguments.json, &packaged, || ssp.display().to_string())?;
     output::warn(&warnings);
@@ -101,14 +101,17 @@ fn with_resources(mut settings: Vec<Setting>) -> (Vec<Setting>, Vec<PathBuf>) {
 }
 
 /// Warnings about parameters that not every tool reads.
-fn enumerations<'a>(parameters: &'a [String], fmus: [&'a Fmu; 2]) -> impl Iterator<Item = String> + 'a {
-    let is_enumeration = move |name: &str| {
-        let found = fmus.iter().find_map(|fmu| fmu.description().variable(name).ok());
-        found.is_some_and(|variable| matches!(variable.kind, Kind::Enumeration { .. }))
-    };
-    parameters.iter().filter(move |name| name.split_once('.').is_some_and(|(_, name)| is_enumeration(name))).map(
-        |name| {
-            format!("{name} is an enumeration: FMPy 0.3 and Ecos 0.7 do not read such parameters from a system package")
-        },
-    )
+fn unread<'a>(parameters: &'a [String], fmus: [&'a Fmu; 2]) -> impl Iterator<Item = String> + 'a {
+    parameters.iter().filter_map(move |name| {
+        let (_, variable) = name.split_once('.')?;
+        match fmus.iter().find_map(|fmu| fmu.description().variable(variable).ok())?.kind {
+            Kind::Enumeration { .. } => Some(format!(
+                "{name} is an enumeration: FMPy 0.3 and Ecos 0.7 do not read such parameters from a system package"
+            )),
+            Kind::String { .. } => {
+                Some(format!("{name} is a text: FMPy 0.3 does not run a system package with such parameters"))
+            }
+            _ => None,
+        }
+    })
 }

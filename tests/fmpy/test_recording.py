@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import fmpy
 import numpy as np
@@ -10,6 +11,7 @@ from fmpy import simulate_fmu
 from numpy.polynomial import Polynomial
 
 import harness
+import system
 
 # Item of the enumeration; FMPy takes its number.
 MOTION = 2
@@ -98,6 +100,69 @@ def test_two_instances_have_a_recording_each(slave, tmp_path):
         made.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.5)
     found = [made.getReal([reference])[0] for made, reference in slaves]
     assert found == pytest.approx([0.125 / 0.1245, 0.25 / 0.1245], rel=1e-12)
+
+
+STEP, STEPS = 1e-3, 1000
+
+
+@pytest.fixture
+def force(tmp_path):
+    """A recorded force, as settings of the harvester."""
+    times = np.linspace(0.1, 0.9, 50)
+    return {"excitation.file": write(tmp_path / "force.csv", "force", times, np.sin(40 * times)), "excitation.fileScale": 0.5}
+
+
+def test_libcosim_sets_the_file(fmus, force):
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    fmu = fmus["VibroImpactHarvester"]
+    references = {it.name: it.valueReference for it in fmpy.read_model_description(fmu).modelVariables}
+    execution = CosimExecution.from_step_size(round(STEP * 1e9))
+    index = execution.add_local_slave(CosimLocalSlave(fmu, "harvester"))
+    file, scale = force.values()
+    assert execution.string_initial_value(index, references["excitation.file"], file)
+    assert execution.real_initial_value(index, references["excitation.fileScale"], scale)
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    assert execution.simulate_until(round(STEP * 1e9) * STEPS)
+    found = observer.last_real_values(index, [references["cylinder.position"]])[0]
+    expected = run(fmu, force, stop_time=STEP * STEPS, output_interval=STEP)["cylinder.position"][-1]
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_ecos_sets_the_file(fmus, force):
+    from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
+
+    EcosLib.set_log_level("warn")
+    fmu = fmus["VibroImpactHarvester"]
+    with system.temporary_files(), EcosSimulationStructure() as structure:
+        structure.add_model("harvester", fmu)
+        structure.add_parameter_set("force", {f"harvester::{name}": value for name, value in force.items()})
+        with EcosSimulation(structure=structure, step_size=STEP) as simulation:
+            assert simulation.init(parameter_set="force"), EcosLib.get_last_error()
+            for _ in range(STEPS):
+                simulation.step()
+            found = simulation.get_real("harvester::cylinder.position")
+            simulation.terminate()
+    expected = run(fmu, force, stop_time=STEP * STEPS, output_interval=STEP)["cylinder.position"][-1]
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_system_package_carries_its_recording(force, tmp_path):
+    settings = [word for name, value in force.items() for word in ("--set", f"{name}={value}")]
+    packaged = harness.videg("ssp", *settings, "--output", str(tmp_path))
+    assert packaged["warnings"] == [
+        "harvester.excitation.file is a text: FMPy 0.3 does not run a system package with such parameters"
+    ]
+    expected = system.videg(STEP, STEPS, "--circuit", "fmu", *settings)
+    other = system.videg(STEP, STEPS, "--circuit", "fmu")
+    assert not np.array_equal(expected["harvester.relativeDisplacement"], other["harvester.relativeDisplacement"])
+    Path(force["excitation.file"]).unlink()
+    found = system.ecos_ssp(packaged["ssp"], STEP, STEPS)
+    for name, values in expected.items():
+        assert found[name] == pytest.approx(values, rel=0.0, abs=1e-9 * np.abs(values).max()), name
 
 
 @pytest.mark.parametrize(
