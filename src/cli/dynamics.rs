@@ -8,7 +8,7 @@ use clap::value_parser;
 
 use super::dynamics_report::{self as page, Found};
 use super::options::{CaseOptions, mechanical};
-use super::progress::ItemBar;
+use super::progress::TimeBar;
 use super::{Exit, output, reproduce_files as files, run_output};
 use crate::artefact::{Picture, Sheet};
 use crate::dynamics::orbits::{self, Branch, Orbit, Search};
@@ -68,8 +68,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let settings = mechanical(&harvester_description()?, &scenario, "dynamics")?;
     let problem = Problem::new(&settings, vary.as_ref())?;
     arguments.check(&problem)?;
-    let items = 1 + [vary.is_some(), arguments.orbits, arguments.basins.is_some()].iter().filter(|it| **it).count();
-    let bar = ItemBar::new(items);
+    let bar = TimeBar::new(&format!("dynamics {}", scenario.name));
     let found = arguments.find(&problem, &bar)?;
     drop(bar);
     let (sheets, pictures) = arguments.show(&problem, &found)?;
@@ -86,8 +85,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 }
 
 impl Arguments {
-    /// Checks numbers that depend on each other, before anything runs.
+    /// Checks what goes together with what, before anything runs.
     fn check(&self, problem: &Problem) -> anyhow::Result<()> {
+        if self.orbits {
+            problem.check_orbits()?;
+        }
         if let Some(speed) = self.basins_speed {
             anyhow::ensure!(
                 speed > 0.0 && speed <= 1e3,

@@ -23,6 +23,13 @@ pub struct CaseOptions {
     /// Case file (TOML) with case, until, step, window and a [set] table
     #[arg(long, value_name = "FILE.toml")]
     case_file: Option<PathBuf>,
+}
+
+/// What to run, and for how long.
+#[derive(Args)]
+pub struct TimedCaseOptions {
+    #[command(flatten)]
+    case: CaseOptions,
     /// End of the run, s [default: 100]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     until: Option<f64>,
@@ -32,7 +39,7 @@ pub struct CaseOptions {
 #[derive(Args)]
 pub struct RunOptions {
     #[command(flatten)]
-    case: CaseOptions,
+    case: TimedCaseOptions,
     /// Communication step, s; the master also stops at impacts and peaks of C(t) [default: 1e-3]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     step: Option<f64>,
@@ -80,9 +87,19 @@ impl CaseOptions {
             case: self.case.clone(),
             file: self.case_file.as_deref().map(CaseFile::read).transpose()?,
             settings: self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?,
-            until: self.until,
             ..Request::default()
         })
+    }
+}
+
+impl TimedCaseOptions {
+    /// Resolves the options.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        self.request()?.resolve()
+    }
+
+    fn request(&self) -> Result<Request, ScenarioError> {
+        Ok(Request { until: self.until, ..self.case.request()? })
     }
 }
 

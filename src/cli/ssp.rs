@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use clap::Args;
 use serde::Serialize;
 
-use super::options::CaseOptions;
+use super::options::TimedCaseOptions;
 use super::{Exit, output, packaging};
 use crate::cosim::{CapacitanceRatios, CircuitRequest, EmbeddedCircuit, FmuCircuit, HarvesterFmu};
 use crate::package::{Part, SystemPackage};
@@ -20,7 +20,7 @@ const FILE: &str = "Harvester.ssp";
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    case: CaseOptions,
+    case: TimedCaseOptions,
     /// Folder for Harvester.ssp [default: where the FMUs are, target/fmu of the source tree]
     #[arg(long, value_name = "DIR")]
     output: Option<PathBuf>,

@@ -31,7 +31,7 @@ pub enum DynamicsError {
     #[error("{name} = {value}: dynamics needs an excitation that repeats; with noise no motion comes back")]
     NotPeriodic { name: &'static str, value: f64 },
     #[error(
-        "contact.law = compliant: periodic orbits need the first-order changes of the impulsive law; diagram, section, \
+        "contact.law = compliant: --orbits needs the first-order changes of the impulsive law; diagram, section, \
          exponent and basins work"
     )]
     CompliantOrbits,

@@ -63,7 +63,10 @@ impl Problem {
 
     /// Checks that periodic orbits can be followed: under a periodic excitation and the impulsive law, over a parameter of the
     /// motion.
-    pub(super) fn check_orbits(&self) -> Result<(), DynamicsError> {
+    ///
+    /// # Errors
+    /// What stands against it, by name.
+    pub fn check_orbits(&self) -> Result<(), DynamicsError> {
         self.check_periodic()?;
         if self.parameters.contact_law == ContactLaw::Compliant {
             return Err(DynamicsError::CompliantOrbits);

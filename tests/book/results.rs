@@ -10,10 +10,15 @@ use crate::clone::Clone;
 use crate::has_ngspice;
 
 /// Sections of the page, those whose keys they have as well, and runs that print all of them.
-const RUNS: [(&str, &[&str], &str); 6] = [
+const RUNS: [(&str, &[&str], &str); 7] = [
     ("simulate", &[], "simulate --until 1"),
     ("cosim", &["simulate"], "cosim --until 1 --set contact.law=compliant --set contact.electrostaticFeedback=true"),
     ("sweep", &[], "sweep --vary membrane.restitution=0.3,0.6 --until 1"),
+    (
+        "dynamics",
+        &[],
+        "dynamics --case capsule-1-1 --orbits --periods 1 --basins 3 --samples 20 --vary cylinder.length=0.4:0.6:5",
+    ),
     ("reproduce", &[], "reproduce fig7 --quick"),
     ("fmu info", &[], "fmu info target/fmu/HarvestingCircuit.fmu"),
     ("fmu check", &[], "fmu check target/fmu/HarvestingCircuit.fmu"),

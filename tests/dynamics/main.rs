@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 mod closed_form;
+mod command;
 mod orbits;
 
 use videg::dynamics::{Problem, Varied};
