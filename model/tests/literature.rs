@@ -24,7 +24,7 @@ prop_compose! {
         frequency in 1.0..4.0,
         restitution in 0.1..0.9,
         travel in 0.05..1.5,
-        inclination in prop_oneof![Just(0.0), -1.2..1.2, 0.0..0.3],
+        inclination in prop_oneof![Just(0.0), -1.2..1.2, 0.0..0.3, 0.01..0.1],
         friction in prop_oneof![Just(0.0), 0.0..0.3],
         reaction in any::<bool>(),
         is_driven in any::<bool>(),
@@ -72,10 +72,15 @@ fn after_a_period(p: Parameters, orbit: &Orbit, delay: f64, faster: f64) -> [f64
     [delay + last.time - 1.0 / p.frequency, p.restitution * (orbit.speeds[0] - last.speed)]
 }
 
-/// Orbits of which rounding decides nothing, as it does near a graze and where it is multiplied again and again.
+/// Orbits of which rounding decides nothing, as it does near a graze, where friction nearly holds the ball, where disturbances
+/// grow a hundredfold, and in the closed form of flights that are nearly equal.
 fn resolved(p: &Parameters) -> impl Iterator<Item = Orbit> {
-    let is_resolved = |orbit: &Orbit| {
-        orbit.clearance > 1e-3 && orbit.speeds.iter().all(|speed| *speed > 0.1) && orbit.trace.abs() < 1e2
+    let frequency = p.frequency;
+    let is_resolved = move |orbit: &Orbit| {
+        let difference = (orbit.flight * frequency - 0.5).abs();
+        let is_well_posed = difference == 0.0 || difference > 1e-4;
+        let is_fast = orbit.slowest.abs() > 0.05 && orbit.speeds.iter().all(|speed| *speed > 0.1);
+        is_well_posed && is_fast && orbit.clearance > 1e-3 && orbit.trace.abs() < 1e2
     };
     Capsule::new(p).orbits().into_iter().filter(is_resolved)
 }
@@ -102,7 +107,7 @@ proptest! {
     #[test]
     fn multipliers_of_the_closed_form_are_those_of_differences(p in any_capsule()) {
         for orbit in resolved(&p) {
-            let (period, step) = (1.0 / p.frequency, 1e-5);
+            let (period, step) = (1.0 / p.frequency, 1e-6);
             let column = |delay: f64, faster: f64| {
                 let [ahead, behind] = [1.0, -1.0].map(|sign| after_a_period(p, &orbit, sign * delay, sign * faster));
                 [0, 1].map(|k| (ahead[k] - behind[k]) / (2.0 * (delay + faster)))

@@ -42,6 +42,8 @@ pub struct Orbit {
     /// How far the ball stays off the membranes where it turns within a flight, m: infinite if it does not turn, 0 where it grazes,
     /// below 0 if the orbit does not exist because it meets a membrane once more.
     pub clearance: f64,
+    /// Least relative speed within the flights, m/s: below 0 if the ball turns.
+    pub slowest: f64,
 }
 
 impl Orbit {
@@ -109,7 +111,7 @@ impl Capsule {
         let rubs = self.pulls[0] > self.pulls[1];
         let mut orbits = self.solutions();
         orbits.retain(|orbit| {
-            let turns = orbit.clearance.is_finite();
+            let turns = orbit.slowest < 0.0;
             orbit.speeds.iter().all(|speed| *speed > 0.0) && orbit.clearance >= 0.0 && !(rubs && turns)
         });
         orbits
@@ -117,14 +119,14 @@ impl Capsule {
 
     /// All solutions of the equations, with those in which a ball would have to pass a membrane.
     pub fn solutions(&self) -> Vec<Orbit> {
-        // Odd: equal flights, where the determinant of a level capsule is 0, are no sample.
-        const SAMPLES: u32 = 1001;
         let period = self.period();
         let mut found = self.symmetric();
-        let at = |k: u32| period * f64::from(k) / f64::from(SAMPLES);
-        for k in 1..SAMPLES - 1 {
-            let (low, high) = (at(k), at(k + 1));
-            let residual = |flight| self.residual(flight);
+        // Flights of a nearly level capsule are nearly equal. At equal ones the determinant may be 0: they are no sample.
+        let close = (0..200).map(|k| 0.5 * 0.9_f64.powi(k)).flat_map(|by| [0.5 - by, 0.5 + by]);
+        let mut samples: Vec<f64> = (0..=1001).map(|k| f64::from(k) / 1001.0).chain(close).collect();
+        samples.sort_by(f64::total_cmp);
+        let residual = |flight| self.residual(flight);
+        for (low, high) in samples.windows(2).map(|pair| (pair[0] * period, pair[1] * period)) {
             if residual(low) * residual(high) < 0.0 {
                 let flight = bisect(residual, low, high);
                 let (numerators, determinant) = self.phase_equations(flight);
@@ -237,8 +239,9 @@ impl Capsule {
         let trace = product(0, 0) + product(1, 1);
         // Of each flight: -r (y' at its start) / (y' at its end).
         let determinant = r.powi(4);
-        let clearance = self.clearance(up, 1.0).min(self.clearance(down, -1.0));
-        trace.is_finite().then_some(Orbit { phase, flight, speeds, trace, determinant, clearance })
+        let [[there, slow], [back, slow_back]] = [self.way(up, 1.0), self.way(down, -1.0)];
+        let (clearance, slowest) = (there.min(back), slow.min(slow_back));
+        trace.is_finite().then_some(Orbit { phase, flight, speeds, trace, determinant, clearance, slowest })
     }
 
     /// d(time, y') after the impact that ends a flight, by d(time, y') at its start; `before` is y' before that impact.
@@ -250,8 +253,8 @@ impl Capsule {
         [time, [-r * (end * time[0] - start), -r * (end * time[1] + 1.0)]]
     }
 
-    /// Smallest distance from a membrane where the ball turns within a flight that begins at `side` s/2.
-    fn clearance(&self, flight: Flight, side: f64) -> f64 {
+    /// Smallest distance from a membrane where the ball turns within a flight that begins at `side` s/2, and its least speed across.
+    fn way(&self, flight: Flight, side: f64) -> [f64; 2] {
         let (a, w) = (self.acceleration, self.frequency);
         let (sine, cosine) = flight.phase.sin_cos();
         let rate = |t: f64| flight.rate + a / w * ((flight.phase + w * t).sin() - sine) + flight.pull * t;
@@ -268,7 +271,11 @@ impl Capsule {
         }
         bounds.sort_by(f64::total_cmp);
         let turns = bounds.windows(2).filter(|ends| rate(ends[0]) * rate(ends[1]) < 0.0);
-        turns.fold(f64::INFINITY, |least, ends| least.min(self.travel / 2.0 - y(bisect(rate, ends[0], ends[1])).abs()))
+        let distance = |ends: &[f64]| self.travel / 2.0 - y(bisect(rate, ends[0], ends[1])).abs();
+        [
+            turns.fold(f64::INFINITY, |least, ends| least.min(distance(ends))),
+            bounds.iter().fold(f64::INFINITY, |least, t| least.min(-side * rate(*t))),
+        ]
     }
 }
 
