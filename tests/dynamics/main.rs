@@ -1,6 +1,8 @@
 //! The dynamics against closed forms and against simulations that share no code with the search for orbits.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+#[path = "../../model/tests/common/capsule.rs"]
+mod capsule;
 mod closed_form;
 mod command;
 mod orbits;
