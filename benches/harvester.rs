@@ -4,8 +4,10 @@ mod baseline;
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use videg_model::{Case, Harvester, ModelError, Parameters};
+use std::f64::consts::TAU;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use videg_model::{Case, ExcitationKind, Harvester, ModelError, Parameters, Recording, Setup};
 
 /// Duration of the paper's runs, s.
 const UNTIL: f64 = 100.0;
@@ -19,8 +21,8 @@ fn parameters(case: &str) -> Parameters {
 }
 
 /// Sum of `U_DE4` - `U_in`, V, of a run in this number of steps.
-fn event_driven(parameters: &Parameters, steps: u32) -> Result<f64, ModelError> {
-    let mut harvester = Harvester::new(parameters, 0.0)?;
+fn event_driven<'a>(setup: impl Into<Setup<'a>>, steps: u32) -> Result<f64, ModelError> {
+    let mut harvester = Harvester::new(setup, 0.0)?;
     for k in 1..=steps {
         harvester.advance(UNTIL * f64::from(k) / f64::from(steps))?;
     }
@@ -39,6 +41,44 @@ fn mounts(criterion: &mut Criterion) {
         ("keeping the momentum", Parameters { reaction: true, ..level }),
     ] {
         group.bench_function(name, |b| b.iter(|| event_driven(black_box(&p), 1)));
+    }
+    group.finish();
+}
+
+/// A force like that of Fig. 14, with noise in it, in 1e5 samples.
+fn recording() -> Option<Recording> {
+    const SAMPLES: u32 = 100_000;
+    const SPACING: f64 = 1e-3;
+    let (mut state, mut slow) = (1_u64, 0.0);
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        #[allow(clippy::cast_precision_loss)] // 32 bits
+        let white = (state >> 32) as f64 / f64::from(u32::MAX) - 0.5;
+        slow += 0.2 * (white - slow);
+        0.5 * slow
+    };
+    let times: Vec<f64> = (0..=SAMPLES).map(|k| SPACING * f64::from(k)).collect();
+    let values = times.iter().map(|time| 0.45 * (TAU * 2.0 * time).cos() + noise()).collect();
+    Recording::new(ExcitationKind::Force, times, values).ok()
+}
+
+/// The capsule of Fig. 14 under a recording; time per sample is that of the run over 1e5.
+fn recordings(criterion: &mut Criterion) {
+    let Some(recording) = recording() else { return };
+    let harmonic = parameters("fig14");
+    let alone = Parameters { amplitude: 0.0, ..harmonic };
+    let mut group = criterion.benchmark_group("100 s of a recording at 1 kHz");
+    group.throughput(Throughput::Elements(recording.times().len() as u64)).sample_size(20);
+    for (name, p) in [
+        ("alone", alone),
+        ("repeated each 100 s", Parameters { file_repeat: true, ..alone }),
+        ("and a harmonic force", harmonic),
+        ("inclined", Parameters { inclination: 0.02, ..alone }),
+        ("with friction", Parameters { friction: 0.02, ..alone }),
+        ("keeping the momentum", Parameters { reaction: true, ..alone }),
+        ("suspended", Parameters { suspension_stiffness: 5.0, suspension_damping: 0.02, ..alone }),
+    ] {
+        group.bench_function(name, |b| b.iter(|| event_driven(black_box(&p).with_recording(Some(&recording)), 1)));
     }
     group.finish();
 }
@@ -65,5 +105,5 @@ fn runs_of_100_s(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, runs_of_100_s, mounts);
+criterion_group!(benches, runs_of_100_s, mounts, recordings);
 criterion_main!(benches);
