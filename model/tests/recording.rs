@@ -341,3 +341,26 @@ fn a_recording_that_is_none_or_not_the_one_is_refused_with_its_value_and_bound()
     assert_eq!(restored(Some(&other)).unwrap_err(), ModelError::OtherRecording);
     assert_eq!(restored(None).unwrap_err(), ModelError::OtherRecording);
 }
+
+/// A force that grows so fast that between two times as doubles have them it passes the limit of friction by far.
+#[test]
+fn a_steep_ramp_tears_a_stuck_ball_off_once() {
+    let recording = Recording::new(ExcitationKind::Force, vec![0.0, 1e-6, 0.01], vec![0.0, -2.0, -2.0]).unwrap();
+    for k in 0..300 {
+        let offset = 1.4 + 0.013_7 * f64::from(k);
+        for damping in [0.0, 9.0] {
+            let p = Parameters {
+                amplitude: 0.0,
+                friction: 0.7,
+                suspension_damping: damping,
+                file_offset: offset,
+                ..Parameters::default()
+            };
+            let mut harvester = Harvester::new(p.with_recording(Some(&recording)), 0.0).unwrap();
+            harvester.advance(offset).unwrap();
+            assert!(harvester.is_stuck());
+            harvester.advance(offset + 0.005).unwrap();
+            assert!(!harvester.is_stuck() && harvester.relative_displacement() < -1e-5);
+        }
+    }
+}

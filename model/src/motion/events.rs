@@ -2,6 +2,7 @@
 
 use super::ball::Start;
 use super::cylinder::Drive;
+use super::mount::Mount;
 use super::side::Side;
 use crate::noise::intervals::{Anchored, HoldState};
 
@@ -38,6 +39,16 @@ impl Prediction {
             | Self::ContactChange { time }
             | Self::NoiseSample { time } => time,
         }
+    }
+}
+
+impl Mount {
+    /// The release `elapsed`, s, after `start`, s, up to `end`, s. Against friction it is rounded up: a time before would be one at which
+    /// friction still holds the ball, under a force that grows so fast.
+    pub(super) fn release(&self, start: f64, elapsed: f64, end: f64) -> Prediction {
+        let time = start + elapsed;
+        let is_early = self.friction > 0.0 && time - start < elapsed;
+        Prediction::Release { time: if is_early { time.next_up() } else { time }.min(end) }
     }
 }
 

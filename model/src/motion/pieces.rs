@@ -93,7 +93,7 @@ impl Motion {
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         self.search.found = if self.ball.is_carried() {
             let departure = flight.departure_in_piece_of(terms, length, (self.ball.support(), &self.mount));
-            departure.map(|elapsed| Prediction::Release { time: time(elapsed) })
+            departure.map(|elapsed| self.mount.release(flight.start, elapsed, end))
         } else {
             match flight.end_in_piece_of(terms, length, self.slip) {
                 Some(End::Contact(there)) => {

@@ -119,7 +119,7 @@ impl Motion {
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if ball.is_carried() {
             let release = flight.departure_in_window(ball.support(), mount, search.window, limit);
-            search.found = release.map(|elapsed| Prediction::Release { time: time(elapsed) });
+            search.found = release.map(|elapsed| mount.release(flight.start, elapsed, end));
             search.window += 1;
             // Without a force that changes, the ball rests for ever.
             search.exhausted = release.is_none() && drive.is_constant() && limit == f64::INFINITY;
