@@ -149,7 +149,7 @@ impl Arguments {
     fn follow(&self, problem: &Problem, observer: &dyn Progress) -> Result<(Vec<Orbit>, Vec<Branch>), DynamicsError> {
         let search = Search { periods: self.periods, seed: self.seed, ..Search::default() };
         during(observer, "orbits", "periodic orbits", || {
-            let orbits = orbits::orbits(problem, &search)?;
+            let orbits = orbits::orbits(problem, &search, observer)?;
             let branches =
                 if problem.varied.is_some() { orbits::branches(problem, &search, observer)? } else { Vec::new() };
             Ok((orbits, branches))

@@ -57,7 +57,7 @@ fn is_one_to_one(orbit: &Orbit) -> bool {
 #[test]
 fn the_orbit_of_the_literatures_capsule_is_the_closed_form() {
     let p = inclined(0.55, FRAC_PI_4);
-    let found = orbits::orbits(&at(p), &Search::default()).unwrap();
+    let found = orbits::orbits(&at(p), &Search::default(), &()).unwrap();
     let stable: Vec<_> = found.iter().filter(|orbit| orbit.is_stable()).collect();
     let [orbit] = stable[..] else { panic!("{} stable orbits", stable.len()) };
     assert!(is_one_to_one(orbit));
@@ -114,7 +114,7 @@ proptest! {
             Parameters { cylinder_mass: mass, amplitude, frequency, restitution, inclination, ..Parameters::default() },
             travel,
         );
-        let found = orbits::orbits(&at(p), &Search { periods: 1, starts: 12, ..Search::default() }).unwrap();
+        let found = orbits::orbits(&at(p), &Search { periods: 1, starts: 12, ..Search::default() }, &()).unwrap();
         // Beside a fold two orbits are too near to each other to be told apart, far from stability digits are lost.
         let is_clear = |orbit: &&Orbit| {
             let away = |value: &nalgebra::Complex<f64>| (value.re - 1.0).hypot(value.im) > 0.05;
@@ -124,7 +124,7 @@ proptest! {
             compare(orbit, &p, 1e-7);
         }
         // Times are counted from where the excitation has its initial phase.
-        let shifted = orbits::orbits(&at(Parameters { phase, ..p }), &Search { periods: 1, starts: 12, ..Search::default() });
+        let shifted = orbits::orbits(&at(Parameters { phase, ..p }), &Search { periods: 1, starts: 12, ..Search::default() }, &());
         let stable = |orbits: &[Orbit]| {
             let stable: Vec<Orbit> = orbits.iter().filter(|orbit| is_one_to_one(orbit)).filter(|orbit| orbit.is_stable()).cloned().collect();
             stable

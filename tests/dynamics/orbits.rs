@@ -63,7 +63,7 @@ fn trace_and_determinant(orbit: &Orbit) -> [f64; 2] {
 #[test]
 fn figure_10_is_a_saddle_with_the_multiplier_of_the_closed_form() {
     let p = case("fig10");
-    let found = orbits::orbits(&at(p), &Search { periods: 1, ..Search::default() }).unwrap();
+    let found = orbits::orbits(&at(p), &Search { periods: 1, ..Search::default() }, &()).unwrap();
     // Half a period takes (delay, speed) through a matrix of determinant 1 and trace 2 + g T / V, g = A / M: V = 4 f0 z_m(0).
     let g = p.amplitude / p.cylinder_mass;
     let speed = 4.0 * p.frequency * (p.travel() / 2.0 - p.cylinder_amplitude());
@@ -81,7 +81,7 @@ fn figure_10_is_a_saddle_with_the_multiplier_of_the_closed_form() {
 #[test]
 fn figure_14_is_an_orbit_of_two_periods_beside_its_mirror_image() {
     let p = case("fig14");
-    let found = orbits::orbits(&at(p), &Search::default()).unwrap();
+    let found = orbits::orbits(&at(p), &Search::default(), &()).unwrap();
     let stable: Vec<_> = found.iter().filter(|orbit| orbit.is_stable()).collect();
     let names: Vec<_> = stable.iter().map(|orbit| orbit.name()).collect();
     assert_eq!(names, ["4:2, 2 periods", "2:4, 2 periods"]);
@@ -141,7 +141,7 @@ proptest! {
         let (first, last) = (motion.flashes[0], motion.flashes[2 * period]);
         prop_assume!((first.displacement - last.displacement).abs() < 1e-9);
         let search = Search { periods: 2, starts: 6, ..Search::default() };
-        let found = orbits::orbits(&at(p), &search).unwrap();
+        let found = orbits::orbits(&at(p), &search, &()).unwrap();
         let orbit = found.iter().find(|orbit| is_on(orbit, &run, 1.0 / frequency));
         prop_assert!(orbit.is_some(), "none of {} orbits is the motion {:?}", found.len(), run.first());
         let orbit = orbit.unwrap();
@@ -183,7 +183,7 @@ fn a_branch_turns_at_folds_and_ends_where_the_ball_grazes() {
         let side = if mark.orbit.point.value < value { [-1e-6, 1e-6] } else { [1e-6, -1e-6] };
         let there = |step: f64| {
             let beyond = at(problem.at(mark.orbit.point.value + step));
-            orbits::orbits(&beyond, &Search { periods: 1, ..Search::default() }).unwrap()
+            orbits::orbits(&beyond, &Search { periods: 1, ..Search::default() }, &()).unwrap()
         };
         let near = |orbit: &Orbit| (orbit.voltage_gain - mark.orbit.voltage_gain).abs() < 1e-2 * orbit.voltage_gain;
         let has = |step: f64| there(step).iter().any(|orbit| orbit.pattern == mark.orbit.pattern && near(orbit));
@@ -199,7 +199,7 @@ fn a_branch_turns_at_folds_and_ends_where_the_ball_grazes() {
 fn a_ball_that_comes_to_rest_forgets_where_it_was() {
     // Nearly plastic impacts: the ball rests until the wall lets it go.
     let p = Parameters { restitution: 0.05, amplitude: 1.0, frequency: 2.0, ..Parameters::default() };
-    let found = orbits::orbits(&at(p), &Search { periods: 1, ..Search::default() }).unwrap();
+    let found = orbits::orbits(&at(p), &Search { periods: 1, ..Search::default() }, &()).unwrap();
     let resting = found.iter().find(|orbit| orbit.pattern.rests()).unwrap();
     assert!(resting.is_stable() && resting.multipliers.largest() < 1e-9, "{:?}", resting.multipliers);
     assert_eq!(resting.pattern.counts(), [1, 1]);

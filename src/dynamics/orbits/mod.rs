@@ -40,11 +40,11 @@ const BEYOND: [f64; 4] = [1e-5, -1e-5, 1e-3, -1e-3];
 /// Orbits of the problem at its own parameters, by period, number of impacts and their order.
 ///
 /// # Errors
-/// A problem whose orbits cannot be found by this method, or with parameters out of their bounds.
-pub fn orbits(problem: &Problem, search: &Search) -> Result<Vec<Orbit>, DynamicsError> {
+/// A problem whose orbits cannot be found by this method, or with parameters out of their bounds; stopped by the observer.
+pub fn orbits(problem: &Problem, search: &Search, observer: &dyn Progress) -> Result<Vec<Orbit>, DynamicsError> {
     let alone = Problem { varied: None, ..problem.clone() };
     alone.check_orbits()?;
-    Ok(search.at(Flow::new(&alone), f64::NAN)?)
+    search.at_on_all_cores(Flow::new(&alone), f64::NAN, observer)
 }
 
 /// Branches of orbits over the parameter that varies, those found first being first. If the observer stops it, those that are

@@ -9,7 +9,7 @@ use super::pattern::{Pattern, leading};
 use super::survey::Survey;
 
 /// Most steps of Newton's method.
-const STEPS: u32 = 30;
+const STEPS: u32 = 20;
 /// Longest step, in units of the state's scale.
 const LONGEST: f64 = 0.3;
 /// A step, in these units, below which the method has found an orbit.

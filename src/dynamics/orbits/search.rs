@@ -9,13 +9,16 @@ use videg_model::ModelError;
 use super::flow::{Flow, Point, State};
 use super::orbit::Orbit;
 use super::survey::Survey;
+use crate::dynamics::DynamicsError;
+use crate::progress::Progress;
+use crate::threads;
 
 /// How orbits are searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Search {
     /// Largest period, in periods of the excitation.
     pub periods: u32,
-    /// Starts at random, for each period.
+    /// Starts at random for orbits of one period; for longer ones fewer.
     pub starts: u32,
     /// Seed of these.
     pub seed: u64,
@@ -34,10 +37,21 @@ const TRANSIENT: u32 = 200;
 const TAKEN: u32 = 200;
 /// Distance, in units of the scale, within which a motion comes back.
 const RETURNS: f64 = 1e-4;
-/// Motions that are let settle.
-const SETTLED: u32 = 6;
+/// Motions from starts at random that are let settle.
+const SETTLED: usize = 6;
 /// Near returns that are tried for each period.
 const NEAR: usize = 4;
+
+/// One attempt of a search.
+#[derive(Debug, Clone, Copy)]
+enum Attempt {
+    /// From where the motion from the start of the case has settled.
+    Own,
+    /// The same of a start at random.
+    Settled,
+    /// From a state at random, for an orbit of this period.
+    Random(u32),
+}
 
 impl Search {
     /// The orbits where the parameter has this `value`: by period, number of impacts and their order.
@@ -46,32 +60,70 @@ impl Search {
     /// Parameters out of their bounds.
     pub fn at(&self, flow: Flow<'_>, value: f64) -> Result<Vec<Orbit>, ModelError> {
         flow.problem().at(value).validate()?;
-        let mut rng = Rng::with_seed(self.seed);
-        let mut found = Vec::new();
-        let mut add = |guess: &Point, period: u32| {
-            if let Some(orbit) = Orbit::find(flow, guess, period)
-                && !found.iter().any(|other: &Orbit| other.is_same(&orbit, flow))
-            {
-                found.push(orbit);
+        let attempts = self.attempts().into_iter().enumerate();
+        Ok(self.merged(flow, attempts.map(|(number, attempt)| self.found(flow, value, number, attempt)).collect()))
+    }
+
+    /// The same on all cores.
+    ///
+    /// # Errors
+    /// Parameters out of their bounds; stopped by the observer.
+    pub fn at_on_all_cores(
+        &self,
+        flow: Flow<'_>,
+        value: f64,
+        observer: &dyn Progress,
+    ) -> Result<Vec<Orbit>, DynamicsError> {
+        flow.problem().at(value).validate()?;
+        let attempts: Vec<_> = self.attempts().into_iter().enumerate().collect();
+        let found = threads::map(&attempts, observer, |(number, attempt)| {
+            if observer.is_stopped() {
+                Err(DynamicsError::Stopped)
+            } else {
+                Ok(self.found(flow, value, *number, *attempt))
             }
+        })?;
+        Ok(self.merged(flow, found))
+    }
+
+    /// Long periods take more work, so that they get fewer starts.
+    fn attempts(&self) -> Vec<Attempt> {
+        let random = (1..=self.periods)
+            .flat_map(|period| std::iter::repeat_n(Attempt::Random(period), self.starts.div_ceil(period) as usize));
+        std::iter::once(Attempt::Own).chain([Attempt::Settled; SETTLED]).chain(random).collect()
+    }
+
+    /// What an attempt of this `number` finds.
+    fn found(&self, flow: Flow<'_>, value: f64, number: usize, attempt: Attempt) -> Vec<Orbit> {
+        let mut rng = Rng::with_seed(self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number as u64));
+        let at = |phase: f64, state: State| Point { value, phase, state };
+        let start = match attempt {
+            Attempt::Random(period) => {
+                let guess = at(PHASE, random_state(flow, value, &mut rng));
+                return Orbit::find(flow, &guess, period).into_iter().collect();
+            }
+            Attempt::Own => at(0.0, own_state(flow, value)),
+            Attempt::Settled => at(PHASE, random_state(flow, value, &mut rng)),
         };
-        let at = |state: State| Point { value, phase: PHASE, state };
-        let starts: Vec<State> = (0..SETTLED).map(|_| random_state(flow, value, &mut rng)).collect();
-        for start in starts {
-            // A motion that cannot be followed, for its many events, leads nowhere.
-            let Ok(states) = Self::settle(flow, at(start)) else { continue };
-            for (state, period) in self.returns(flow, value, &states) {
-                add(&in_flight(flow, at(state), period), period);
+        let phase = start.phase;
+        // A motion that cannot be followed, for its many events, leads nowhere.
+        let states = Self::settle(flow, start).unwrap_or_default();
+        let returns = self.returns(flow, value, &states).into_iter();
+        returns
+            .filter_map(|(state, period)| Orbit::find(flow, &in_flight(flow, at(phase, state), period), period))
+            .collect()
+    }
+
+    /// Each orbit once, in order.
+    fn merged(&self, flow: Flow<'_>, found: Vec<Vec<Orbit>>) -> Vec<Orbit> {
+        let mut orbits: Vec<Orbit> = Vec::new();
+        for orbit in found.into_iter().flatten().filter(|orbit| orbit.period <= self.periods) {
+            if !orbits.iter().any(|other| other.is_same(&orbit, flow)) {
+                orbits.push(orbit);
             }
         }
-        for period in 1..=self.periods {
-            for _ in 0..self.starts {
-                add(&at(random_state(flow, value, &mut rng)), period);
-            }
-        }
-        found.retain(|orbit| orbit.period <= self.periods);
-        found.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-        Ok(found)
+        orbits.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+        orbits
     }
 
     /// States once a period, when the motion from `start` has settled.
@@ -119,6 +171,15 @@ fn in_flight(flow: Flow<'_>, point: Point, period: u32) -> Point {
         }
         _ => point,
     }
+}
+
+/// The state at the start of the case; a ball beyond a membrane is put on it.
+fn own_state(flow: Flow<'_>, value: f64) -> State {
+    let p = flow.problem().at(value);
+    let half = p.travel() / 2.0;
+    let displacement = (p.cylinder_position - p.ball_position).clamp(-half, half);
+    let cylinder = [p.cylinder_position, p.cylinder_velocity];
+    flow.state_of([displacement, p.cylinder_velocity - p.ball_velocity], cylinder)
 }
 
 /// A state somewhere between the membranes, as fast as the excitation and the travel make typical.
