@@ -63,8 +63,12 @@ static void set_all(char role, double time)
             CALL(fmi2SetInteger, reference, 1, &whole);
         else if (variables[index].kind == 'b')
             CALL(fmi2SetBoolean, reference, 1, &whole);
-        else
+        else {
+            /* The word for an empty text. */
+            if (strcmp(text, "-") == 0)
+                text = "";
             CALL(fmi2SetString, reference, 1, &text);
+        }
     }
 }
 

@@ -19,7 +19,7 @@ def role(variable, states: set) -> str:
 
 
 def start(variable) -> str:
-    """A start value as C reads it; a word for what has none."""
+    """A start value as C reads it; a word for what has none, and for an empty text."""
     return {"true": "1", "false": "0", None: "-"}.get(variable.start, variable.start) or "-"
 
 
