@@ -32,8 +32,8 @@
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
 //! - [`cli`] is the command-line tool.
 //!
-//! Beside it: [`videg_report`] draws figures and writes HTML reports, [`videg_system`] has temporary folders, files written
-//! atomically and groups of processes.
+//! Beside it: [`videg_report`] draws figures and writes HTML reports, [`videg_input`] reads files that a user gives, [`videg_system`] has
+//! temporary folders, files written atomically and groups of processes.
 
 #![allow(
     clippy::missing_errors_doc,
