@@ -10,7 +10,7 @@ use super::law::Law;
 use super::record;
 use crate::cli::options::RunOptions;
 use crate::cli::run_output::{self, RunOutput, file_list, heading};
-use crate::cli::{Exit, output};
+use crate::cli::{Exit, excitation, output};
 use crate::scenario::Scenario;
 use crate::simulate::Results;
 use fmu_import::Fmu;
@@ -31,7 +31,9 @@ pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Resu
     let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
     let warnings = warnings([&impulsive, &compliant], &laws);
     let svg = both_report::figure([&impulsive, &compliant], scenario)?;
-    let html = both_report::html(scenario, &laws, &warnings, svg.clone())?;
+    let report = both_report::report(scenario, &laws, &warnings, svg.clone());
+    // Both runs have one excitation.
+    let html = videg_report::render_html(&excitation::described(report, fmu, scenario)?)?;
     let files = run_output::write(&folder, &[impulsive_csv, compliant_csv], &svg, &html)?;
     let run = RunOutput::new(scenario, impulsive.mechanics, &warnings, &files);
     let words = both_report::words(scenario, &laws).join("\n");

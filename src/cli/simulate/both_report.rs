@@ -8,7 +8,7 @@ use crate::cli::run_output;
 use crate::cosim::MechanicsSummary;
 use crate::scenario::Scenario;
 use crate::simulate::{ContactSummary, Results};
-use videg_report::{self, Figure, Panel, ReportError, Section, Series, render_svg};
+use videg_report::{Figure, Panel, Report, ReportError, Section, Series, render_svg};
 
 /// Results under one law.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -164,10 +164,9 @@ fn deepest_contact(run: &Results, side: usize, line: &Points) -> Points {
 }
 
 /// The HTML report.
-pub fn html(scenario: &Scenario, laws: &Laws, warnings: &[String], svg: String) -> Result<String, ReportError> {
+pub fn report(scenario: &Scenario, laws: &Laws, warnings: &[String], svg: String) -> Report {
     let result = run_output::result(warnings).text(words(scenario, laws).join(" ")).table(table(laws).html());
-    let page = run_output::report(format!("Simulation of {} under both laws of contact", scenario.name), scenario)
+    run_output::report(format!("Simulation of {} under both laws of contact", scenario.name), scenario)
         .section(result)
-        .section(Section::new("Motion and capacitance").figure(svg, CAPTION));
-    videg_report::render_html(&page)
+        .section(Section::new("Motion and capacitance").figure(svg, CAPTION))
 }
