@@ -48,6 +48,8 @@ videg's own importer within {bound:.0e} of its largest value. One column has the
 A library between tool and FMU counts the return values of all calls; any value except `fmi2OK` fails the tool. The
 last column has these values and the number of different functions.
 
+`tests/fmpy/test_recording.py` sets the String parameter `excitation.file` in FMPy, libcosim and Ecos and compares their runs.
+
 | tool | version | what the test shows | FMU | result | worst difference | status of each call |
 |---|---|---|---|---|---|---|
 """
