@@ -141,7 +141,9 @@ fn bifurcation_table(problem: &Problem, branches: &[Branch]) -> Sheet {
 pub fn report(scenario: &Scenario, problem: &Problem, found: &Found, drawn: Vec<Picture>) -> Report {
     let subtitle = format!("{}.", scenario.description);
     let mut section = Section::new("Result").text(summary(found));
-    if found.has_orbits {
+    if found.has_orbits && found.orbits.is_empty() {
+        section = section.text(format!("{NO_ORBITS}."));
+    } else if found.has_orbits {
         section = section.text(ORBITS).table(orbit_table(&found.orbits).html());
     }
     if !found.branches.is_empty() {
@@ -151,6 +153,8 @@ pub fn report(scenario: &Scenario, problem: &Problem, found: &Found, drawn: Vec<
     output::report(format!("Dynamics of {}", scenario.name), subtitle).section(section)
 }
 
+/// What is said where the search finds nothing.
+const NO_ORBITS: &str = "no isolated periodic orbit was found at the parameters of the case";
 const ORBITS: &str = "Periodic orbits, named by their impacts on the left and on the right membrane in one round. The order is L and R, \
     l and r where the ball comes to rest; such an orbit forgets its neighbours, and a multiplier is 0. A multiplier is the factor \
     by which a small distance from the orbit grows in one round. The search is thorough, not complete.";
@@ -213,7 +217,7 @@ pub fn basins_caption(basins: &Basins) -> String {
 pub fn text(scenario: &Scenario, problem: &Problem, found: &Found, files: &[PathBuf]) -> Vec<String> {
     let mut parts = vec![format!("dynamics {}: {}\n{}", scenario.name, scenario.description, summary(found))];
     if found.has_orbits {
-        parts.push(orbit_table(&found.orbits).text());
+        parts.push(if found.orbits.is_empty() { NO_ORBITS.to_owned() } else { orbit_table(&found.orbits).text() });
     }
     if !found.branches.is_empty() {
         parts.push(bifurcation_table(problem, &found.branches).text());
