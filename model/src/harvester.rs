@@ -13,6 +13,7 @@ mod snapshot;
 pub use self::events::{Event, Impact, Peak};
 pub use self::snapshot::Snapshot;
 
+use self::differences::Origin;
 use crate::accounting::batch::Batch;
 use crate::accounting::budget::Budget;
 use crate::accounting::ledger::{Ledger, Totals, Works};
@@ -41,13 +42,31 @@ pub struct Harvester {
     ledger: Ledger,
     budget: Budget,
     tangent: Tangent,
+    /// From where changes are taken by differences.
+    origin: Option<Origin>,
     /// Up to here, s, nothing happens and nothing more is to be predicted: on the way only the time changes.
     calm_until: f64,
 }
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        Self { motion: self.motion.clone(), noise: self.noise.clone(), pulses: self.pulses.clone(), ..*self }
+        let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = *self;
+        let (motion, noise, pulses) = (self.motion.clone(), self.noise.clone(), self.pulses.clone());
+        let origin = self.origin.clone();
+        Self {
+            parameters,
+            membrane,
+            time,
+            motion,
+            noise,
+            voltages,
+            pulses,
+            ledger,
+            budget,
+            tangent,
+            origin,
+            calm_until,
+        }
     }
 
     /// Masters that try steps save a harvester and take it back at each of them: this takes no memory that is there already, and
@@ -56,6 +75,10 @@ impl Clone for Harvester {
         self.motion.clone_from(&source.motion);
         self.noise.clone_from(&source.noise);
         self.pulses.clone_from(&source.pulses);
+        match (&mut self.origin, &source.origin) {
+            (Some(Origin::Force(origin)), Some(Origin::Force(other))) => origin.clone_from(other),
+            (origin, other) => origin.clone_from(other),
+        }
         let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = source;
         (self.parameters, self.membrane, self.tangent) = (*parameters, *membrane, *tangent);
         (self.time, self.voltages, self.calm_until) = (*time, *voltages, *calm_until);
@@ -94,7 +117,10 @@ impl Harvester {
         direction.check(setup.recording.is_some())?;
         let mut harvester = Self::before_events(&setup, start)?;
         let xi = harvester.noise.xi(harvester.noise.sample);
-        harvester.tangent = Tangent::along(setup.parameters, start, force, direction, xi);
+        harvester.origin = harvester.origin_along(force, direction);
+        if harvester.origin.is_none() {
+            harvester.tangent = Tangent::along(setup.parameters, start, force, direction, xi);
+        }
         harvester.begin();
         harvester.advance(start)?;
         harvester.push(force, 0.0);
@@ -135,6 +161,7 @@ impl Harvester {
             ledger: Ledger::new(p, membrane.rest_capacitance, Totals::default(), works),
             budget: Budget::new(p, 0.0, 0),
             tangent: Tangent::none(),
+            origin: None,
             calm_until: f64::NEG_INFINITY,
         })
     }

@@ -124,6 +124,11 @@ impl Motion {
         self.accuracy = Accuracy::Integrated;
     }
 
+    /// Whether an integrator places the states.
+    pub fn is_left_to_integrator(&self) -> bool {
+        self.accuracy == Accuracy::Integrated
+    }
+
     /// The membrane on which the ball rests, or which holds it at a deflection under the compliant law.
     pub fn resting(&self) -> Option<Side> {
         match &self.ball {

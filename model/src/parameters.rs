@@ -365,13 +365,6 @@ impl Parameters {
         Ok(())
     }
 
-    /// Whether [`Harvester::sensitivities`](crate::Harvester::sensitivities) are known: under the impulsive law, without friction,
-    /// suspension and reaction.
-    pub fn has_sensitivities(&self) -> bool {
-        let is_plain = self.contact_law == ContactLaw::Impulsive && !self.reaction;
-        is_plain && self.friction == 0.0 && !self.is_suspended()
-    }
-
     /// Whether spring or damper hold the cylinder.
     pub fn is_suspended(&self) -> bool {
         self.suspension_stiffness > 0.0 || self.suspension_damping > 0.0

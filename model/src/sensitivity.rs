@@ -72,7 +72,7 @@ impl Direction {
 /// What changes besides the force, if the parameters do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterChange {
-    of: Parameters,
+    pub of: Parameters,
     half_travel: f64,
     /// Of g sin(beta), m/s^2.
     incline: f64,
@@ -98,8 +98,6 @@ pub struct Changes {
     pub voltage_gain: f64,
     /// Of the sum of W, J.
     pub energy: f64,
-    /// Of the work of the walls as the ledger has it, J.
-    pub wall: f64,
     /// Of the energy lost, J.
     pub loss: f64,
 }
@@ -111,7 +109,9 @@ pub struct Tangent {
     pub idle: bool,
     /// Nothing but the time has come into them since they were forgotten.
     pub fresh: bool,
-    /// Change of the external force over M, m/s^2.
+    /// Change of the external force, N.
+    pub force: f64,
+    /// Change of what it adds to `z_M''`, m/s^2.
     pub push: f64,
     pub changes: Changes,
     pub parameters: Option<ParameterChange>,
@@ -144,6 +144,10 @@ pub struct Sensitivities {
     pub energy: f64,
     /// Of [`Harvester::energies`](crate::Harvester::energies).
     pub energies: Energies,
+    /// Of the time in contact.
+    pub contact_time: f64,
+    /// Of the mount's force on the cylinder.
+    pub mount_force: f64,
     /// Of [`Harvester::next_impact`](crate::Harvester::next_impact); 0 if there is none.
     pub next_impact: f64,
     /// Of [`Harvester::next_knot`](crate::Harvester::next_knot); 0 if there is none.
@@ -153,14 +157,14 @@ pub struct Sensitivities {
 impl Tangent {
     /// No change at all, until somebody asks for one.
     pub fn none() -> Self {
-        Self { idle: true, fresh: false, push: 0.0, changes: Changes::default(), parameters: None }
+        Self { idle: true, fresh: false, force: 0.0, push: 0.0, changes: Changes::default(), parameters: None }
     }
 
     /// One more newton from `since`, s, on.
     pub fn of_force(since: f64, p: &Parameters) -> Self {
         let changes = Changes { since, ..Changes::default() };
         let push = if p.excitation_kind == ExcitationKind::Force { 1.0 / p.cylinder_mass } else { 0.0 };
-        Self { idle: false, fresh: false, push, changes, parameters: None }
+        Self { idle: false, fresh: false, force: 1.0, push, changes, parameters: None }
     }
 
     /// A start at `since`, s, under the external `force`, N, moved along `direction`. `xi` multiplies the intensity of the
@@ -189,12 +193,13 @@ impl Tangent {
             incline: d.gravity * p.inclination.sin() + p.gravity * p.inclination.cos() * d.inclination,
             drive,
             membrane: MembraneChange::new(p, d),
-            shape: ShapeChange::new(&shape, d.stiffness_exponent, d.restitution),
+            shape: ShapeChange::new(&shape, d.restitution),
         };
         let rate = d.cylinder_velocity - d.ball_velocity;
         Self {
             idle: false,
             fresh: false,
+            force: direction.force,
             push,
             changes: Changes { since, displacement, rate, ..Changes::default() },
             parameters: Some(change),
@@ -202,7 +207,7 @@ impl Tangent {
     }
 
     /// One of the changes of the parameters, zero if they do not change.
-    fn of(&self, change: impl Fn(&ParameterChange) -> f64) -> f64 {
+    pub fn of(&self, change: impl Fn(&ParameterChange) -> f64) -> f64 {
         self.parameters.as_ref().map_or(0.0, change)
     }
 

@@ -1,4 +1,4 @@
-//! Partial derivatives, in closed form and finite whatever the motion does; [`videg_model::Sensitivities`] say how. Each
+//! Partial derivatives, finite whatever the motion does; [`videg_model::Sensitivities`] say how. Each
 //! row of the table reads its own from a [`Change`].
 //!
 //! - During initialisation: of initial values with respect to parameters and inputs.
@@ -9,8 +9,8 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! With a recording there are none with respect to its scale and offset. There are none at all under the compliant law, with friction, with a suspension or with reaction; with respect to friction and suspension,
-//! which are 0 elsewhere, they are taken upwards, by differences.
+//! With friction, a suspension, reaction or the compliant law, and with respect to scale and offset of a recording, they are taken by differences, to some ten digits. There
+//! are none with respect to a state during a contact that lasts.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
 //! work on the ball.
@@ -25,6 +25,8 @@ use crate::variables::{FORCE, STATES, VOLTAGES};
 enum Known {
     /// A state or the force at the present point, between events; changes of `z_M` - `z_m`, m, and its rate, m/s.
     Point([f64; 2]),
+    /// The same, by differences.
+    Displaced,
     /// The force of the last step.
     Force,
     Voltage(Side),
@@ -43,9 +45,6 @@ pub(crate) struct Change<'a> {
 impl Harvester {
     /// What `read` finds in the change by one unit of `known`; NaN where no change is known.
     pub(crate) fn partial(&self, known: &Variable<Self>, read: impl FnOnce(&Change) -> f64) -> f64 {
-        if !self.parameters.has_sensitivities() {
-            return f64::NAN; // the exporter makes an error of it
-        }
         read(&self.change(known.name()))
     }
 
@@ -67,12 +66,9 @@ impl Harvester {
         }
         match Direction::of_parameter(name) {
             Some(direction) if !self.placed => {
-                let model = self.setup().ok().and_then(|setup| {
-                    let (start, force) = (self.start_time, self.external_force);
-                    let upwards = Model::change_upwards(setup, start, force, name).ok().flatten();
-                    let along = || Model::along(setup, start, force, &direction).ok();
-                    upwards.or_else(|| along().map(|model| model.sensitivities()))
-                });
+                let (start, force) = (self.start_time, self.external_force);
+                let along = |setup| Model::along(setup, start, force, &direction).ok();
+                let model = self.setup().ok().and_then(along).map(|model| model.sensitivities());
                 Change { slave: self, known: Known::Parameter(Box::new(direction)), model }
             }
             _ if name == FORCE && !self.placed => {
@@ -85,6 +81,10 @@ impl Harvester {
     /// With respect to the state or force `name` at the present point. Capacitances follow the pulses of impacts that have
     /// been, and so do the sums over them.
     fn change_at_point(&self, name: &str) -> Change<'_> {
+        let state = STATES.iter().position(|state| *state == name);
+        if let Some(model) = self.model().filter(|model| !model.has_closed_changes()) {
+            return Change { slave: self, known: Known::Displaced, model: model.differences_at_point(state) };
+        }
         let rests = self.model().is_some_and(|model| model.resting().is_some());
         let [cylinder, cylinder_rate, ball, ball_rate] = STATES.map(|state| f64::from(state == name));
         let yields = if self.parameters.excitation_kind == ExcitationKind::Force { 1.0 } else { 0.0 };
@@ -108,6 +108,8 @@ impl Harvester {
                 gravity: -weight * ball,
                 ..Energies::default()
             },
+            // A shaker bears the force.
+            mount_force: f64::from(name == FORCE) * (yields - 1.0),
             ..Sensitivities::default()
         };
         Change { slave: self, known: Known::Point(displacement), model: Some(model) }
@@ -131,7 +133,7 @@ impl Change<'_> {
                 by[0] * displacement + by[1] * rate
             }),
             Known::Force => predicted(&|model| shown(&model.sensitivities())),
-            Known::Voltage(_) | Known::Parameter(_) => self.shown(shown),
+            Known::Voltage(_) | Known::Parameter(_) | Known::Displaced => self.shown(shown),
         }
     }
 
@@ -143,7 +145,7 @@ impl Change<'_> {
                 slave.read(|model| model.membrane().field(model.deflection(side).value, 1.0))
             }
             Known::Voltage(_) | Known::Point(_) => 0.0,
-            Known::Force | Known::Parameter(_) => {
+            Known::Force | Known::Parameter(_) | Known::Displaced => {
                 self.shown(|changes| changes.field_per_volt[side.index()] * slave.voltages[side.index()])
             }
         }

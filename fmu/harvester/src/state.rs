@@ -18,14 +18,15 @@ impl Harvester {
         let is_present = |model: &&Model| *model.parameters() == self.parameters && self.recorded.file == self.file;
         let model = self.model().filter(is_present);
         out.write_parameters(self)?;
-        out.write(&(inputs, self.placed, model.map(Model::snapshot)))
+        let origin = model.and_then(Model::origin).map(Model::snapshot);
+        out.write(&(inputs, self.placed, model.map(Model::snapshot), origin))
     }
 
     /// What [`Harvester::write`] wrote, for the instance of `present`.
     pub(crate) fn read_from(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
         let mut slave = Self { resources: present.resources.clone(), ..Self::new() };
         from.read_parameters(&mut slave)?;
-        let (inputs, placed, snapshot): (Inputs, bool, Option<Snapshot>) = from.take()?;
+        let (inputs, placed, snapshot, origin): (Inputs, bool, Option<Snapshot>, Option<Snapshot>) = from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
         // No Set lets these become infinite or NaN.
         let mut values = [force, voltages, voltage_rates].into_iter().flatten().chain([start_time]);
@@ -43,6 +44,12 @@ impl Harvester {
             Some(snapshot) => Ok(slave.restored(&snapshot).map_err(StateError::Invalid)?),
             None => slave.at_start(),
         };
+        if let Some(origin) = origin.filter(|_| !placed) {
+            let origin = slave.restored(&origin).map_err(StateError::Invalid)?;
+            if let Ok(model) = &mut slave.model {
+                model.set_origin(origin).map_err(|error| StateError::Invalid(error.to_string()))?;
+            }
+        }
         Ok(slave)
     }
 

@@ -275,11 +275,7 @@ static MOUNT: [V; 2] = [V::output(
 )
 .depends_on(&["cylinder.position", "cylinder.velocity", "ball.velocity", FORCE])
 .initially_depends_on(&[IMPACT, &[FORCE]])
-.partial_derivative(|slave, known| {
-    // Without spring and damper there is no force; that of a shaker has no known change.
-    let is_none = slave.parameters.excitation_kind == videg_model::ExcitationKind::Force;
-    slave.partial(known, |_| if is_none { 0.0 } else { f64::NAN })
-})
+.partial_derivative(change!(mount_force))
 .get(|slave| slave.read(videg_model::Harvester::mount_force)),
     V::boolean_output("ball.sticks", "Friction holds the ball on the cylinder, between the membranes")
         .local()
@@ -293,8 +289,7 @@ static CONTACT_TIME: [V; 1] = [V::output(
 )
 .depends_on(&[])
 .initially_depends_on(&[])
-// Impacts of the impulsive law take no time.
-.partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
+.partial_derivative(change!(contact_time))
 .get(|slave| slave.read(videg_model::Harvester::contact_time))];
 
 /// What the film of a membrane bears. `U` is the voltage at the communication point.

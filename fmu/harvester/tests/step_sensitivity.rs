@@ -33,6 +33,16 @@ fn settings(random: &mut Random, number: u32) -> Settings {
         ]
     };
     settings.push(("excitation.phase", random.between(0.0, 6.0)));
+    // Another mount, whose changes are taken by differences.
+    if number % 4 == 1 {
+        settings.push(("cylinder.inclination", random.between(-0.5, 0.5)));
+        settings.push(("ball.friction", random.between(0.01, 0.3)));
+        settings.push(("contact.reaction", random.between(0.0, 2.0).floor()));
+    }
+    if number % 8 < 4 {
+        settings.push(("cylinder.suspensionStiffness", random.between(1.0, 100.0)));
+        settings.push(("cylinder.suspensionDamping", random.between(0.01, 1.0)));
+    }
     if number.is_multiple_of(2) {
         settings.push(("excitation.phaseNoise", random.between(0.1, 1.0)));
         settings.push(("excitation.noiseHold", random.between(1e-3, 0.05)));
@@ -46,6 +56,11 @@ fn happenings(host: &Host) -> (i32, i32, bool, [bool; 4]) {
     let flat = |name| host.get(name) == 0.0;
     let flags = [none("impact.nextTime"), none("pulse.nextKnot"), flat("left.deflection"), flat("right.deflection")];
     (host.count("impact.count"), host.count("solver.events"), host.rests(), flags)
+}
+
+/// Whether the changes are not carried along in closed form.
+fn by_differences(host: &Host) -> bool {
+    host.get("ball.friction") + host.get("cylinder.suspensionStiffness") > 0.0
 }
 
 /// A step of `h` from `t` under this force: value and rate.
@@ -69,10 +84,12 @@ struct Tally {
 
 /// Compares after one step and leaves the host behind it.
 fn check_step(host: &Host, at: [f64; 2], force: [f64; 2], tally: &mut Tally, what: &str) {
-    let names = unknowns();
     let before = host.save();
     let impacts = host.count("impact.count");
     step(host, at, force);
+    // By differences, the speed of the last bounce before a rest keeps no digits: times of bounces have few.
+    let is_lost = |name: &&str| *name == "impact.lastVelocity" && host.get(name) < 1e-3 && by_differences(host);
+    let names: Vec<_> = unknowns().into_iter().filter(|name| !is_lost(name)).collect();
     let (after, happened, derivatives) = (host.save(), happenings(host), host.derivatives(&names, FORCE));
     let values = |distance: f64| {
         host.restore(before);

@@ -92,9 +92,8 @@ impl Harvester {
                 self.budget.spend(time)?;
                 let relative = self.motion.relative_at(time);
                 let changes = self.tangential();
-                let ([_, wall_change], motion_change) = (changes.cylinder_change(time), changes.motion_change(time));
-                [self.tangent.changes.displacement, self.tangent.changes.rate] = motion_change;
-                self.release(time, wall_change);
+                [self.tangent.changes.displacement, self.tangent.changes.rate] = changes.motion_change(time);
+                self.release(time);
                 self.motion.new_flight(&self.motion.cylinder.at(time), relative);
             }
             Prediction::Turn { time } => {
@@ -127,9 +126,8 @@ impl Harvester {
         let mut wall = self.motion.cylinder.at(self.time);
         let may_rest = speed == 0.0 && self.parameters.contact_law == ContactLaw::Impulsive;
         if may_rest && self.end_of_bounces(side, 0.0, &wall).is_some() {
-            let [_, wall_change] = self.tangential().cylinder_change(self.time);
             self.motion.rest(side, 0.0, &mut wall);
-            self.carry(&wall, wall_change);
+            self.carry(&wall);
         }
     }
 
@@ -142,7 +140,7 @@ impl Harvester {
             if batch.push(time, side, speed) {
                 batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
             }
-            [0.0; 2]
+            0.0
         } else {
             self.credit_with_changes(speed, side, &wall)
         };
@@ -169,37 +167,30 @@ impl Harvester {
     }
 
     /// Adds the gains of an impact on this `wall`, and carries the changes that somebody asks for over it. Returns the
-    /// changes of the wall's velocity and of how much faster the ball is, m/s.
-    fn credit_with_changes(&mut self, speed: f64, side: Side, wall: &CylinderState) -> [f64; 2] {
+    /// change of how much faster than the wall the ball is, m/s.
+    fn credit_with_changes(&mut self, speed: f64, side: Side, wall: &CylinderState) -> f64 {
         let peak = self.membrane.deflection(speed);
         let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
         let change = self.tangential().change_of(&Hit { side, speed, peak, excess_slope, wall: *wall });
         self.pulses.push(side, Pulse { start: wall.time, speed, peak, change: change.pulse });
         self.ledger.credit(excess);
         self.tangent.pass_impact(&self.parameters, &self.membrane, &change, excess);
-        change.wall
+        change.slip
     }
 
-    /// Ends a chattering sequence on this `wall`. Its velocity, and how much faster the ball is, change by `changes`, m/s.
-    fn settle(&mut self, side: Side, wall: &mut CylinderState, [wall_change, slip_change]: [f64; 2]) {
+    /// Ends a chattering sequence on this `wall`. How much faster the ball is changes by `slip_change`, m/s.
+    fn settle(&mut self, side: Side, wall: &mut CylinderState, slip_change: f64) {
         let slip = -self.motion.flight.rate;
-        self.tangent.settle(self.parameters.ball_mass, [slip, slip_change], [wall.velocity, wall_change]);
+        self.tangent.settle(self.parameters.ball_mass, [slip, slip_change]);
         let before = wall.velocity;
         self.motion.rest(side, slip, wall);
         self.ledger.settle([before, wall.velocity], slip);
-        self.carry(wall, wall_change);
+        self.carry(wall);
     }
 
-    /// The ball begins to rest on this `wall`, whose velocity changes by `wall_change`, m/s.
-    fn carry(&mut self, wall: &CylinderState, wall_change: f64) {
-        let gravity = self.gravity_change(wall.time);
+    /// The ball begins to rest on this `wall`.
+    fn carry(&mut self, wall: &CylinderState) {
         self.ledger.carry(self.motion.ball_position_at(wall.time), wall.velocity);
-        self.tangent.rest(self.parameters.ball_mass, [wall.velocity, wall_change], gravity);
-    }
-
-    /// Change of the work of gravity on the ball, J, if somebody asks for changes.
-    fn gravity_change(&self, time: f64) -> f64 {
-        if self.tangent.idle { 0.0 } else { self.tangential().gravity_change(time) }
     }
 
     /// A ball without relative velocity at `time`, s, not pressed on a membrane, goes on with this dz, m.
@@ -217,16 +208,14 @@ impl Harvester {
         }
     }
 
-    /// The wall, whose velocity changes by `wall_change`, m/s, lets the ball go at `time`, s.
-    pub(super) fn release(&mut self, time: f64, wall_change: f64) {
+    /// The wall lets the ball go at `time`, s.
+    pub(super) fn release(&mut self, time: f64) {
         if self.motion.ball.support().is_some() {
             self.ledger.totals.releases += 1;
         }
-        let gravity = self.gravity_change(time);
         self.motion.release(time, self.motion.departure(time));
         let Start { position, velocity, .. } = self.motion.last;
         self.ledger.release(position, velocity);
-        self.tangent.release(self.parameters.ball_mass, [velocity, wall_change], gravity);
     }
 
     pub(super) fn next_noise_sample(&mut self, time: f64) {

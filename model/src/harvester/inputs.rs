@@ -21,12 +21,13 @@ impl Harvester {
     #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         check_force([force, rate])?;
-        if !self.tangent.fresh {
+        if self.has_closed_changes() && !self.tangent.fresh {
             self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, &self.parameters) };
             self.pulses.forget_changes();
         }
         self.tangent.changes.since = self.time;
         self.push(force, rate);
+        self.begin_differences();
         Ok(())
     }
 

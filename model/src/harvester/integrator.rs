@@ -158,7 +158,7 @@ impl Harvester {
     fn let_go(&mut self) -> Result<bool, ModelError> {
         let support = self.motion.ball.support();
         self.budget.spend(self.time)?;
-        self.release(self.time, 0.0);
+        self.release(self.time);
         if let Some(side) = support {
             self.clear(side);
         }
@@ -220,7 +220,7 @@ impl Harvester {
     }
 
     /// The future is the integrator's: no impact is predicted.
-    fn forget_search(&mut self) {
+    pub(super) fn forget_search(&mut self) {
         let (position, velocity) = (self.ball_position(), self.ball_velocity());
         let here = self.motion.cylinder.at(self.time);
         self.calm_until = f64::NEG_INFINITY;

@@ -84,6 +84,16 @@ impl Harvester {
         p.cylinder_mass * self.cylinder_acceleration() - external + ball
     }
 
+    /// Change of the same, in closed form, when that of `z_M''` is `acceleration`, m/s^2: a shaker bears the external force.
+    fn mount_force_change(&self, acceleration: f64) -> f64 {
+        let p = &self.parameters;
+        if p.excitation_kind == ExcitationKind::Force {
+            return 0.0;
+        }
+        let heavier = self.tangent.of(|change| change.of.cylinder_mass);
+        p.cylinder_mass * acceleration + heavier * self.cylinder_acceleration() - self.tangent.force
+    }
+
     /// Whether friction holds the ball on the cylinder, between the membranes.
     pub fn is_stuck(&self) -> bool {
         self.motion.ball == Ball::Stuck
@@ -182,11 +192,18 @@ impl Harvester {
     /// They are those of the side that the state is on: after an event at the present time. Events stay in their order, a
     /// ball at rest stays there. Grazing impacts ([`GRAZING_SPEED`](crate::GRAZING_SPEED)) count as none, so that all values
     /// are finite. The membrane is flat at the instant of an impact, and its changes are zero then.
+    ///
+    /// With friction, a suspension, reaction or the compliant law they are taken by differences of harvesters that begin where the
+    /// force was set, to some ten digits; a harvester restored from a snapshot has them with its [`Harvester::origin`] only.
     pub fn sensitivities(&self) -> Sensitivities {
+        if let Some(origin) = &self.origin {
+            return self.differences(origin);
+        }
         let (changes, time) = (self.tangential(), self.time);
         let ([position, velocity], [ball_position, ball_velocity]) =
             (changes.cylinder_change(time), changes.ball_change(time));
-        let deflection = Side::BOTH.map(|side| self.pulses.change_at(side, time));
+        let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
+        let deflection = Side::BOTH.map(|side| self.pulses.change_at(side, time, &shape));
         let of_membranes = Side::BOTH.map(|side| {
             let value = self.deflection(side).value;
             membrane_changes(&self.membrane, &self.tangent, value, deflection[side.index()])
@@ -210,6 +227,8 @@ impl Harvester {
             voltage_gain: sums.voltage_gain,
             energy: sums.energy,
             energies: changes.energies_change(time),
+            contact_time: 0.0,
+            mount_force: self.mount_force_change(acceleration),
             next_impact,
             next_knot: predicting.next_knot_change(next_impact),
         }

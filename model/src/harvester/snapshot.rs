@@ -188,6 +188,7 @@ impl Harvester {
             ledger: Ledger::new(p, membrane.rest_capacitance, snapshot.totals, snapshot.works),
             budget: Budget::new(p, snapshot.second, snapshot.second_events),
             tangent,
+            origin: None,
             calm_until: f64::NEG_INFINITY,
         })
     }
@@ -213,7 +214,7 @@ impl Snapshot {
         if let Some(c) = &self.changes {
             let motion = [c.since, c.displacement, c.rate];
             finite("change", &[motion, [c.last_speed, c.voltage_gain, c.energy]].concat())?;
-            finite("change", &[c.wall, c.loss])?;
+            finite("change", &[c.loss])?;
         }
         let since = self.changes.map(|changes| changes.since);
         for start in [cylinder.time, ball.time, relative.time].into_iter().chain(since) {

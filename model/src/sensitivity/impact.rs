@@ -1,6 +1,6 @@
 //! How an impact changes, and what it does to the changes.
 
-use super::ledger::{kinetic, work};
+use super::ledger::kinetic;
 use super::{Tangent, Tangential, bounded};
 use crate::membrane::Membrane;
 use crate::motion::cylinder::CylinderState;
@@ -33,21 +33,14 @@ pub struct Hit {
     pub wall: CylinderState,
 }
 
-/// Changes of the works that impacts and rests add, J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LedgerChange {
-    pub wall: f64,
-    pub loss: f64,
-}
-
 /// How an impact changes.
 #[derive(Default)]
 pub struct HitChange {
     pub pulse: PulseChange,
-    /// Of `z_M'`, and of how much faster than that the ball rebounds, at the time of the impact.
-    pub wall: [f64; 2],
-    /// Of what the impact adds to the ledger.
-    ledger: LedgerChange,
+    /// Of how much faster than the wall the ball rebounds.
+    pub slip: f64,
+    /// Of the energy lost.
+    loss: f64,
     /// Of `C_3` / `C_2` - 1.
     excess: f64,
     /// Of `z_M` - `z_m` and its rate at the time of the impact, after it.
@@ -59,23 +52,21 @@ impl Tangential<'_> {
     pub fn change_of(&self, hit: &Hit) -> HitChange {
         let Hit { side, speed, peak, excess_slope, .. } = *hit;
         let CylinderState { time, acceleration, .. } = hit.wall;
-        let [_, velocity] = self.cylinder_change(time);
         let motion = self.motion_change(time);
         if grazes(side, speed, acceleration + self.motion.mount.incline) {
-            return HitChange { motion, wall: [velocity, -motion[1]], ..HitChange::default() };
+            return HitChange { motion, slip: -motion[1], ..HitChange::default() };
         }
         let (sign, restitution) = (side.sign(), self.parameters.restitution);
         let relative = acceleration + self.motion.mount.incline;
         let delay = self.delay_by(motion[0], side, speed);
-        let wall_change = velocity + acceleration * delay;
         let speed_change = sign * (motion[1] + relative * delay);
         let rebound_change = self.tangent.rebound_change(restitution, speed, speed_change);
         let membrane = self.tangent.membrane();
         let peak_change = bounded(self.membrane.deflection_change(speed, peak, speed_change, membrane));
         HitChange {
             pulse: PulseChange { start: delay, speed: bounded(speed_change), peak: peak_change },
-            wall: [wall_change, sign * rebound_change].map(bounded),
-            ledger: self.impact_change(hit, bounded(speed_change), bounded(wall_change)),
+            slip: bounded(sign * rebound_change),
+            loss: self.loss_change(speed, bounded(speed_change)),
             excess: excess_slope * peak_change + self.membrane.excess_change_by_geometry(peak, membrane),
             motion: [
                 sign * (self.tangent.half_travel() + impact::rebound(restitution, speed) * delay),
@@ -85,18 +76,12 @@ impl Tangential<'_> {
         }
     }
 
-    /// Changes of what an impact adds when its speed and the wall's velocity change by so much, m/s.
-    fn impact_change(&self, hit: &Hit, speed_change: f64, wall_change: f64) -> LedgerChange {
+    /// Change of the energy that an impact at relative `speed` takes, when that changes by so much, m/s.
+    fn loss_change(&self, speed: f64, speed_change: f64) -> f64 {
         let (r, dr) = (self.parameters.restitution, self.tangent.of(|change| change.of.restitution));
         let mass = self.tangent.ball_mass(self.parameters.ball_mass);
-        let (speed, wall) = ([hit.speed, speed_change], [hit.wall.velocity, wall_change]);
-        let jump = hit.side.sign() * (1.0 + r);
-        let jump_change = jump * speed_change + hit.side.sign() * dr * hit.speed;
-        let energy = 0.5 * self.parameters.ball_mass * hit.speed * hit.speed;
-        LedgerChange {
-            wall: bounded(work(mass, [jump * hit.speed, jump_change], wall)),
-            loss: bounded((1.0 - r * r) * kinetic(mass, speed) - 2.0 * r * dr * energy),
-        }
+        let energy = 0.5 * self.parameters.ball_mass * speed * speed;
+        bounded((1.0 - r * r) * kinetic(mass, [speed, speed_change]) - 2.0 * r * dr * energy)
     }
 }
 
@@ -109,8 +94,7 @@ impl Tangent {
     pub fn pass_impact(&mut self, p: &Parameters, membrane: &Membrane, change: &HitChange, excess: f64) {
         [self.changes.displacement, self.changes.rate] = change.motion;
         self.changes.last_speed = change.pulse.speed;
-        self.changes.wall += change.ledger.wall;
-        self.changes.loss += change.ledger.loss;
+        self.changes.loss += change.loss;
         self.credit(p, membrane, excess, change.excess);
     }
 

@@ -91,8 +91,13 @@ impl Host {
         warns(self.exit_initialization())
     }
 
+    /// Sets a Real, or, if it is `contact.reaction`, a Boolean.
     pub fn set(&self, name: &str, value: f64) {
-        ok(self.set_real(reference(name), value));
+        ok(if name == "contact.reaction" {
+            self.set_boolean(reference(name), (value > 0.0).into())
+        } else {
+            self.set_real(reference(name), value)
+        });
     }
 
     pub fn set_rate(&self, name: &str, rate: f64) {
