@@ -146,12 +146,6 @@ pub enum ModelError {
         /// Least one allowed, s.
         min: f64,
     },
-    /// A change of the recording itself.
-    #[error("no derivatives with respect to {name} with a recording; allowed: any other parameter")]
-    NoRecordedDerivative {
-        /// Name of the parameter.
-        name: &'static str,
-    },
     /// A state from a run with another recording.
     #[error("the snapshot is of a harvester with another recording, or without one")]
     OtherRecording,

@@ -105,7 +105,7 @@ impl Harvester {
     /// order along `direction`.
     ///
     /// # Errors
-    /// As [`Harvester::new`]; a force that is not finite or beyond 1e18 N; a direction in which the recording changes.
+    /// As [`Harvester::new`]; a force that is not finite or beyond 1e18 N.
     pub fn along<'a>(
         setup: impl Into<Setup<'a>>,
         start: f64,
@@ -114,7 +114,6 @@ impl Harvester {
     ) -> Result<Self, ModelError> {
         inputs::check_force([force, 0.0])?;
         let setup = setup.into();
-        direction.check(setup.recording.is_some())?;
         let mut harvester = Self::before_events(&setup, start)?;
         let xi = harvester.noise.xi(harvester.noise.sample);
         harvester.origin = harvester.origin_along(force, direction);

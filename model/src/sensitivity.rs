@@ -18,7 +18,6 @@ pub use self::impact::{GRAZING_SPEED, Hit, grazes};
 use self::membrane::MembraneChange;
 use self::pulse::ShapeChange;
 use crate::accounting::ledger::Energies;
-use crate::error::ModelError;
 use crate::membrane::Membrane;
 use crate::motion::Motion;
 use crate::motion::cylinder::DriveChange;
@@ -48,16 +47,6 @@ impl Direction {
     /// One unit of the external force.
     pub fn of_force() -> Self {
         Self { parameters: Parameters::none(), force: 1.0 }
-    }
-
-    /// Changes of a recording itself are not derived.
-    pub(crate) fn check(&self, is_recorded: bool) -> Result<(), ModelError> {
-        let Parameters { file_scale, file_offset, .. } = self.parameters;
-        let moves = [("excitation.fileScale", file_scale), ("excitation.fileOffset", file_offset)];
-        match moves.into_iter().find(|(_, change)| is_recorded && *change != 0.0) {
-            Some((name, _)) => Err(ModelError::NoRecordedDerivative { name }),
-            None => Ok(()),
-        }
     }
 
     /// One unit of the real parameter `name`; none if there is no such parameter.

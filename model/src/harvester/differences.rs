@@ -1,5 +1,5 @@
 //! First-order changes by differences, where they are not carried along in closed form: with friction, a suspension or reaction,
-//! under the compliant law, with a recording, and with respect to parameters of these and to the exponent of the force law, on which
+//! under the compliant law, and with respect to parameters of these and of a recording and to the exponent of the force law, on which
 //! the shape of a pulse depends in no simple way.
 //!
 //! Harvesters in which the cause is moved a little are compared with this one. They must have met the same events, so that all
@@ -69,12 +69,12 @@ impl Direction {
 }
 
 impl Harvester {
-    /// Whether changes are carried along in closed form: under the impulsive law, without friction, suspension, reaction and
-    /// recording. With the others they are taken by differences.
+    /// Whether changes are carried along in closed form: under the impulsive law, without friction, suspension and reaction. With
+    /// these they are taken by differences.
     pub fn has_closed_changes(&self) -> bool {
         let p = &self.parameters;
         let is_plain = p.contact_law == ContactLaw::Impulsive && !p.reaction;
-        is_plain && p.friction == 0.0 && !p.is_suspended() && self.motion.playback.is_none()
+        is_plain && p.friction == 0.0 && !p.is_suspended()
     }
 
     /// Where the changes along a `direction` begin, if they are taken by differences, of this harvester before all events, under this

@@ -110,7 +110,7 @@ impl Harvester {
     pub(super) fn next_knot_change(&self, next_impact_change: f64) -> f64 {
         let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
         let pulses = self.pulses.next_knots(self.time);
-        let pulses = pulses.map(|knot| (knot.time, knot.change(&self.pulses.shape, &shape)));
+        let pulses = pulses.map(|knot| (knot.time, knot.change(&self.pulses.shape, shape)));
         let next_impact = self.next_impact().map(|time| (time, next_impact_change));
         let release = self.motion.found_release().map(|time| (time, self.tangential().release_change(time)));
         let knots = pulses.chain(next_impact).chain(release);

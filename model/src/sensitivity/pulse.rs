@@ -24,7 +24,7 @@ fn log_loading_change(pulse: &Pulse) -> f64 {
 
 impl Knot<'_> {
     /// Change of the time, s.
-    pub(crate) fn change(&self, shape: &PulseShape, shape_change: &ShapeChange) -> f64 {
+    pub(crate) fn change(&self, shape: &PulseShape, shape_change: ShapeChange) -> f64 {
         let loading_time = shape.loading_time(self.pulse);
         let relative = log_loading_change(self.pulse);
         let (length, stretch) = if self.is_end { (1.0 + shape.stretch, shape_change.stretch) } else { (1.0, 0.0) };
@@ -35,7 +35,7 @@ impl Knot<'_> {
 impl Pulses {
     /// Change of the deflection at `side` at `time`, s: with the peak, with the time since the impact as a fraction of the loading
     /// time, and with the unloading.
-    pub(crate) fn change_at(&self, side: Side, time: f64, shape_change: &ShapeChange) -> f64 {
+    pub(crate) fn change_at(&self, side: Side, time: f64, shape_change: ShapeChange) -> f64 {
         let Some((pulse, deflection)) = self.largest(side, time) else { return 0.0 };
         let unloading = (time - self.shape.peak_time(pulse)).max(0.0);
         let later = pulse.change.start
@@ -69,7 +69,7 @@ mod tests {
         for (k, is_end) in [false, true].into_iter().enumerate() {
             let knot = Knot { time: 0.0, pulse: &pulse, is_end };
             let slope = (up[k] - down[k]) / (2.0 * H);
-            assert_relative_eq!(knot.change(&shape, &change), slope, max_relative = 1e-8, epsilon = 1e-10);
+            assert_relative_eq!(knot.change(&shape, change), slope, max_relative = 1e-8, epsilon = 1e-10);
         }
     }
 }
