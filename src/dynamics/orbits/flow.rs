@@ -35,9 +35,6 @@ pub struct Change {
     pub by_value: DVector<f64>,
 }
 
-/// Step of differences, in units of what the motion typically is: truncation is its square, rounding 1e-16 over it.
-const STEP: f64 = 1e-6;
-
 /// The motion of a problem from states.
 #[derive(Debug, Clone, Copy)]
 pub struct Flow<'a> {
@@ -126,16 +123,6 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// As [`Flow::after`].
     pub fn change(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
-        // Beside what varies from 0 on, changes that are known at 0 only would be those of another motion.
-        let varied = self.problem.varied.as_ref().map_or(point.value, |varied| varied.range()[1]);
-        if [point.value, varied].iter().all(|value| self.problem.at(*value).has_sensitivities()) {
-            self.exact_change(point, periods)
-        } else {
-            self.change_by_differences(point, periods)
-        }
-    }
-
-    fn exact_change(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
         let parameters = self.parameters(point);
         let time = periods * self.period(point.value);
         let along = |direction: &Direction| -> Result<(Harvester, State), ModelError> {
@@ -178,29 +165,6 @@ impl<'a> Flow<'a> {
     fn changed(self, of: &Sensitivities) -> State {
         let relative = [of.relative_displacement, of.cylinder[1] - of.ball[1]];
         self.state_of(relative, [of.cylinder[0], of.cylinder[1]])
-    }
-
-    /// Where first-order changes are not known: central differences, at a bound of the parameter one-sided ones.
-    fn change_by_differences(self, point: &Point, periods: f64) -> Result<Change, ModelError> {
-        let (dimension, scale) = (self.dimension(), self.scale(point.value));
-        let mut by_state = DMatrix::zeros(dimension, dimension);
-        for column in 0..dimension {
-            let at = |sign: f64| {
-                let mut moved = point.clone();
-                moved.state[column] += sign * STEP * scale[column];
-                self.after(&moved, periods, |_| {})
-            };
-            by_state.set_column(column, &((at(1.0)? - at(-1.0)?) / (2.0 * STEP * scale[column])));
-        }
-        let mut by_value = DVector::zeros(dimension);
-        if let Some(varied) = &self.problem.varied {
-            let [from, to] = varied.range();
-            let (min, max) = (varied.quantity.min, varied.quantity.max);
-            let [below, above] = [-STEP, STEP].map(|step| (point.value + step * (to - from)).clamp(min, max));
-            let at = |value: f64| self.after(&Point { value, ..point.clone() }, periods, |_| {});
-            by_value = (at(above)? - at(below)?) / (above - below);
-        }
-        Ok(Change { end: self.after(point, periods, |_| {})?, by_state, by_value })
     }
 }
 
