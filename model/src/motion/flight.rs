@@ -135,7 +135,8 @@ impl Flight {
     }
 
     /// The angle at `tau`, s.
-    #[inline]
+    #[allow(clippy::inline_always)] // called in the innermost loops, and not inlined everywhere otherwise
+    #[inline(always)]
     fn angle(&self, tau: f64) -> Angle {
         Angle::new(self.sine, self.omega() * tau, self.turns_since_start(tau))
     }

@@ -79,7 +79,8 @@ impl Motion {
             if flight.start + begin > until || self.search.exhausted {
                 return false;
             }
-            self.search_window_of(&cylinder.drive, flight, length, end);
+            let Self { mount, ball, slip, search, .. } = self;
+            Self::search_window_of((mount, ball, slip, search), &cylinder.drive, flight, length, end);
         }
         true
     }

@@ -3,6 +3,7 @@
 use super::cylinder::{CylinderState, Drive};
 use super::events::{Prediction, Search};
 use super::flight::{End, Flight};
+use super::mount::Mount;
 use super::side::Side;
 use super::{Ball, Motion};
 use crate::noise::Noise;
@@ -109,13 +110,19 @@ impl Motion {
 
     /// Searches one window of the flight or of the rest; both limits mean the end of the hold interval, s since the start and s.
     fn search_window(&mut self, limit: f64, end: f64) {
-        let Self { cylinder, flight, .. } = *self;
-        self.search_window_of(&cylinder.drive, &flight, limit, end);
+        let Self { mount, cylinder, ball, slip, flight, search, .. } = self;
+        Self::search_window_of((mount, ball, slip, search), &cylinder.drive, flight, limit, end);
     }
 
-    /// The same of any flight or rest, under this `drive`.
-    pub(super) fn search_window_of(&mut self, drive: &Drive, flight: &Flight, limit: f64, end: f64) {
-        let Self { mount, ball, slip, search, .. } = self;
+    /// The same of any flight or rest of this ball, under this `drive`.
+    #[inline]
+    pub(super) fn search_window_of(
+        (mount, ball, slip, search): (&Mount, &Ball, &f64, &mut Search),
+        drive: &Drive,
+        flight: &Flight,
+        limit: f64,
+        end: f64,
+    ) {
         let time = |elapsed: f64| (flight.start + elapsed).min(end);
         if ball.is_carried() {
             let release = flight.departure_in_window(ball.support(), mount, search.window, limit);
