@@ -30,11 +30,6 @@ pub enum DynamicsError {
     /// The excitation does not repeat.
     #[error("{name} = {value}: dynamics needs an excitation that repeats; with noise no motion comes back")]
     NotPeriodic { name: &'static str, value: f64 },
-    #[error(
-        "contact.law = compliant: --orbits needs the first-order changes of the impulsive law; diagram, section, \
-         exponent and basins work"
-    )]
-    CompliantOrbits,
     #[error("--vary {name}: an orbit does not depend on where a motion starts")]
     InitialState { name: &'static str },
     /// The observer wants no more.

@@ -1,6 +1,6 @@
 //! What the dynamics of is looked at: the parameters of a case, and one of them that varies.
 
-use videg_model::{ContactLaw, Parameters, Quantity};
+use videg_model::{Parameters, Quantity};
 
 use super::DynamicsError;
 
@@ -61,16 +61,12 @@ impl Problem {
         Ok(())
     }
 
-    /// Checks that periodic orbits can be followed: under a periodic excitation and the impulsive law, over a parameter of the
-    /// motion.
+    /// Checks that periodic orbits can be followed: under a periodic excitation, over a parameter of the motion.
     ///
     /// # Errors
     /// What stands against it, by name.
     pub fn check_orbits(&self) -> Result<(), DynamicsError> {
         self.check_periodic()?;
-        if self.parameters.contact_law == ContactLaw::Compliant {
-            return Err(DynamicsError::CompliantOrbits);
-        }
         match &self.varied {
             Some(varied) if varied.quantity.name.starts_with("initial.") => {
                 Err(DynamicsError::InitialState { name: varied.quantity.name })

@@ -44,7 +44,7 @@ impl Flight {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 4000 }))]
 
     #[test]
     fn a_contact_is_the_first_place_on_a_membrane(flight in any_flight(), window in 0..6_u64) {
