@@ -68,7 +68,7 @@ mod tests {
         for (name, said) in [
             ("other/Walk.csv", "resources/Walk.csv is in the FMU already"),
             ("nul.csv", "its name is that of a device on Windows; rename the file"),
-            ("a:b", "its name holds a control character or a colon"),
+            ("a:b", "its name begins with a drive letter; rename the file"),
             ("missing.csv", "cannot read"),
             ("other", "is a directory"),
             ("..", "it has none"),

@@ -31,6 +31,33 @@ pub fn root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -> (f64
     x
 }
 
+/// The same, but for the last steps of Newton's method: the root is right to some 1e-15 of the bracket, and none of its steps go to
+/// and fro in the rounding of the function.
+pub fn short_root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    /// After a step as short as this part of the bracket, the next one would be about its square.
+    const SHORT: f64 = 1e-8;
+    let shortest = SHORT * (high - low);
+    let (mut low, mut high) = (low, high);
+    let mut x = start;
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = function(x);
+        if value > 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - value / slope;
+        let is_inside = newton > low && newton < high;
+        let next = if is_inside { newton } else { 0.5 * (low + high) };
+        let converged = is_inside && (next - x).abs() <= shortest;
+        x = next;
+        if converged || high - low <= f64::EPSILON * high.abs() {
+            break;
+        }
+    }
+    x
+}
+
 /// Root of a nearly linear, convex, increasing function that returns value and slope. `start` lies at or beyond the root, so
 /// the iteration falls towards it; `end` bounds the range of the function.
 pub fn convex_root(start: f64, end: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {

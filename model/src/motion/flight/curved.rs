@@ -6,7 +6,10 @@
 use super::Flight;
 use super::zeros::{Knot, Zero};
 use crate::motion::side::Side;
-use crate::numerics::roots::root_near;
+use crate::numerics::roots::short_root_near;
+
+/// How far on the way to an extremum a contact is looked for first. Most of the way is made by there.
+const EARLY: f64 = 0.8;
 
 impl Flight {
     /// Whether the acceleration of dz has a constant part, and nothing else beside the harmonic one.
@@ -61,7 +64,15 @@ impl Flight {
         let sign = slope.signum();
         // Where a straight slope would be zero.
         let guess = from.tau + (to.tau - from.tau) * slope / (slope - slope_to);
-        let tau = root_near(guess, from.tau, to.tau, |tau| {
+        // Most contacts come well before the extremum, which need not be known then.
+        let early = from.tau + EARLY * (guess - from.tau);
+        let early = self.knot(0, early, self.angle(early));
+        let is_monotone = sign * self.slope(early.tau, &early.angle.swept) > 0.0;
+        if is_monotone && let Some(found) = find(from, &early) {
+            return Some(found);
+        }
+        let from = if is_monotone { &early } else { from };
+        let tau = short_root_near(guess, from.tau, to.tau, |tau| {
             let [_, slope, curvature, ..] = self.derivatives(tau, &self.angle(tau));
             (sign * slope, sign * curvature)
         });
