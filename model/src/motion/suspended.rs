@@ -93,7 +93,7 @@ impl Oscillation {
 
     /// What `tau`, s, add to position, m, beyond the way of the first velocity, and to velocity, m/s.
     pub fn change(&self, tau: f64) -> [f64; 2] {
-        change(&self.terms(tau), tau)
+        if tau > 0.0 { change(&self.terms(tau), tau) } else { [0.0; 2] }
     }
 }
 

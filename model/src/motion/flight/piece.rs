@@ -8,7 +8,7 @@ use crate::motion::mount::Mount;
 use crate::motion::side::Side;
 use crate::motion::suspended::{ORDER, Series, derivative, value_and_slope};
 use crate::numerics::chebyshev;
-use crate::numerics::roots::{bracketed_root, root_near};
+use crate::numerics::roots::{bracketed_root, short_root_near};
 
 /// What bounds say of a piece; most are decided by them.
 enum Decision {
@@ -85,7 +85,7 @@ impl Flight {
             return Decision::Quiet;
         }
         let guess = gap[0] / (gap[0] - end);
-        Decision::Contact(side, root_near(guess, 0.0, 1.0, |x| value_and_slope(&gap, x).into()))
+        Decision::Contact(side, short_root_near(guess, 0.0, 1.0, |x| value_and_slope(&gap, x).into()))
     }
 
     /// The same where no bound decides.
