@@ -264,6 +264,15 @@ impl Harvester {
         let change = |distance: f64| {
             let moved = at(distance).filter(|moved| moved.past() == past)?;
             let mut change = moved.shown().with(&here, |moved, here| moved - here);
+            // What is predicted for one of them only has no change.
+            for (number, predicted) in [
+                (&mut change.next_impact, Self::next_impact as fn(&Self) -> Option<f64>),
+                (&mut change.next_knot, Self::next_knot),
+            ] {
+                if predicted(self).is_none() || predicted(&moved).is_none() {
+                    *number = 0.0;
+                }
+            }
             if moved.totals().impacts != self.totals().impacts {
                 change.last_speed = f64::NAN; // that of another bounce
             }
@@ -275,9 +284,9 @@ impl Harvester {
             let estimate = slope(h, &change);
             if let (Some(now), Some(before)) = (&estimate, &before) {
                 // Two may agree by chance where rounding counts.
-                let error = now
-                    .with(before, |now, before| (now - before).abs())
-                    .with(&here, |error, here| error + f64::EPSILON * here.abs() / h);
+                let spread = now.with(before, |now, before| (now - before).abs());
+                let rounding = |value: f64| f64::EPSILON * value.abs() / h;
+                let error = spread.with(&here, |spread, here| spread + rounding(here));
                 let (old, old_error) = best.map_or((*now, error), |[value, error]| (value, error));
                 // Far below, rounding may be the same at each step: a shorter one must be much better.
                 let is_better = error.with(&old_error, |new, old| f64::from(new <= 0.1 * old || old.is_nan()));
@@ -288,13 +297,13 @@ impl Harvester {
                     .with(&error, |better, error| if better > 0.0 { error } else { f64::NAN })
                     .with(&old_error, |new, old| if new.is_nan() { old } else { new });
                 best = Some([value, error]);
-                let largest = Cell::new(0.0_f64);
-                error.with(now, |error, now| {
-                    let relative = if error > 0.0 { error / now.abs() } else { 0.0 };
-                    largest.set(largest.get().max(relative));
+                let agree = Cell::new(true);
+                let bound = now.with(&here, |now, here| AGREED * now.abs() + rounding(here));
+                spread.with(&bound, |spread, bound| {
+                    agree.set(agree.get() && spread <= bound);
                     0.0
                 });
-                if largest.get() <= AGREED {
+                if agree.get() {
                     break;
                 }
             }
@@ -325,9 +334,8 @@ impl Harvester {
             energies: self.energies(),
             contact_time: self.contact_time(),
             mount_force: self.mount_force(),
-            // Where there is none, no change.
-            next_impact: self.next_impact().unwrap_or(f64::INFINITY),
-            next_knot: self.next_knot().unwrap_or(f64::INFINITY),
+            next_impact: self.next_impact().unwrap_or(0.0),
+            next_knot: self.next_knot().unwrap_or(0.0),
         }
     }
 }
