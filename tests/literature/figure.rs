@@ -26,9 +26,10 @@ fn orbits(p: &Parameters) -> [Vec<(f64, f64)>; 2] {
     found
 }
 
-/// Lines of text and of the closed form: dots of chaotic motions depend on the last bit.
+/// The words of a picture. Where dots and numbers of its axes are depends on the last bits of irregular motions.
 fn lasting(svg: &str) -> Vec<&str> {
-    svg.lines().filter(|line| line.contains("<text") || line.contains("<title")).collect()
+    let is_word = |line: &&str| line.starts_with("<title") || !line.starts_with('<') && line.parse::<f64>().is_err();
+    svg.lines().filter(is_word).collect()
 }
 
 #[test]
