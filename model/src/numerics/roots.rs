@@ -11,24 +11,7 @@ pub fn bracketed_root(low: f64, high: f64, function: impl Fn(f64) -> (f64, f64))
 
 /// The same, where the root is about at `start`.
 pub fn root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let (mut low, mut high) = (low, high);
-    let mut x = start;
-    for _ in 0..MAX_ITERATIONS {
-        let (value, slope) = function(x);
-        if value > 0.0 {
-            low = x;
-        } else {
-            high = x;
-        }
-        let newton = x - value / slope;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        let converged = (next - x).abs() <= f64::EPSILON * x.abs();
-        x = next;
-        if converged || high - low <= f64::EPSILON * high.abs() {
-            break;
-        }
-    }
-    x
+    newton_or_bisection(start, [low, high], function, |step, x, _| step <= f64::EPSILON * x.abs())
 }
 
 /// The same, but for the last steps of Newton's method: the root is right to some 1e-15 of the bracket, and none of its steps go to
@@ -37,7 +20,17 @@ pub fn short_root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -
     /// After a step as short as this part of the bracket, the next one would be about its square.
     const SHORT: f64 = 1e-8;
     let shortest = SHORT * (high - low);
-    let (mut low, mut high) = (low, high);
+    newton_or_bisection(start, [low, high], function, |step, _, is_newton| is_newton && step <= shortest)
+}
+
+/// `is_last`: whether a step of this length from x, by Newton's method or not, is the last.
+#[inline]
+fn newton_or_bisection(
+    start: f64,
+    [mut low, mut high]: [f64; 2],
+    function: impl Fn(f64) -> (f64, f64),
+    is_last: impl Fn(f64, f64, bool) -> bool,
+) -> f64 {
     let mut x = start;
     for _ in 0..MAX_ITERATIONS {
         let (value, slope) = function(x);
@@ -49,7 +42,7 @@ pub fn short_root_near(start: f64, low: f64, high: f64, function: impl Fn(f64) -
         let newton = x - value / slope;
         let is_inside = newton > low && newton < high;
         let next = if is_inside { newton } else { 0.5 * (low + high) };
-        let converged = is_inside && (next - x).abs() <= shortest;
+        let converged = is_last((next - x).abs(), x, is_inside);
         x = next;
         if converged || high - low <= f64::EPSILON * high.abs() {
             break;
