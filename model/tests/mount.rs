@@ -9,40 +9,18 @@ mod brute;
 mod mounts;
 
 use brute::{Brute, Recorded, small_steps};
-use mounts::{any_mount, compliant, difference, positions, sensitivity};
+use mounts::{any_mount, close_books, compliant, follow_brute_force, meet_predictions, positions, sensitivity};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_4;
-use videg_model::{Case, Event, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Side};
+use videg_model::{Case, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Side};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
     fn the_motion_is_that_of_brute_force_until_chaos_separates_them(p in any_mount()) {
-        let mut brute = Brute::new(p, 2e-5);
-        let mut harvester = Harvester::new(&p, 0.0).unwrap();
-        let mut impacts = Vec::new();
-        for k in 1..=20 {
-            let time = 0.1 * f64::from(k);
-            brute.run(time);
-            let mut seen = Vec::new();
-            harvester.advance_with(brute.time, |event| {
-                if let Event::Impact(impact) = event { seen.push((impact.time, impact.speed)) }
-            }).unwrap();
-            // The rule for a resting ball is right to a few steps.
-            if sensitivity(p, 1e-7, brute.time) > 1e-5 {
-                break;
-            }
-            impacts.extend(seen);
-            let [z, v, b, w] = brute.state;
-            let found = difference(positions(&harvester)[..2].try_into().map(|[a, c]: [f64; 2]| [a, c, 0.0, 0.0]).unwrap(), [z, b, 0.0, 0.0]);
-            prop_assert!(found < 3e-5, "{found:e} m at {time} s, {} impacts\nours   {:?}\nbrute  {:?}\n{:?} {:?}", impacts.len(), positions(&harvester), [z, b, v, w], impacts, brute.impacts);
-        }
-        let resolved = |list: &[(f64, f64)]| list.iter().copied().filter(|(_, speed)| *speed > 1e-2).collect::<Vec<_>>();
-        let (ours, theirs) = (resolved(&impacts), resolved(&brute.impacts));
-        for (a, b) in ours.iter().zip(&theirs) {
-            prop_assert!((a.0 - b.0).abs() < 1e-3 && (a.1 - b.1).abs() < 1e-3, "{a:?} {b:?}");
-        }
+        let harvester = Harvester::new(&p, 0.0).unwrap();
+        follow_brute_force(harvester, Brute::new(p, 2e-5), |time| sensitivity(p, 1e-7, time))?;
     }
 }
 
@@ -52,19 +30,7 @@ proptest! {
     #[test]
     fn the_energy_books_close(p in any_mount(), force in -0.5..0.5_f64, is_compliant in any::<bool>()) {
         let p = if is_compliant { compliant(p) } else { p };
-        let mut harvester = Harvester::new(&p, 0.0).unwrap();
-        let start = harvester.energies();
-        harvester.advance(1.3).unwrap();
-        harvester.set_external_force(force, -0.1).unwrap();
-        harvester.advance(4.0).unwrap();
-        let end = harvester.energies();
-        let of_ball = end.ball - start.ball + end.elastic + end.impact_loss + end.friction;
-        let given = end.wall + end.electrical + end.gravity;
-        let moved = [end.ball, start.ball, end.wall, end.gravity, end.impact_loss, end.friction]
-            .iter()
-            .fold(1e-12, |sum: f64, value| sum + value.abs());
-        prop_assert!((of_ball - given).abs() < 1e-9 * moved, "{:e} of {moved:e}: {end:?}", of_ball - given);
-        prop_assert!(end.impact_loss >= 0.0 && end.friction >= 0.0 && end.damping >= 0.0);
+        close_books(Harvester::new(&p, 0.0).unwrap(), force)?;
     }
 
     #[test]
@@ -95,21 +61,7 @@ proptest! {
 
     #[test]
     fn an_impact_comes_when_it_was_predicted_and_none_before(p in any_mount(), steps in prop::collection::vec(1e-3..0.05, 40)) {
-        let mut harvester = Harvester::new(&p, 0.0).unwrap();
-        for step in steps {
-            let (predicted, begin) = (harvester.next_impact(), harvester.time());
-            let mut first = None;
-            let until = predicted.map_or(begin + step, |time| time.min(begin + step));
-            harvester.advance_with(until, |event| {
-                if let Event::Impact(impact) = event { first = first.or(Some(impact.time)) }
-            }).unwrap();
-            match predicted {
-                Some(time) if time <= begin + step => prop_assert_eq!(first, Some(time)),
-                Some(_) => prop_assert_eq!(first, None),
-                // It may lie behind more turns than are looked at, all within this step.
-                None => {}
-            }
-        }
+        meet_predictions(Harvester::new(&p, 0.0).unwrap(), &steps)?;
     }
 
     #[test]

@@ -11,10 +11,12 @@ mod mounts;
 use std::f64::consts::TAU;
 
 use brute::{Brute, Recorded, small_steps};
-use mounts::{any_mount, compliant, difference, positions, sensitivity_of};
+use mounts::{
+    any_mount, close_books, compliant, difference, follow_brute_force, meet_predictions, positions, sensitivity_of,
+};
 use proptest::prelude::*;
 use videg_model::{
-    Case, Direction, Event, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Quantity, Recording,
+    Case, Direction, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Quantity, Recording,
 };
 
 prop_compose! {
@@ -88,49 +90,16 @@ proptest! {
     fn the_motion_is_that_of_brute_force_until_chaos_separates_them(
         excitation in any_excitation(), force in prop_oneof![Just([0.0; 2]), [-0.3..0.3, -0.1..0.1]],
     ) {
-        let mut brute = Brute::excited(excitation.p, excitation.recorded.clone(), force, 2e-5);
+        let brute = Brute::excited(excitation.p, excitation.recorded.clone(), force, 2e-5);
         let mut harvester = excitation.harvester();
         harvester.set_external_force(force[0], force[1]).unwrap();
-        let mut impacts = Vec::new();
-        for k in 1..=20 {
-            let time = 0.1 * f64::from(k);
-            brute.run(time);
-            let mut seen = Vec::new();
-            harvester.advance_with(brute.time, |event| {
-                if let Event::Impact(impact) = event { seen.push((impact.time, impact.speed)) }
-            }).unwrap();
-            // The rule for a resting ball is right to a few steps.
-            if excitation.sensitivity(brute.time) > 1e-5 {
-                break;
-            }
-            impacts.extend(seen);
-            let [z, v, b, w] = brute.state;
-            let [found_z, found_b, ..] = positions(&harvester);
-            let found = (found_z - z).abs().max((found_b - b).abs());
-            prop_assert!(found < 3e-5, "{found:e} m at {time} s, {} impacts\nours   {:?}\nbrute  {:?}\n{:?} {:?}", impacts.len(), positions(&harvester), [z, b, v, w], impacts, brute.impacts);
-        }
-        let resolved = |list: &[(f64, f64)]| list.iter().copied().filter(|(_, speed)| *speed > 1e-2).collect::<Vec<_>>();
-        for (a, b) in resolved(&impacts).iter().zip(&resolved(&brute.impacts)) {
-            prop_assert!((a.0 - b.0).abs() < 1e-3 && (a.1 - b.1).abs() < 1e-3, "{a:?} {b:?}");
-        }
+        follow_brute_force(harvester, brute, |time| excitation.sensitivity(time))?;
     }
 
     #[test]
     fn the_energy_books_close(excitation in any_excitation(), force in -0.5..0.5_f64, is_compliant in any::<bool>()) {
         let excitation = if is_compliant { excitation.with(compliant) } else { excitation };
-        let mut harvester = excitation.harvester();
-        let start = harvester.energies();
-        harvester.advance(1.3).unwrap();
-        harvester.set_external_force(force, -0.1).unwrap();
-        harvester.advance(4.0).unwrap();
-        let end = harvester.energies();
-        let of_ball = end.ball - start.ball + end.elastic + end.impact_loss + end.friction;
-        let given = end.wall + end.electrical + end.gravity;
-        let moved = [end.ball, start.ball, end.wall, end.gravity, end.impact_loss, end.friction]
-            .iter()
-            .fold(1e-12, |sum: f64, value| sum + value.abs());
-        prop_assert!((of_ball - given).abs() < 1e-9 * moved, "{:e} of {moved:e}: {end:?}", of_ball - given);
-        prop_assert!(end.impact_loss >= 0.0 && end.friction >= 0.0 && end.damping >= 0.0);
+        close_books(excitation.harvester(), force)?;
     }
 
     #[test]
@@ -175,21 +144,7 @@ proptest! {
     fn an_impact_comes_when_it_was_predicted_and_none_before(
         excitation in any_excitation(), steps in prop::collection::vec(1e-3..0.05, 40),
     ) {
-        let mut harvester = excitation.harvester();
-        for step in steps {
-            let (predicted, begin) = (harvester.next_impact(), harvester.time());
-            let mut first = None;
-            let until = predicted.map_or(begin + step, |time| time.min(begin + step));
-            harvester.advance_with(until, |event| {
-                if let Event::Impact(impact) = event { first = first.or(Some(impact.time)) }
-            }).unwrap();
-            match predicted {
-                Some(time) if time <= begin + step => prop_assert_eq!(first, Some(time)),
-                Some(_) => prop_assert_eq!(first, None),
-                // It may lie behind more turns than are looked at, all within this step.
-                None => {}
-            }
-        }
+        meet_predictions(excitation.harvester(), &steps)?;
     }
 
     #[test]

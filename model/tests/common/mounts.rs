@@ -4,7 +4,9 @@
 
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
-use videg_model::{ContactLaw, ExcitationKind, Harvester, Parameters};
+use videg_model::{ContactLaw, Event, ExcitationKind, Harvester, Parameters};
+
+use super::brute::Brute;
 
 prop_compose! {
     pub fn any_mount()(
@@ -72,4 +74,84 @@ pub fn sensitivity_of(p: Parameters, make: &dyn Fn(Parameters) -> Harvester, nud
         let velocity = run(Parameters { cylinder_velocity: p.cylinder_velocity + sign * nudge, ..p });
         largest.max(difference(position, there)).max(difference(velocity, there))
     })
+}
+
+/// Compares the motion with that by brute force, impact by impact, while `sensitivity` at a time, s, is below 1e-5: the distance, m,
+/// of two runs that began close to each other.
+pub fn follow_brute_force(
+    mut harvester: Harvester,
+    mut brute: Brute,
+    sensitivity: impl Fn(f64) -> f64,
+) -> Result<(), TestCaseError> {
+    let mut impacts = Vec::new();
+    for k in 1..=20 {
+        let time = 0.1 * f64::from(k);
+        brute.run(time);
+        let mut seen = Vec::new();
+        let show = |event: &Event| {
+            if let Event::Impact(impact) = event {
+                seen.push((impact.time, impact.speed));
+            }
+        };
+        harvester.advance_with(brute.time, show).unwrap();
+        // The rule for a resting ball is right to a few steps.
+        if sensitivity(brute.time) > 1e-5 {
+            break;
+        }
+        impacts.extend(seen);
+        let [z, v, b, w] = brute.state;
+        let ours = positions(&harvester);
+        let found = (ours[0] - z).abs().max((ours[1] - b).abs());
+        prop_assert!(
+            found < 3e-5,
+            "{found:e} m at {time} s, {} impacts\nours   {ours:?}\nbrute  {:?}\n{impacts:?} {:?}",
+            impacts.len(),
+            [z, b, v, w],
+            brute.impacts
+        );
+    }
+    let resolved = |list: &[(f64, f64)]| list.iter().copied().filter(|(_, speed)| *speed > 1e-2).collect::<Vec<_>>();
+    for (a, b) in resolved(&impacts).iter().zip(&resolved(&brute.impacts)) {
+        prop_assert!((a.0 - b.0).abs() < 1e-3 && (a.1 - b.1).abs() < 1e-3, "{a:?} {b:?}");
+    }
+    Ok(())
+}
+
+/// The energy books of the ball close over 4 s, under a `force`, N, from 1.3 s on.
+pub fn close_books(mut harvester: Harvester, force: f64) -> Result<(), TestCaseError> {
+    let start = harvester.energies();
+    harvester.advance(1.3).unwrap();
+    harvester.set_external_force(force, -0.1).unwrap();
+    harvester.advance(4.0).unwrap();
+    let end = harvester.energies();
+    let of_ball = end.ball - start.ball + end.elastic + end.impact_loss + end.friction;
+    let given = end.wall + end.electrical + end.gravity;
+    let moved = [end.ball, start.ball, end.wall, end.gravity, end.impact_loss, end.friction]
+        .iter()
+        .fold(1e-12, |sum: f64, value| sum + value.abs());
+    prop_assert!((of_ball - given).abs() < 1e-9 * moved, "{:e} of {moved:e}: {end:?}", of_ball - given);
+    prop_assert!(end.impact_loss >= 0.0 && end.friction >= 0.0 && end.damping >= 0.0);
+    Ok(())
+}
+
+/// In `steps`, s, each impact comes when it was predicted, and none before.
+pub fn meet_predictions(mut harvester: Harvester, steps: &[f64]) -> Result<(), TestCaseError> {
+    for step in steps {
+        let (predicted, begin) = (harvester.next_impact(), harvester.time());
+        let mut first = None;
+        let until = predicted.map_or(begin + step, |time| time.min(begin + step));
+        let show = |event: &Event| {
+            if let Event::Impact(impact) = event {
+                first = first.or(Some(impact.time));
+            }
+        };
+        harvester.advance_with(until, show).unwrap();
+        match predicted {
+            Some(time) if time <= begin + step => prop_assert_eq!(first, Some(time)),
+            Some(_) => prop_assert_eq!(first, None),
+            // It may lie behind more turns than are looked at, all within this step.
+            None => {}
+        }
+    }
+    Ok(())
 }
