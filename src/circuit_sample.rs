@@ -19,7 +19,7 @@ pub struct CircuitSample {
 
 impl CircuitSample {
     /// Names of [`CircuitSample::columns`], as the FMU `HarvestingCircuit` has them.
-    pub const NAMES: [&'static str; 13] = [
+    pub const NAMES: [&'static str; 14] = [
         "left.voltage",
         "right.voltage",
         "load.voltage",
@@ -33,17 +33,19 @@ impl CircuitSample {
         "mechanical.energy",
         "supply.charge",
         "load.charge",
+        "leakage.energy",
     ];
 
     /// The values as a row of a time series.
     pub fn columns(&self) -> [f64; Self::NAMES.len()] {
-        let Ledger { supply, load, zener, diode, stored, mechanical, supply_charge, load_charge } = self.ledger;
+        let Ledger { supply, load, zener, diode, leakage, stored, mechanical, supply_charge, load_charge } =
+            self.ledger;
         let [left, right] = self.voltage;
         let energies = [supply, load, zener, diode, stored, mechanical];
         let mut row = [0.0; Self::NAMES.len()];
         row[..5].copy_from_slice(&[left, right, self.load_voltage, self.load_current, self.supply_current]);
         row[5..11].copy_from_slice(&energies);
-        row[11..].copy_from_slice(&[supply_charge, load_charge]);
+        row[11..].copy_from_slice(&[supply_charge, load_charge, leakage]);
         row
     }
 
@@ -63,8 +65,10 @@ impl CircuitSample {
             mechanical,
             q_in,
             q_out,
+            leakage,
         ] = row;
-        let ledger = Ledger { supply, load, zener, diode, stored, mechanical, supply_charge: q_in, load_charge: q_out };
+        let charges = Ledger { supply_charge: q_in, load_charge: q_out, ..Ledger::default() };
+        let ledger = Ledger { supply, load, zener, diode, leakage, stored, mechanical, ..charges };
         Self { voltage: [left, right], load_voltage, load_current, supply_current, ledger }
     }
 }

@@ -3,7 +3,7 @@
 
 use videg_circuit::{Circuit, Settings};
 use videg_golden::Golden;
-use videg_model::{ContactLaw, Harvester, ModelError, Parameters};
+use videg_model::{ContactLaw, ExcitationKind, Harvester, MembraneLaw, ModelError, Parameters};
 
 const GOLDEN: Golden = Golden::new("UPDATE_BOUNDS", "cargo test --test bounds");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/bounds.md");
@@ -51,10 +51,24 @@ fn row(name: &str, unit: &str, [min, max]: [f64; 2], at: impl Fn(f64) -> String)
     format!("| `{name}` | {unit} | {} | {} | {} | {} |\n", number(min), number(max), at(min), at(max))
 }
 
+/// Parameters under which the one of this `name` counts.
+fn with_use_of(name: &str) -> Parameters {
+    let p = Parameters::default();
+    match name {
+        "excitation.acceleration" => Parameters { excitation_kind: ExcitationKind::Motion, ..p },
+        "membrane.shearModulus" | "membrane.stretchLimit" => Parameters { membrane_law: MembraneLaw::Gent, ..p },
+        "membrane.viscousModulus" | "membrane.relaxationTime" => {
+            Parameters { membrane_law: MembraneLaw::Gent, viscous_modulus: 1e4, relaxation_time: 0.01, ..p }
+        }
+        _ if name.starts_with("membrane.ogden") => Parameters { membrane_law: MembraneLaw::Ogden, ..p },
+        _ => p,
+    }
+}
+
 fn harvester_row(quantity: &videg_model::Quantity) -> String {
     row(quantity.name, quantity.unit, [quantity.min, quantity.max], |value| {
         let laws = [ContactLaw::Impulsive, ContactLaw::Compliant].map(|contact_law| {
-            let mut parameters = Parameters { contact_law, ..Parameters::default() };
+            let mut parameters = Parameters { contact_law, ..with_use_of(quantity.name) };
             (quantity.set)(&mut parameters, value);
             of_harvester(&parameters)
         });

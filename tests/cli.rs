@@ -122,6 +122,26 @@ fn the_books_of_a_co_simulation_balance() {
 }
 
 #[test]
+fn what_leaks_is_an_entry_of_the_books_in_either_circuit() {
+    let leaking = ["cosim", "--until", "2", "--set", "leakage.timeConstant=2"];
+    for circuit in ["embedded", "fmu"] {
+        let found = json(&[&leaking[..], &["--json", "--circuit", circuit]].concat());
+        let energy = |key: &str| number(&found, &format!("energy.{key}"));
+        let given = energy("load") + energy("zener") + energy("diode") + energy("leakage") + energy("stored");
+        assert_relative_eq!(energy("mechanical"), given - energy("supply"), epsilon = 1e-9 * energy("supply"));
+        // Two membranes at 2 kV and 15 pF, and somewhat more in contacts.
+        let rest = 2.0 * 15e-12 * 2000.0 * 2000.0;
+        assert!(energy("leakage") > rest && energy("leakage") < 1.5 * rest, "{found}");
+    }
+    let row = "load + Zener + diode + leakage + stored - supply";
+    assert!(videg(&leaking).stdout.contains(row));
+    assert!(!videg(&["cosim", "--until", "2"]).stdout.contains("leakage"));
+    let refused = videg(&["cosim", "--set", "leakage.timeConstant=1e-7"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.contains("leakage.timeConstant = 0.0000001 s is below 0.000001 s"), "{}", refused.stderr);
+}
+
+#[test]
 fn the_circuit_of_the_paper_gains_only_where_its_membranes_are_pressed_in_far() {
     // A charge let out at U gains U - 2 U_in of its own: on one node a gain needs C3/C2 above 3.
     let surplus = |arguments: &[&str]| {

@@ -104,7 +104,10 @@ impl Circuit {
         let before = self.state;
         match self.parameters.diodes {
             Diodes::Ideal => self.advance_ideal(dt, capacitance)?,
-            Diodes::Exponential(diode) => self.advance_exponential(&diode, dt, capacitance)?,
+            Diodes::Exponential(diode) if self.parameters.leaks() => {
+                self.advance_exponential::<true>(&diode, dt, capacitance)?;
+            }
+            Diodes::Exponential(diode) => self.advance_exponential::<false>(&diode, dt, capacitance)?,
         }
         self.state.capacitance = capacitance;
         self.state.time += dt;
@@ -141,7 +144,12 @@ impl Circuit {
         Ok(())
     }
 
-    fn advance_exponential(&mut self, diode: &DiodeParameters, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+    fn advance_exponential<const LEAKS: bool>(
+        &mut self,
+        diode: &DiodeParameters,
+        dt: f64,
+        capacitance: [f64; 2],
+    ) -> Result<(), Error> {
         let mut network = self.network();
         let ends = self.node_capacitances(capacitance);
         let start = network.nodes.map(|node| node.capacitance);
@@ -152,7 +160,7 @@ impl Circuit {
             return Ok(());
         }
         let devices = Devices::new(&self.parameters, diode);
-        let solver = Exponential {
+        let solver = Exponential::<'_, LEAKS> {
             devices: &devices,
             solver: &diode.solver,
             count: network.count,
@@ -276,9 +284,10 @@ impl Circuit {
 
     fn update_ideal_outputs(&mut self, network: &Network) {
         let elements = &network.elements;
-        let falling = |j: usize| -network.nodes[j].rate;
-        let held: f64 = network.in_mode(Mode::Holding).map(falling).sum();
-        let filled: f64 = network.in_mode(Mode::Charging).map(falling).sum();
+        let given = |j: usize| -network.drift(j);
+        // At rest a leaking node is about to leave the voltage of release.
+        let held = network.pressure().max(0.0);
+        let filled: f64 = network.in_mode(Mode::Charging).map(given).sum();
         let top = network.nodes[..network.count].iter().map(Node::voltage).fold(0.0, f64::max);
         self.state.supply_current = 0.0 - elements.supply * filled;
         (self.state.load_voltage, self.state.load_current) = if elements.open() {

@@ -44,6 +44,8 @@ pub(crate) struct Devices {
     pub resistance: f64,
     /// `1/R` (S), from 0 to infinity with both ends; bounded behind a switch.
     pub conductance: f64,
+    /// Part of the charge that leaks through the film in a second (1/s), 0 for none.
+    pub leak: f64,
     /// Kind of the release element.
     pub release: Release,
     saturation: f64,
@@ -72,6 +74,7 @@ impl Devices {
                 Release::Zener | Release::Storage => parameters.conductance(),
                 Release::Switch => parameters.conductance().min(SWITCH_CONDUCTANCE),
             },
+            leak: parameters.leakage_rate(),
             release: parameters.release,
             saturation,
             forward: diode.emission_coefficient * thermal,

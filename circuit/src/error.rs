@@ -52,6 +52,14 @@ pub enum Error {
         /// Largest value allowed.
         max: f64,
     },
+    /// A leakage faster than any film's, but not 0, which means none.
+    #[error("leakage.timeConstant = {time_constant} s is below {min} s; 0 means no leakage")]
+    LeakageTooFast {
+        /// The value given (s).
+        time_constant: f64,
+        /// Smallest value allowed but 0 (s).
+        min: f64,
+    },
     /// The release element would conduct all the time: the paper demands `U_in <= U_z` (Section 4.1).
     #[error("zener.voltage = {zener} V is below supply.voltage = {supply} V")]
     ZenerBelowSupply {
@@ -124,6 +132,7 @@ impl Error {
             | Self::NotPositive { name, .. }
             | Self::Negative { name, .. }
             | Self::Bounds { name, .. } => vec![name],
+            Self::LeakageTooFast { .. } => vec![names::LEAKAGE_TIME_CONSTANT],
             Self::ZenerBelowSupply { .. } => vec![names::ZENER_VOLTAGE, names::SUPPLY_VOLTAGE],
             Self::StorageBelowSupply { .. } => vec![names::STORAGE_VOLTAGE, names::SUPPLY_VOLTAGE],
             _ => Vec::new(),

@@ -26,8 +26,8 @@ const REMEMBERED: std::ops::Range<f64> = 0.1..0.8;
 /// many of these as there may be steps would take minutes. A fuzzer has less time.
 const TRIALS: usize = if cfg!(fuzzing) { 5_000 } else { 2_000_000 };
 
-/// One call of [`Exponential::advance`].
-pub(crate) struct Exponential<'a> {
+/// One call of [`Exponential::advance`], with films that leak or without.
+pub(crate) struct Exponential<'a, const LEAKS: bool> {
     pub devices: &'a Devices,
     pub solver: &'a Solver,
     /// Number of nodes.
@@ -42,7 +42,7 @@ pub(crate) struct Exponential<'a> {
     pub trials: Cell<usize>,
 }
 
-impl Exponential<'_> {
+impl<const LEAKS: bool> Exponential<'_, LEAKS> {
     /// Integrates over `dt` seconds; `network` gets charges and ledger, `internal_step` the step to begin the next call
     /// with where that is not the whole call.
     ///
@@ -106,7 +106,7 @@ impl Exponential<'_> {
     }
 
     /// Adds what has flowed to the charges and the ledger.
-    fn record(&self, flow: &Flow, network: &mut Network) {
+    fn record(&self, flow: &Flow<LEAKS>, network: &mut Network) {
         let charges = self.charges(flow);
         for (node, charge) in network.nodes.iter_mut().zip(charges) {
             node.charge = charge;
@@ -119,6 +119,7 @@ impl Exponential<'_> {
         ledger.load += flow.load;
         ledger.zener += flow.zener;
         ledger.diode += flow.diode;
+        ledger.leakage += flow.leakage;
         ledger.mechanical += flow.mechanical;
     }
 }

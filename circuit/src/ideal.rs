@@ -23,6 +23,8 @@ enum Event {
     Block(usize),
     /// The releasing nodes fall to `U_z`.
     Fall,
+    /// The elements that hold a leaking node do so no longer; what follows, [`Network::settle`] decides.
+    Leave,
 }
 
 impl Network {
@@ -64,6 +66,13 @@ impl Network {
     /// The first switching instant within `span` seconds.
     fn next_event(&self, span: f64) -> Option<(f64, Event)> {
         let discharge = self.discharge();
+        let leaks = self.elements.leak > 0.0;
+        let threshold = self.elements.threshold;
+        let fall = discharge.and_then(|discharge| {
+            if leaks { discharge.time_to_leak_to(threshold, span) } else { discharge.time_to_fall_to(threshold) }
+        });
+        // Beyond it, leaking nodes may have lost so much that nothing is left to compare.
+        let falls = if leaks { fall.unwrap_or(span) } else { span };
         let joined = self.in_mode(Mode::Releasing).count() == 2;
         let mut first: Option<(f64, Event)> = None;
         let mut offer = |t: Option<f64>, event: Event| {
@@ -75,31 +84,39 @@ impl Network {
         for j in 0..self.count {
             match (self.nodes[j].mode, &discharge) {
                 (Mode::Off, leader) => {
-                    offer(self.time_to_supply(j), Event::Supply(j));
+                    offer(self.time_to_supply(j, span), Event::Supply(j));
                     match leader {
-                        Some(leader) => offer(self.time_to_meet(j, leader, span), Event::Meet(j)),
-                        None => offer(self.time_to_threshold(j), Event::Threshold(j)),
+                        Some(leader) => offer(self.time_to_meet(j, leader, falls), Event::Meet(j)),
+                        None => offer(self.time_to_threshold(j, span), Event::Threshold(j)),
                     }
                 }
+                (Mode::Charging, _) if leaks => offer(self.time_to_leave(j, span), Event::Leave),
                 (Mode::Releasing, Some(pair)) if joined => {
-                    offer(self.time_to_block(j, pair, span), Event::Block(j));
+                    offer(self.time_to_block(j, pair, falls), Event::Block(j));
                 }
                 _ => {}
             }
         }
-        if let Some(discharge) = discharge {
-            offer(discharge.time_to_fall_to(self.elements.threshold), Event::Fall);
+        offer(fall, Event::Fall);
+        if leaks && discharge.is_none() {
+            offer(self.time_to_overrun(span), Event::Leave);
         }
         first
     }
 
-    fn time_to_supply(&self, j: usize) -> Option<f64> {
+    fn time_to_supply(&self, j: usize, span: f64) -> Option<f64> {
         let node = &self.nodes[j];
+        if self.elements.leak > 0.0 {
+            return self.time_to_leak_to(node, self.elements.supply, span);
+        }
         (node.rate > 0.0).then(|| time_to_voltage(node, self.elements.supply))
     }
 
-    fn time_to_threshold(&self, j: usize) -> Option<f64> {
+    fn time_to_threshold(&self, j: usize, span: f64) -> Option<f64> {
         let node = &self.nodes[j];
+        if self.elements.leak > 0.0 && !self.elements.open() {
+            return self.time_to_rise_to(node, self.elements.threshold, span);
+        }
         (node.rate < 0.0 && !self.elements.open()).then(|| time_to_voltage(node, self.elements.threshold))
     }
 
@@ -107,6 +124,9 @@ impl Network {
     /// falls through zero. `h` is a combination of four powers of the leader's capacitance, `h''` of two: it
     /// has one zero, in closed form.
     fn time_to_meet(&self, j: usize, leader: &Discharge, span: f64) -> Option<f64> {
+        if self.elements.leak > 0.0 {
+            return self.time_to_meet_leaking(j, leader, span);
+        }
         let node = self.nodes[j];
         let capacitance = |t: f64| node.capacitance + node.rate * t;
         let decay = leader.rate + leader.conductance;
@@ -137,6 +157,9 @@ impl Network {
         if lead >= 0.0 {
             return None;
         }
+        if self.elements.leak > 0.0 {
+            return self.time_to_block_leaking(j, pair, span);
+        }
         let factor = |t: f64| (node.capacitance + node.rate * t) * g + lead;
         let decay = pair.rate + g;
         // The second derivative is proportional to (C_j / R + lead) (a + k) - 2 k_j C / R.
@@ -161,6 +184,7 @@ impl Network {
             Event::Threshold(j) => self.pin(j, self.elements.threshold, Mode::Holding),
             Event::Meet(j) => self.nodes[j].mode = Mode::Releasing,
             Event::Block(j) => self.nodes[j].mode = Mode::Off,
+            Event::Leave => {}
             Event::Fall => {
                 for j in 0..self.count {
                     if self.nodes[j].mode == Mode::Releasing {

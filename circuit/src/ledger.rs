@@ -18,6 +18,8 @@ pub struct Ledger {
     /// Energy burnt in the charging diodes and in those into a storage (J); with ideal diodes only by inrush from a
     /// start below `U_in` or above `U_out`.
     pub diode: f64,
+    /// Energy burnt by leakage through the films of the membranes (J).
+    pub leakage: f64,
     /// Change of the stored energy `1/2 C V^2` since the start (J).
     pub stored: f64,
     /// Work of the mechanics against the electric field, `-integral 1/2 V^2 dC` (J).
@@ -31,14 +33,14 @@ pub struct Ledger {
 impl Ledger {
     /// Rejects sums that no run can have given.
     pub(crate) fn validate(&self) -> Result<(), Error> {
-        let energies = [self.supply, self.load, self.zener, self.diode, self.stored, self.mechanical];
+        let energies = [self.supply, self.load, self.zener, self.diode, self.leakage, self.stored, self.mechanical];
         energies.into_iter().try_for_each(|energy| finite("ledger", energy, "J"))?;
         [self.supply_charge, self.load_charge].into_iter().try_for_each(|charge| finite("ledger", charge, "C"))
     }
 
-    /// Energy that the mechanics gave, from the electrical side (J): load + zener + diode + stored - supply.
+    /// Energy that the mechanics gave, from the electrical side (J): load + zener + diode + leakage + stored - supply.
     pub fn converted(&self) -> f64 {
-        self.load + self.zener + self.diode + self.stored - self.supply
+        self.load + self.zener + self.diode + self.leakage + self.stored - self.supply
     }
 
     /// What a user gains (J): load - supply.

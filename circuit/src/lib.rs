@@ -15,6 +15,8 @@ mod error;
 mod exponential;
 pub mod formulas;
 mod ideal;
+mod leakage;
+mod leaking;
 mod ledger;
 mod network;
 mod node_equations;

@@ -8,6 +8,10 @@ use crate::state::{Mode, Node};
 /// Relative size of what rounding may do to a comparison of two nodes.
 pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 
+/// Part of the rate of a capacitance by which that and the leak may differ where they are about to be in balance: a node
+/// that leaves its voltage earlier by as much does so at an error of the square of this.
+pub(crate) const SETTLED: f64 = 1e-10;
+
 /// The elements around the nodes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Elements {
@@ -19,6 +23,8 @@ pub(crate) struct Elements {
     pub drop: f64,
     /// `1/R` (S), from 0 to infinity with both ends; a storage takes charge as a load of 0 ohm does.
     pub conductance: f64,
+    /// Part of the charge that leaks through the film in a second (1/s), 0 for none.
+    pub leak: f64,
     /// Kind of the release element.
     pub release: Release,
 }
@@ -36,6 +42,7 @@ impl Elements {
                 Release::Zener | Release::Switch => parameters.conductance(),
                 Release::Storage => f64::INFINITY,
             },
+            leak: parameters.leakage_rate(),
             release: parameters.release,
         }
     }
@@ -99,6 +106,7 @@ impl Network {
             conductance: self.elements.conductance,
             drop: self.elements.drop,
             excess: self.excess,
+            leak: self.elements.leak,
         })
     }
 
@@ -107,6 +115,18 @@ impl Network {
     pub fn lead(&self, j: usize) -> f64 {
         let (own, other) = (&self.nodes[j], &self.nodes[1 - j]);
         own.capacitance * other.rate - other.capacitance * own.rate
+    }
+
+    /// Current into node `j` that holds its voltage, over this voltage (S): `k + l C` with the rate `l` of the leak.
+    #[inline]
+    pub fn drift(&self, j: usize) -> f64 {
+        if self.elements.leak > 0.0 { self.leaking_drift(j) } else { self.nodes[j].rate }
+    }
+
+    /// Current that holds all nodes at the voltage of release, over this voltage (S).
+    #[inline]
+    pub fn pressure(&self) -> f64 {
+        self.in_mode(Mode::Holding).map(|j| -self.drift(j)).sum()
     }
 
     /// Brings the modes in line with the present rates; a node in [`Mode::Holding`] means here that it is at
@@ -127,15 +147,16 @@ impl Network {
         self.block_reverse_current();
     }
 
-    /// A held node leaves its voltage when the capacitance runs the other way.
+    /// A held node leaves its voltage when its current runs the other way.
     fn leave_held_voltage(&mut self, j: usize) {
         let (open, meet) = (self.elements.open(), self.elements.meet());
+        let drift = self.drift(j);
         let node = &mut self.nodes[j];
         match node.mode {
-            Mode::Charging if node.rate < 0.0 => {
+            Mode::Charging if drift < 0.0 => {
                 node.mode = if meet && !open { Mode::Holding } else { Mode::Off };
             }
-            Mode::Holding if node.rate > 0.0 => {
+            Mode::Holding if drift > 0.0 => {
                 node.mode = if meet { Mode::Charging } else { Mode::Off };
             }
             _ => {}
@@ -144,19 +165,20 @@ impl Network {
 
     /// Nodes at `U_z` whose capacitance falls go into the load, unless duty-cycled switches can hold them.
     fn leave_threshold(&mut self) {
-        let holding = |node: &&mut Node| node.mode == Mode::Holding;
-        let count = self.count;
-        let pressure: f64 = self.in_mode(Mode::Holding).map(|j| -self.nodes[j].rate).sum();
+        let pressure = self.pressure();
         let held = match self.elements.release {
             Release::Zener | Release::Storage => pressure <= 0.0,
+            Release::Switch if self.elements.leak > 0.0 => pressure <= self.elements.conductance - self.margin(),
             Release::Switch => pressure <= self.elements.conductance,
         };
         if held {
             return;
         }
         self.excess = self.elements.threshold - self.elements.drop;
-        for node in self.nodes[..count].iter_mut().filter(holding) {
-            node.mode = if node.rate < 0.0 { Mode::Releasing } else { Mode::Off };
+        for j in 0..self.count {
+            if self.nodes[j].mode == Mode::Holding {
+                self.nodes[j].mode = if self.drift(j) < 0.0 { Mode::Releasing } else { Mode::Off };
+            }
         }
     }
 
@@ -191,7 +213,11 @@ impl Network {
             d.work(t)
         });
         for (j, end) in ends.into_iter().enumerate().take(self.count) {
+            if self.elements.leak > 0.0 {
+                self.leak_held(j, t, end);
+            }
             match self.nodes[j].mode {
+                Mode::Off if self.elements.leak > 0.0 => self.decay(j, t, end),
                 Mode::Off => self.coast(j, end),
                 Mode::Charging => self.charge(j, end),
                 Mode::Holding => self.hold(j, end),
@@ -201,6 +227,10 @@ impl Network {
         if let Some(work) = work {
             self.ledger.load += work.load;
             self.ledger.mechanical += work.mechanical;
+            // What has leaked has left the nodes, but not for the load.
+            self.ledger.leakage += work.leakage;
+            self.ledger.load_charge -= work.leaked;
+            self.ledger.zener -= self.elements.drop * work.leaked;
         }
     }
 

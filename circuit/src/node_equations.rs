@@ -26,13 +26,14 @@ pub(crate) struct Point {
     pub release: [f64; 2],
 }
 
-/// The equations `C_j V_j - charge_j = span (I_supply,j - I_release,j)`.
+/// The equations `C_j V_j - charge_j = span (I_supply,j - I_release,j)`. A leak through the film, `l C_j V_j`, is a
+/// capacitance that is larger by `1 + span l` here.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NodeEquations<'a> {
     pub devices: &'a Devices,
     /// Number of nodes.
     pub count: usize,
-    /// Capacitances at the end of the stage (F).
+    /// Capacitances at the end of the stage, with the leak (F).
     pub capacitance: [f64; 2],
     /// Charges without the stage's own currents (C).
     pub charge: [f64; 2],

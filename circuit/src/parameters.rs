@@ -10,6 +10,8 @@ pub mod names {
     pub const STORAGE_VOLTAGE: &str = "storage.voltage";
     /// Load resistance `R` (ohm).
     pub const LOAD_RESISTANCE: &str = "load.resistance";
+    /// Time constant of the leakage through the film (s).
+    pub const LEAKAGE_TIME_CONSTANT: &str = "leakage.timeConstant";
     /// How the membranes are connected.
     pub const TOPOLOGY: &str = "topology";
     /// What releases the charge.
@@ -127,6 +129,9 @@ pub struct Parameters {
     pub storage_voltage: f64,
     /// `load.resistance`: `R` (ohm), from 0 to infinity with both ends. Without effect on a storage.
     pub load_resistance: f64,
+    /// `leakage.timeConstant`: resistivity times permittivity of the film (s), at least [`Self::FASTEST_LEAKAGE`]. The
+    /// conductance of a membrane is its capacitance over this; 0 and infinity mean none.
+    pub leakage_time_constant: f64,
     /// `topology`
     pub topology: Topology,
     /// `release`
@@ -155,6 +160,7 @@ impl Parameters {
         zener_voltage: 2000.0,
         storage_voltage: 2450.0,
         load_resistance: 1e9,
+        leakage_time_constant: 0.0,
         topology: Topology::SharedNode,
         release: Release::Zener,
         diodes: Diodes::Ideal,
@@ -180,6 +186,24 @@ impl Default for Parameters {
 }
 
 impl Parameters {
+    /// Shortest time constant of the leakage but 0 (s).
+    pub const FASTEST_LEAKAGE: f64 = 1e-6;
+
+    /// Whether the films leak.
+    pub fn leaks(&self) -> bool {
+        self.leakage_rate() > 0.0
+    }
+
+    /// Part of its charge that a membrane loses in a second by leakage (1/s).
+    pub fn leakage_rate(&self) -> f64 {
+        /// A leakage that takes longer (s) is below rounding in any run.
+        const NONE: f64 = 1e30;
+        let time_constant = self.leakage_time_constant;
+        // Compilers divide before they ask, and a host may trap a division by zero.
+        let rate = 1.0 / time_constant.clamp(Self::FASTEST_LEAKAGE, NONE);
+        if time_constant > 0.0 && time_constant < NONE { rate } else { 0.0 }
+    }
+
     /// Resistance of the load, ohm: -0 is 0.
     pub(crate) fn resistance(&self) -> f64 {
         self.load_resistance.abs()

@@ -6,7 +6,10 @@
 //! `dw/dtau = -a w - k U_d`, with `a = k + 1/R`:
 //!
 //! constant coefficients. In `t` this is the power law `(C / C0)^(-a/k)`, whose cases `k -> 0`, `R k -> 0` and
-//! `R k -> -1` are ordinary points here, because only `phi(b) = (1 - exp(-b tau)) / b` appears.
+//! `R k -> -1` are ordinary points here, because only `phi(b) = (1 - exp(-b tau)) / b` appears. With a leak of the film the
+//! coefficients are not constant: see [`leaking`](crate::leaking).
+
+use crate::leaking::{GAUSS_LEGENDRE_8, Leaking, phi};
 
 /// A node, or two joined ones, releasing charge over a linear ramp of its capacitance.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +24,8 @@ pub(crate) struct Discharge {
     pub drop: f64,
     /// Load voltage `w = V - U_d` at the start (V).
     pub excess: f64,
+    /// Part of the charge that leaks through the film in a second (1/s), 0 for none.
+    pub leak: f64,
 }
 
 /// Integrals over a span of a [`Discharge`].
@@ -30,18 +35,10 @@ pub(crate) struct Work {
     pub load: f64,
     /// Work of the mechanics, `-integral 1/2 V^2 dC` (J).
     pub mechanical: f64,
-}
-
-/// `(1 - exp(-b tau)) / b`, without cancellation where `b tau` is small or zero.
-fn phi(b: f64, tau: f64) -> f64 {
-    let x = b * tau;
-    if x == 0.0 {
-        tau
-    } else if x.abs() < 1e300 {
-        -(-x).exp_m1() / b
-    } else {
-        1.0 / b
-    }
+    /// Charge that leaked (C).
+    pub leaked: f64,
+    /// Its energy (J).
+    pub leakage: f64,
 }
 
 impl Discharge {
@@ -75,12 +72,44 @@ impl Discharge {
     }
 
     /// Load voltage `w` after `t` seconds (V).
+    #[inline]
     pub fn excess_at(&self, t: f64) -> f64 {
-        self.excess_at_tau(self.tau(t))
+        if self.leak > 0.0 { self.leaking_excess_at(t) } else { self.excess_at_tau(self.tau(t)) }
+    }
+
+    #[cold]
+    fn leaking_excess_at(&self, t: f64) -> f64 {
+        self.leaking().excess_after(self.excess, self.capacitance_at(t), self.tau(t).min(f64::MAX))
+    }
+
+    #[cold]
+    fn leaking_slope_at(&self, t: f64) -> f64 {
+        let lost = self.leak * self.capacitance_at(t);
+        let pull = (self.decay() + lost) * self.excess_at(t) + (self.rate + lost) * self.drop;
+        -pull / self.capacitance_at(t)
+    }
+
+    /// [`Self::work`] with a leak.
+    #[cold]
+    pub fn leaking_work(&self, t: f64) -> Work {
+        let integrals = self.leaking().integrals(self.excess, self.capacitance, self.tau(t).min(f64::MAX));
+        Work {
+            load: self.conductance * integrals.excess_squared,
+            mechanical: -0.5 * self.rate * integrals.voltage_squared,
+            leaked: self.leak * integrals.charge,
+            leakage: self.leak * integrals.energy,
+        }
+    }
+
+    fn leaking(&self) -> Leaking {
+        Leaking { rate: self.rate, conductance: self.conductance, drop: self.drop, leak: self.leak }
     }
 
     /// `dw/dt` after `t` seconds (V/s).
     pub fn slope_at(&self, t: f64) -> f64 {
+        if self.leak > 0.0 {
+            return self.leaking_slope_at(t);
+        }
         let a = self.decay();
         // a w + k U_d decays as a whole: forming it from w would cancel near the steady state.
         let initial = a * self.excess + self.rate * self.drop;
@@ -108,7 +137,11 @@ impl Discharge {
     }
 
     /// Energies over the first `t` seconds.
+    #[inline]
     pub fn work(&self, t: f64) -> Work {
+        if self.leak > 0.0 {
+            return self.leaking_work(t);
+        }
         let tau = self.tau(t);
         let a_tau = (self.decay() * tau).abs();
         let (load, field) = if a_tau > 4.0 {
@@ -119,6 +152,8 @@ impl Discharge {
         Work {
             load: self.conductance * self.capacitance * load,
             mechanical: -0.5 * self.rate * self.capacitance * field,
+            leaked: 0.0,
+            leakage: 0.0,
         }
     }
 
@@ -163,21 +198,13 @@ impl Discharge {
     }
 }
 
-/// Positive nodes and their weights of the 8-point Gauss-Legendre rule (Abramowitz and Stegun, Table 25.4).
-const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
     fn discharge(rate: f64, resistance: f64, drop: f64, voltage: f64) -> Discharge {
-        Discharge { capacitance: 30e-12, rate, conductance: 1.0 / resistance, drop, excess: voltage - drop }
+        Discharge { capacitance: 30e-12, rate, conductance: 1.0 / resistance, drop, excess: voltage - drop, leak: 0.0 }
     }
 
     #[test]

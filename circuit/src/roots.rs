@@ -93,6 +93,29 @@ pub(crate) fn increasing(mut f: impl FnMut(f64) -> (f64, f64), guess: f64, reach
     None
 }
 
+/// First place where a function, not negative at 0, falls through zero, from its parts with one zero at most: `ends` of
+/// these, in order. `value` has the function and the size of the terms that it is a difference of; a dip below zero by
+/// less than `noise` times this size is rounding.
+pub(crate) fn first_descent(
+    value: impl Fn(f64) -> (f64, f64),
+    slope: impl Fn(f64) -> f64,
+    ends: impl Iterator<Item = f64>,
+    noise: f64,
+) -> Option<f64> {
+    let mut from = 0.0;
+    for to in ends {
+        let (at_end, size) = value(to);
+        if at_end < -noise * size {
+            if value(from).0 <= 0.0 {
+                return Some(from);
+            }
+            return Some(bracketed(|t| (value(t).0, slope(t)), from, to, 0.5 * (from + to)));
+        }
+        from = to;
+    }
+    None
+}
+
 /// A smooth function on a span that starts at 0, with what is needed to find all its zeros.
 pub(crate) struct Curve<F, D> {
     /// The function and the size of the terms that it is a difference of.
@@ -110,19 +133,7 @@ impl<F: Fn(f64) -> (f64, f64), D: Fn(f64) -> (f64, f64)> Curve<F, D> {
     /// parts on which the function is monotone: no zero can be missed. A dip below zero by less than `noise` times
     /// the size of the terms is rounding.
     pub fn first_descent(&self, end: f64, noise: f64) -> Option<f64> {
-        let mut from = 0.0;
-        for to in self.turning_points(end) {
-            let (value, size) = (self.value)(to);
-            if value < -noise * size {
-                let f = |t: f64| ((self.value)(t).0, (self.slopes)(t).0);
-                if (self.value)(from).0 <= 0.0 {
-                    return Some(from);
-                }
-                return Some(bracketed(f, from, to, 0.5 * (from + to)));
-            }
-            from = to;
-        }
-        None
+        first_descent(&self.value, |t| (self.slopes)(t).0, self.turning_points(end), noise)
     }
 
     /// Ends of the parts on which the function is monotone, in order; `end` is the last.

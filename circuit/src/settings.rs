@@ -86,6 +86,7 @@ impl<S: AsRef<Settings> + AsMut<Settings> + 'static> Quantity<S> {
         names::BREAKDOWN_EMISSION, "1", 1e-6, 1e3, diode.breakdown_emission, "NBV of exponential Zener diodes";
         names::SWITCH_BAND, "V", 1e-9, 1e3, diode.switch_band, "Voltage over which the switch turns on, with exponential diodes";
         names::RELATIVE_TOLERANCE, "1", 1e-14, 1e3, diode.solver.relative_tolerance, "Relative tolerance of the integrator of exponential diodes";
+        names::LEAKAGE_TIME_CONSTANT, "s", 0.0, f64::INFINITY, circuit.leakage_time_constant, "Resistivity times permittivity of the film: each membrane has the conductance C over this beside its capacitance; at least 1e-6 s, 0 and infinity: no leakage";
     };
 }
 
@@ -189,7 +190,8 @@ impl Parameters {
     /// Checks every bound.
     ///
     /// # Errors
-    /// The first parameter out of the bounds of [`Settings::QUANTITIES`], or a voltage of release below `U_in`.
+    /// The first parameter out of the bounds of [`Settings::QUANTITIES`], too fast a leakage, or a
+    /// voltage of release below `U_in`.
     pub fn validate(&self) -> Result<(), Error> {
         let (diode, exponential) = match self.diodes {
             Diodes::Ideal => (DiodeParameters::DEFAULT, false),
@@ -197,6 +199,10 @@ impl Parameters {
         };
         let settings = Settings { circuit: *self, diode, exponential };
         Settings::QUANTITIES.iter().try_for_each(|quantity| quantity.check(&settings))?;
+        let leakage = self.leakage_time_constant;
+        if leakage > 0.0 && leakage < Self::FASTEST_LEAKAGE {
+            return Err(Error::LeakageTooFast { time_constant: leakage, min: Self::FASTEST_LEAKAGE });
+        }
         let (supply, release) = (self.supply_voltage, self.release_voltage());
         if release >= supply {
             return Ok(());

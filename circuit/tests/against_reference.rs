@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Ramp, reference, run};
+use common::{Ramp, leakage, reference, run};
 use proptest::prelude::*;
 use videg_circuit::{Circuit, Parameters, Release, Topology};
 
@@ -14,7 +14,8 @@ fn ramps() -> impl Strategy<Value = Vec<Ramp>> {
 
 fn parameters(topology: Topology, release: Release) -> impl Strategy<Value = Parameters> {
     let ratio = prop_oneof![Just(1.0), 1.0..1.8_f64];
-    (ratio, 8.0..12.0_f64).prop_map(move |(ratio, decades)| Parameters {
+    (ratio, 8.0..12.0_f64, leakage(-3.0..2.0)).prop_map(move |(ratio, decades, time_constant)| Parameters {
+        leakage_time_constant: time_constant,
         zener_voltage: 2000.0 * ratio,
         storage_voltage: 2000.0 * ratio,
         load_resistance: 10.0_f64.powf(decades),
@@ -38,6 +39,7 @@ fn deviation(parameters: Parameters, ramps: &[Ramp]) -> f64 {
         (ledger.load_charge - expected.load_charge) / charge,
         (ledger.load - expected.load) / energy,
         (ledger.zener - expected.zener) / energy,
+        (ledger.leakage - expected.leakage) / energy,
         (state.charge[0] - expected.charge[0]) / charge,
         (state.charge[1] - expected.charge[1]) / charge,
     ]

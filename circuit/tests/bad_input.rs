@@ -14,7 +14,7 @@ fn message(parameters: Parameters) -> String {
 fn a_parameter_out_of_its_bounds_is_refused_by_name() {
     for quantity in Settings::QUANTITIES {
         let beyond = [quantity.min.next_down(), quantity.max.next_up(), f64::NAN, f64::NEG_INFINITY];
-        // Infinity is within the bounds of the load.
+        // Infinity is within the bounds of the load and of the leakage.
         for value in beyond.into_iter().filter(|value| *value != f64::INFINITY) {
             let mut settings = Settings { exponential: true, ..Settings::default() };
             (quantity.set)(&mut settings, value);
@@ -23,6 +23,16 @@ fn a_parameter_out_of_its_bounds_is_refused_by_name() {
             let expected = format!("{name} = {value} {unit} is outside its bounds {bounds} {unit}");
             assert_eq!(message(settings.parameters()), expected);
         }
+    }
+}
+
+#[test]
+fn a_leakage_faster_than_any_film_is_refused_and_none_is_not() {
+    let leaking = |leakage_time_constant| Parameters { leakage_time_constant, ..PAPER() };
+    let expected = "leakage.timeConstant = 0.0000001 s is below 0.000001 s; 0 means no leakage";
+    assert_eq!(message(leaking(1e-7)), expected);
+    for taken in [0.0, -0.0, Parameters::FASTEST_LEAKAGE, f64::MAX, f64::INFINITY] {
+        assert!(Circuit::new(leaking(taken), C).is_ok(), "{taken}");
     }
 }
 

@@ -24,15 +24,15 @@ fn variants() -> Vec<(Topology, Release)> {
 
 fn parameters() -> impl Strategy<Value = Parameters> {
     let voltage = prop_oneof![Just(2000.0), 2000.0..2600.0_f64];
-    (prop::sample::select(variants()), voltage, 8.0..11.0_f64).prop_map(|((topology, release), voltage, decades)| {
-        Parameters {
-            zener_voltage: voltage,
-            storage_voltage: voltage,
-            load_resistance: 10.0_f64.powf(decades),
-            topology,
-            release,
-            ..Parameters::default()
-        }
+    let circuit = (prop::sample::select(variants()), voltage, 8.0..11.0_f64, common::leakage(-2.0..2.0));
+    circuit.prop_map(|((topology, release), voltage, decades, time_constant)| Parameters {
+        leakage_time_constant: time_constant,
+        zener_voltage: voltage,
+        storage_voltage: voltage,
+        load_resistance: 10.0_f64.powf(decades),
+        topology,
+        release,
+        ..Parameters::default()
     })
 }
 

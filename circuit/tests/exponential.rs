@@ -182,6 +182,7 @@ proptest! {
         case in prop::sample::select(cases().collect::<Vec<_>>()),
         decades in 5.0..13.0_f64,
         emission in prop_oneof![Just(0.01), Just(1.0)],
+        time_constant in common::leakage(-6.0..4.0),
         ramps in ramps(),
     ) {
         let diode = DiodeParameters {
@@ -189,7 +190,9 @@ proptest! {
             breakdown_emission: emission,
             ..DiodeParameters::default()
         };
-        let ideal = Parameters { load_resistance: 10.0_f64.powf(decades), ..case };
+        let ideal = Parameters {
+            load_resistance: 10.0_f64.powf(decades), leakage_time_constant: time_constant, ..case
+        };
         let mut circuit = Circuit::new(with(diode, ideal), REST).unwrap();
         let mut throughput = 0.0;
         for &(dt, ends) in &ramps {

@@ -35,6 +35,7 @@ fn assert_finite(circuit: &Circuit, what: &str) {
         ("load energy", ledger.load),
         ("Zener energy", ledger.zener),
         ("diode energy", ledger.diode),
+        ("leakage energy", ledger.leakage),
         ("stored energy", ledger.stored),
         ("work of the mechanics", ledger.mechanical),
         ("supply charge", ledger.supply_charge),
@@ -77,6 +78,7 @@ fn assert_explained(error: &Error, what: &str) {
         "below 0",
         "outside its bounds",
         "is below supply.voltage",
+        "is below 0.000001 s",
         "not a finite number",
         "differs from",
     ];

@@ -1,9 +1,9 @@
-//! Two columns of numbers below a heading, as comma-separated values.
+//! Columns of numbers below a heading, as comma-separated values.
 //!
 //! - UTF-8, with or without a byte order mark; lines end with LF or CRLF.
 //! - The first line that is no comment is the heading. Lines that begin with `#` are comments.
 //! - Blanks and tabs around names and numbers count for nothing. Empty lines are allowed after the last row only.
-//! - Numbers are finite and have a decimal point. Those of the first column increase.
+//! - Numbers are finite and have a decimal point. Each column has its order, such as one that increases.
 //!
 //! Reading stops at the first fault, so that a file of any size is refused after a bounded part of it.
 
@@ -27,13 +27,31 @@ pub struct Form<const N: usize> {
     pub rows: [usize; 2],
 }
 
-/// Names and units of two columns.
+/// The columns of a table.
+pub type Heading = &'static [Column];
+
+/// A column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Heading {
-    /// The names.
-    pub names: [&'static str; 2],
-    /// Their units, for messages.
-    pub units: [&'static str; 2],
+pub struct Column {
+    /// Its name in the heading.
+    pub name: &'static str,
+    /// Its unit, for messages.
+    pub unit: &'static str,
+    /// How its numbers follow each other.
+    pub order: Order,
+}
+
+/// How the numbers of a column follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// In any way.
+    Any,
+    /// Each is above the one before.
+    Rising,
+    /// Likewise, from 0.
+    RisingFromZero,
+    /// None is below the one before, and all are above 0.
+    PositiveNotFalling,
 }
 
 /// The content of a file.
@@ -42,7 +60,7 @@ pub struct Columns {
     /// Which of the headings it has.
     pub heading: usize,
     /// The columns.
-    pub values: [Vec<f64>; 2],
+    pub values: Vec<Vec<f64>>,
 }
 
 /// Why a file is no such table. The line is counted from 1.
@@ -78,8 +96,8 @@ pub fn read<const N: usize>(path: &Path, form: &Form<N>) -> Result<Columns, Colu
 /// Reads a table.
 ///
 /// # Errors
-/// A line that is not UTF-8, too long, no row of two finite numbers, or whose first number is not larger than the one before;
-/// another heading; too few or too many rows; too many bytes.
+/// A line that is not UTF-8, too long, no row of finite numbers in their order; another heading; too few or too many rows; too
+/// many bytes.
 pub fn parse<const N: usize>(text: impl BufRead, form: &Form<N>) -> Result<Columns, ColumnsError> {
     let mut lines = Lines { text: text.take(LARGEST), number: 0, line: Vec::new() };
     let heading = loop {
@@ -89,7 +107,7 @@ pub fn parse<const N: usize>(text: impl BufRead, form: &Form<N>) -> Result<Colum
         }
     };
     let columns = form.headings[heading];
-    let mut values: [Vec<f64>; 2] = Default::default();
+    let mut values = vec![Vec::new(); columns.len()];
     let mut empty = None;
     while let Some(line) = lines.next()? {
         if line.starts_with('#') {
@@ -102,12 +120,10 @@ pub fn parse<const N: usize>(text: impl BufRead, form: &Form<N>) -> Result<Colum
         if let Some(number) = empty {
             return Err(ColumnsError::Line { line: number, reason: "an empty line before the last row".to_owned() });
         }
-        let before = values[0].last().copied();
-        let row = columns.row(line, before).map_err(|reason| lines.refuse(reason))?;
-        if values[0].len() == form.rows[1] {
+        add_row(columns, line, &mut values).map_err(|reason| lines.refuse(reason))?;
+        if values[0].len() > form.rows[1] {
             return Err(lines.refuse(format!("more than {} rows", form.rows[1])));
         }
-        values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
     }
     let [rows, least] = [values[0].len(), form.rows[0]];
     if rows < least { Err(ColumnsError::TooFew { rows, least }) } else { Ok(Columns { heading, values }) }
@@ -168,36 +184,58 @@ fn shown(text: &str) -> String {
 
 impl<const N: usize> Form<N> {
     fn heading(&self, line: &str) -> Result<usize, String> {
-        let found = self.headings.iter().position(|heading| cells(line).eq(heading.names));
+        let found = self.headings.iter().position(|heading| cells(line).eq(heading.iter().map(|it| it.name)));
         found.ok_or_else(|| format!("the heading is {}; allowed is {}", shown(line), self.allowed()))
     }
 
     fn allowed(&self) -> String {
-        let texts = self.headings.map(|Heading { names: [a, b], units: [c, d] }| format!("{a},{b} (in {c} and {d})"));
+        let texts = self.headings.map(|heading| {
+            let names: Vec<_> = heading.iter().map(|column| column.name).collect();
+            let units: Vec<_> = heading.iter().map(|column| column.unit).collect();
+            let (last, first) = units.split_last().unwrap_or((&"", &[]));
+            format!("{} (in {} and {last})", names.join(","), first.join(", "))
+        });
         texts.join(" or ")
     }
 }
 
-impl Heading {
-    fn row(&self, line: &str, before: Option<f64>) -> Result<[f64; 2], String> {
-        let mut cells = cells(line);
-        let mut row = [0.0_f64; 2];
-        for ((value, name), unit) in row.iter_mut().zip(self.names).zip(self.units) {
-            let cell = cells.next().ok_or_else(|| format!("no {name} in {}: a row has 2 numbers", shown(line)))?;
-            *value = cell.parse().map_err(|_| format!("{name} = {}: no number", shown(cell)))?;
-            if !value.is_finite() {
-                return Err(format!("{name} = {}: it must be a finite number in {unit}", shown(cell)));
-            }
+/// Adds the numbers of a line to the columns.
+fn add_row(heading: Heading, line: &str, values: &mut [Vec<f64>]) -> Result<(), String> {
+    let (mut cells, count) = (cells(line), heading.len());
+    for (Column { name, unit, .. }, values) in heading.iter().zip(&mut *values) {
+        let cell = cells.next().ok_or_else(|| format!("no {name} in {}: a row has {count} numbers", shown(line)))?;
+        let value: f64 = cell.parse().map_err(|_| format!("{name} = {}: no number", shown(cell)))?;
+        if !value.is_finite() {
+            return Err(format!("{name} = {}: it must be a finite number in {unit}", shown(cell)));
         }
-        if cells.next().is_some() {
-            return Err(format!("more than 2 numbers in {}", shown(line)));
-        }
-        let ([value, _], name, unit) = (row, self.names[0], self.units[0]);
-        match before {
-            Some(before) if value <= before => {
+        values.push(value);
+    }
+    if cells.next().is_some() {
+        return Err(format!("more than {count} numbers in {}", shown(line)));
+    }
+    heading.iter().zip(values).try_for_each(|(column, values)| column.check(values))
+}
+
+impl Column {
+    /// That the last of the `values` may follow the one before.
+    fn check(&self, values: &[f64]) -> Result<(), String> {
+        let Self { name, unit, order } = self;
+        let Some((&value, earlier)) = values.split_last() else { return Ok(()) };
+        let before = earlier.last();
+        match (order, before) {
+            (Order::Rising | Order::RisingFromZero, Some(before)) if value <= *before => {
                 Err(format!("{name} = {value} {unit} is not above that of the row before, {before} {unit}"))
             }
-            _ => Ok(row),
+            (Order::PositiveNotFalling, Some(before)) if value < *before => {
+                Err(format!("{name} = {value} {unit} is below that of the row before, {before} {unit}"))
+            }
+            (Order::PositiveNotFalling, None) if value <= 0.0 => {
+                Err(format!("{name} = {value} {unit} must be above 0 {unit}"))
+            }
+            (Order::RisingFromZero, None) if value != 0.0 => {
+                Err(format!("{name} = {value} {unit}: the first row must be that of 0 {unit}"))
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -207,10 +245,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    const TIME: Column = Column { name: "time", unit: "s", order: Order::Rising };
     const FORM: Form<2> = Form {
         headings: [
-            Heading { names: ["time", "acceleration"], units: ["s", "m/s2"] },
-            Heading { names: ["time", "force"], units: ["s", "N"] },
+            &[TIME, Column { name: "acceleration", unit: "m/s2", order: Order::Any }],
+            &[TIME, Column { name: "force", unit: "N", order: Order::Any }],
         ],
         rows: [2, 4],
     };
@@ -222,7 +261,7 @@ mod tests {
     #[test]
     fn spellings_of_other_programs_are_read() {
         let plain = parsed(b"time,force\n0,1\n0.5,-2e-3\n").unwrap();
-        assert_eq!(plain, Columns { heading: 1, values: [vec![0.0, 0.5], vec![1.0, -2e-3]] });
+        assert_eq!(plain, Columns { heading: 1, values: vec![vec![0.0, 0.5], vec![1.0, -2e-3]] });
         for text in [
             "\u{feff}time,force\r\n0,1\r\n0.5,-2e-3\r\n",
             "# of a lorry\ntime , force\n\t0, 1\n# here it brakes\n+0.5,-0.002",

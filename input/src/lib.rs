@@ -2,6 +2,7 @@
 //! package, so it needs nothing but the standard library.
 
 pub mod columns;
+pub mod membrane;
 pub mod recording;
 mod regular;
 

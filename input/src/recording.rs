@@ -3,13 +3,15 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use crate::columns::{self, Columns, ColumnsError, Form, Heading};
+use crate::columns::{self, Column, Columns, ColumnsError, Form, Order};
+
+const TIME: Column = Column { name: "time", unit: "s", order: Order::Rising };
 
 /// Headings, and how many samples a recording has.
 const FORM: Form<2> = Form {
     headings: [
-        Heading { names: ["time", "acceleration"], units: ["s", "m/s2"] },
-        Heading { names: ["time", "force"], units: ["s", "N"] },
+        &[TIME, Column { name: "acceleration", unit: "m/s2", order: Order::Any }],
+        &[TIME, Column { name: "force", unit: "N", order: Order::Any }],
     ],
     rows: [2, 1_000_000],
 };
@@ -42,7 +44,9 @@ pub fn parse(text: impl BufRead) -> Result<Samples, ColumnsError> {
 }
 
 impl From<Columns> for Samples {
-    fn from(Columns { heading, values: [times, values] }: Columns) -> Self {
-        Self { is_acceleration: heading == 0, times, values }
+    fn from(Columns { heading, values }: Columns) -> Self {
+        let mut columns = values.into_iter();
+        let mut next = || columns.next().unwrap_or_default();
+        Self { is_acceleration: heading == 0, times: next(), values: next() }
     }
 }

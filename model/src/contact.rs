@@ -14,16 +14,22 @@
 //! below the lower one to let it back. With r = 0 the lower one is 0: a membrane that has been pressed in stays with the
 //! ball until the wall recedes from it. A contact ends when x is 0 again; the membrane does not pull.
 //!
-//! Without reaction the cylinder's motion is known, and with it, by Newton's third law, it follows from x: only x and x'
-//! are integrated.
+//! Without reaction the cylinder's motion is known. With reaction, by Newton's third law, that of a free cylinder follows
+//! from x: only x and x' are integrated. On a suspended one the mount acts against the recoil q, what the contact adds to
+//! the cylinder's motion, so that q is integrated with x. With the force F on the ball, outwards, and the sign s of dz
+//!
+//! q'' = -s F / M - (c q' + k q) / M and x'' = s (`z_M''` - `z_m''`) - F (1/m + 1/M) - s (c q' + k q) / M,
+//!
+//! where `z_M''` and `z_m''` are those without the contact.
 
+mod collocation;
 mod law;
 mod point;
 mod step;
 
-pub(crate) use self::law::{Law, Recoil};
+pub(crate) use self::law::Law;
 pub use self::law::{Phase, Ramp};
-pub use self::point::Point;
+pub use self::point::{Creep, Point, Recoil};
 pub(crate) use self::step::Work;
 
 use self::step::Step;
@@ -101,9 +107,10 @@ pub(crate) enum Ending {
 }
 
 impl Contact {
-    /// A contact that begins at `time`, s, at relative `speed`, m/s; `proposal`: the length of a first step, s.
-    pub(crate) fn new(side: Side, time: f64, speed: f64, proposal: f64) -> Self {
-        let start = Point { time, x: 0.0, v: speed };
+    /// A contact that begins at `time`, s, at relative `speed`, m/s, on a membrane with this `creep`; `proposal`: the length of a
+    /// first step, s.
+    pub(crate) fn new(side: Side, time: f64, [speed, creep]: [f64; 2], proposal: f64) -> Self {
+        let start = Point { time, v: speed, creep, ..Point::default() };
         let state =
             ContactState { side, phase: Phase::Loading, since: time, largest: 0.0, start, credited: 0.0, proposal };
         Self::resumed(state)
@@ -155,6 +162,8 @@ impl Contact {
         self.pass.steps[..index].iter().map(|step| step.work(step.end())).fold(step.work(time), |sum, work| Work {
             wall: sum.wall + work.wall,
             electrical: sum.electrical + work.electrical,
+            damping: sum.damping + work.damping,
+            viscous: sum.viscous + work.viscous,
         })
     }
 
@@ -191,21 +200,30 @@ impl Contact {
     /// Where a ball that has come to a halt at the largest deflection goes.
     fn phase_at_turn(&self, law: &Law<'_>) -> Phase {
         let Point { time, x, .. } = self.state.start;
-        let push = law.mass() * law.push(time, 0.0) + law.maxwell(time, 0.0, x);
+        let push = law.mass() * law.push_at(&self.state.start) + law.maxwell(time, 0.0, x);
         let friction = law.mass() * law.deceleration();
-        if push < law.recovered() * law.loading(x) - friction {
+        let [lower, upper] = self.holding_forces(law, Phase::Held);
+        if push < lower - friction {
             Phase::Unloading
-        } else if push <= law.loading(x) + friction {
+        } else if push <= upper + friction {
             Phase::Held
         } else {
             Phase::Loading
         }
     }
 
+    /// Least and largest force of the membrane, N, on a ball that rests in this `phase` where the pass begins.
+    fn holding_forces(&self, law: &Law<'_>, phase: Phase) -> [f64; 2] {
+        let lower = law.pull_of(Phase::Stuck, &self.state.start);
+        let may_rise = phase == Phase::Held && law.membrane.viscosity.is_none();
+        [lower, if may_rise { law.loading(self.state.start.x) } else { lower }]
+    }
+
     /// Where a ball that friction has brought to a halt below the largest deflection goes.
     fn phase_at_halt(&self, law: &Law<'_>) -> Phase {
         let Point { time, x, .. } = self.state.start;
-        let excess = law.push(time, 0.0) + (law.maxwell(time, 0.0, x) - law.recovered() * law.loading(x)) / law.mass();
+        let excess = law.push_at(&self.state.start)
+            + (law.maxwell(time, 0.0, x) - law.pull_of(Phase::Stuck, &self.state.start)) / law.mass();
         if excess.abs() <= law.deceleration() {
             Phase::Stuck
         } else if excess > 0.0 {
@@ -263,12 +281,14 @@ impl Contact {
                 }
             }
             Phase::Held | Phase::Stuck => {
-                let lower = law.recovered() * law.loading(self.state.start.x) / law.mass();
-                let upper =
-                    if self.state.phase == Phase::Stuck { lower } else { law.loading(self.state.start.x) / law.mass() };
-                let scale = step.push.bound() + upper + friction;
-                let excess = step.push.plus(friction - lower);
-                let rest = step.push.times(-1.0).plus(upper + friction);
+                let [lower, upper] = self.holding_forces(law, self.state.phase).map(|force| force / law.mass());
+                let mut push = step.push;
+                if let Some(relaxing) = step.relaxing {
+                    push = push.minus(&relaxing.plus(-lower));
+                }
+                let scale = push.bound() + upper + friction;
+                let excess = push.plus(friction - lower);
+                let rest = push.times(-1.0).plus(upper + friction);
                 // After a jump of force or voltage it may be beyond from the begin.
                 let is_beyond = |series: &Series| series.value(-1.0) < -16.0 * f64::EPSILON * scale;
                 if is_beyond(&excess) {

@@ -39,12 +39,6 @@ pub enum ModelError {
         /// Why.
         reason: &'static str,
     },
-    /// Contacts that take time and act back on a suspended cylinder.
-    #[error(
-        "contact.reaction = true and contact.law = compliant cannot be combined with cylinder.suspensionStiffness or \
-         cylinder.suspensionDamping above 0; allowed: contact.law = impulsive, or contact.reaction = false"
-    )]
-    SuspendedReaction,
     /// A suspension where the motion is prescribed.
     #[error(
         "{name} = {value} {unit} needs excitation.kind = force: a shaker prescribes the motion, whatever holds the cylinder; \
@@ -146,9 +140,178 @@ pub enum ModelError {
         /// Least one allowed, s.
         min: f64,
     },
+    /// A table whose columns differ in length.
+    #[error(
+        "a table of a membrane has {deflections} deflections and {others} values of another column: each point needs all"
+    )]
+    TablePairs {
+        /// Number of deflections.
+        deflections: usize,
+        /// Number of values in the other column.
+        others: usize,
+    },
+    /// A table with too few or too many points.
+    #[error("a table of a membrane has {count} points: at least {min}, at most {max}")]
+    TableCount {
+        /// Number of points.
+        count: usize,
+        /// Least number allowed.
+        min: usize,
+        /// Largest number allowed.
+        max: usize,
+    },
+    /// A value of a table that is NaN or outside its bounds.
+    #[error(
+        "point {index} (from 0) of the membrane's table: {name} = {value} {unit} is outside [{min:e}, {max:e}] {unit}"
+    )]
+    TablePoint {
+        /// Number of the point, from 0.
+        index: usize,
+        /// `deflection`, `force` or `capacitance`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+    },
+    /// A value of a table that does not rise from the one before.
+    #[error(
+        "point {index} (from 0) of the membrane's table: {name} = {value} {unit} {}, {before} {unit}",
+        if *.rise > 0.0 { "must exceed that of the point before" } else { "must not be less than that of the point before" }
+    )]
+    TableOrder {
+        /// Number of the point, from 0.
+        index: usize,
+        /// `deflection`, `force` or `capacitance`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// That of the point before.
+        before: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Least difference allowed.
+        rise: f64,
+    },
+    /// No table where one is asked for.
+    #[error(
+        "membrane.law = table needs a table of deflection and force: set membrane.file; allowed without: power, gent, ogden"
+    )]
+    NoTable,
+    /// A table of deflections that no film stands.
+    #[error(
+        "membrane.file: the last deflection is {end} m; at most {most} m, 20 times the radius of the membrane of {radius} m, are \
+         taken; deflections are in m"
+    )]
+    TableDepth {
+        /// m.
+        end: f64,
+        /// m.
+        most: f64,
+        /// `R_2`, m.
+        radius: f64,
+    },
+    /// A table under another law.
+    #[error("a table of the membrane (membrane.file) needs membrane.law = table")]
+    UnusedTable,
+    /// A Gent film whose pre-stretch is beyond its limit.
+    #[error(
+        "membrane.stretchLimit = {limit} must be greater than 2 L^2 + L^-4 - 3 = {invariant} at L = membrane.prestretch = \
+         {prestretch}: beyond its limit a film cannot be stretched"
+    )]
+    Locked {
+        /// J.
+        limit: f64,
+        /// lambda.
+        prestretch: f64,
+        /// Value of the invariant at lambda.
+        invariant: f64,
+    },
+    /// A term of Ogden's law that would push where others pull.
+    #[error(
+        "{name} = {modulus} Pa must have the sign of its exponent, {exponent}: otherwise the term gives off energy when it is \
+         stretched"
+    )]
+    OgdenSign {
+        /// Name of the modulus.
+        name: &'static str,
+        /// Its value, Pa.
+        modulus: f64,
+        /// Its exponent.
+        exponent: f64,
+    },
+    /// An Ogden film without a stiffness.
+    #[error(
+        "the shear modulus of the Ogden film, half the sum of membrane.ogdenModulus times membrane.ogdenExponent, is {modulus} \
+         Pa: at least {least:e} Pa"
+    )]
+    NoStiffness {
+        /// The shear modulus, Pa.
+        modulus: f64,
+        /// Least one allowed, Pa.
+        least: f64,
+    },
+    /// A contact in which the ball has more energy than the film takes up before it is locked.
+    #[error(
+        "at t = {time} s the ball presses the film in by {deflection} m and is still {speed} m/s fast: at most {bound} m, where the \
+         stretch reaches membrane.stretchLimit = {limit}"
+    )]
+    HitsLimit {
+        /// Time, s.
+        time: f64,
+        /// Deflection, m.
+        deflection: f64,
+        /// Its rate, m/s.
+        speed: f64,
+        /// Deflection at which the film is locked, m.
+        bound: f64,
+        /// J.
+        limit: f64,
+    },
+    /// A Maxwell branch where there is no film, or a contact takes no time.
+    #[error(
+        "membrane.viscousModulus = {modulus} Pa and membrane.relaxationTime = {time} s need contact.law = compliant and \
+         membrane.law = gent or ogden: a viscous film has a material, and its contacts take time; allowed otherwise: 0"
+    )]
+    NeedsFilm {
+        /// `mu_v`, Pa.
+        modulus: f64,
+        /// tau, s.
+        time: f64,
+    },
+    /// A film that relaxes faster than is followed.
+    #[error("membrane.relaxationTime = {time:e} s must be 0 (no viscosity) or at least {least:e} s")]
+    TooFast {
+        /// tau, s.
+        time: f64,
+        /// Least one allowed, s.
+        least: f64,
+    },
+    /// A state from a run with another table of the membrane.
+    #[error("the snapshot is of a harvester with another table of its membranes, or without one")]
+    OtherTable,
     /// A state from a run with another recording.
     #[error("the snapshot is of a harvester with another recording, or without one")]
     OtherRecording,
+    /// An impact that the film cannot take up: it would have to be stretched beyond its limit.
+    #[error(
+        "at t = {time:.3} s the ball meets the membrane at {speed:.3e} m/s with {energy:.3e} J, but up to membrane.stretchLimit \
+         the film takes up {most:.3e} J at most"
+    )]
+    FilmLocked {
+        /// Time, s.
+        time: f64,
+        /// Relative speed, m/s.
+        speed: f64,
+        /// Energy of the impact, J.
+        energy: f64,
+        /// Energy that the film takes up at most, J.
+        most: f64,
+    },
     /// A contact under a Maxwell force that goes deeper than any membrane.
     #[error(
         "at t = {time} s the membrane is pressed in by {deflection} m: with contact.electrostaticFeedback, at {voltage} V, \

@@ -14,6 +14,7 @@ pub use self::events::{Event, Impact, Peak};
 pub use self::snapshot::Snapshot;
 
 use self::differences::Origin;
+use self::events::Show;
 use crate::accounting::batch::Batch;
 use crate::accounting::budget::Budget;
 use crate::accounting::ledger::{Ledger, Totals, Works};
@@ -25,8 +26,8 @@ use crate::motion::pulse::{PulseShape, Pulses};
 use crate::motion::{Ball, Forces, Motion, Start};
 use crate::noise::Noise;
 use crate::parameters::Parameters;
-use crate::recording::Setup;
 use crate::sensitivity::{Direction, Tangent, Tangential};
+use crate::setup::Setup;
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
 #[derive(Debug, PartialEq)]
@@ -50,7 +51,8 @@ pub struct Harvester {
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = *self;
+        let Self { parameters, ref membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = *self;
+        let membrane = membrane.clone();
         let (motion, noise, pulses) = (self.motion.clone(), self.noise.clone(), self.pulses.clone());
         let origin = self.origin.clone();
         Self {
@@ -80,7 +82,8 @@ impl Clone for Harvester {
             (origin, other) => origin.clone_from(other),
         }
         let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = source;
-        (self.parameters, self.membrane, self.tangent) = (*parameters, *membrane, *tangent);
+        (self.parameters, self.tangent) = (*parameters, *tangent);
+        self.membrane.clone_from(membrane);
         (self.time, self.voltages, self.calm_until) = (*time, *voltages, *calm_until);
         (self.ledger, self.budget) = (*ledger, *budget);
     }
@@ -147,8 +150,9 @@ impl Harvester {
         let mut motion = Motion::new(p, cylinder, drive, last, (Ball::Free, slip), relative);
         motion.playback = playback;
         let works = Works { slide: [p.cylinder_position, displacement], ..Works::default() };
-        let membrane = Membrane::new(p);
+        let membrane = Membrane::new(*setup);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
+        let ledger = Ledger::new(p, membrane.rest_capacitance, Totals::default(), works);
         Ok(Self {
             parameters: *p,
             membrane,
@@ -157,7 +161,7 @@ impl Harvester {
             noise,
             voltages: [Ramp { start, value: p.bias_voltage, rate: 0.0 }; 2],
             pulses: Pulses { shape, under_way: Default::default() },
-            ledger: Ledger::new(p, membrane.rest_capacitance, Totals::default(), works),
+            ledger,
             budget: Budget::new(p, 0.0, 0),
             tangent: Tangent::none(),
             origin: None,
@@ -171,7 +175,7 @@ impl Harvester {
     /// A time that is not finite or lies in the past; more events than can be resolved.
     #[inline]
     pub fn advance(&mut self, time: f64) -> Result<(), ModelError> {
-        self.advance_with(time, |_| {})
+        self.advance_shown(time, None)
     }
 
     /// Moves on as [`Harvester::advance`] does, and shows each impact and each largest deflection to `show`; not that of
@@ -180,7 +184,12 @@ impl Harvester {
     /// # Errors
     /// As [`Harvester::advance`].
     #[inline]
-    pub fn advance_with(&mut self, time: f64, show: impl FnMut(&Event)) -> Result<(), ModelError> {
+    pub fn advance_with(&mut self, time: f64, mut show: impl FnMut(&Event)) -> Result<(), ModelError> {
+        self.advance_shown(time, Some(&mut show))
+    }
+
+    #[inline]
+    fn advance_shown(&mut self, time: f64, show: Option<&mut Show<'_>>) -> Result<(), ModelError> {
         if self.time <= time && time < self.calm_until {
             self.time = time;
             return Ok(());
@@ -188,18 +197,18 @@ impl Harvester {
         self.advance_through_events(time, show)
     }
 
-    fn advance_through_events(&mut self, time: f64, mut show: impl FnMut(&Event)) -> Result<(), ModelError> {
+    fn advance_through_events(&mut self, time: f64, show: Option<&mut Show<'_>>) -> Result<(), ModelError> {
         inputs::finite("time", time)?;
         if time < self.time {
             return Err(ModelError::Backwards { from: self.time, to: time });
         }
-        self.go_to(time, &mut show)?;
+        self.go_to(time, show)?;
         self.look_ahead();
         Ok(())
     }
 
     /// Moves on to `time`, s; what comes after it is not known yet.
-    fn go_to(&mut self, time: f64, show: &mut impl FnMut(&Event)) -> Result<(), ModelError> {
+    fn go_to(&mut self, time: f64, show: Option<&mut Show<'_>>) -> Result<(), ModelError> {
         self.calm_until = f64::NEG_INFINITY; // until it is known anew; an error on the way leaves nothing predicted
         let mut batch = Batch::EMPTY;
         let passed = self.pass_events(time, &mut batch, show);

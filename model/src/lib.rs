@@ -19,6 +19,7 @@ mod accounting;
 mod cases;
 mod contact;
 mod error;
+mod fingerprint;
 mod harvester;
 mod limits;
 mod membrane;
@@ -29,19 +30,23 @@ mod paper;
 mod parameters;
 mod recording;
 mod sensitivity;
+mod setup;
 
 pub use accounting::ledger::{Energies, Totals, Works};
 pub use cases::{Case, saw_tooth_limit};
-pub use contact::{ContactState, Phase, Point, Ramp};
+pub use contact::{ContactState, Creep, Phase, Point, Ramp, Recoil};
 pub use error::ModelError;
 pub use harvester::{Event, Harvester, Impact, Peak, Snapshot};
 pub use limits::{Excess, Limit, NeglectedMass};
 pub use membrane::Membrane;
+pub use membrane::table::ForceTable;
 pub use motion::Start;
 pub use motion::pulse::{Deflection, Pulse, PulseChange, PulseShape};
 pub use motion::side::Side;
+pub use paper::impact::GRAZING_SPEED;
 pub use parameters::{
-    Choice, ContactLaw, ExcitationKind, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY,
+    Choice, ContactLaw, ExcitationKind, MembraneLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY,
 };
-pub use recording::{Recording, Setup};
-pub use sensitivity::{Changes, Direction, GRAZING_SPEED, Sensitivities};
+pub use recording::Recording;
+pub use sensitivity::{Changes, Direction, Sensitivities};
+pub use setup::Setup;

@@ -4,6 +4,7 @@
 use core::fmt;
 
 use crate::membrane::Membrane;
+use crate::membrane::table::ForceTable;
 use crate::parameters::{ExcitationKind, Parameters};
 
 /// Stretch, equal in both directions and counted from the unstretched film, beyond which the film ruptures. The value
@@ -66,6 +67,10 @@ pub enum Limit {
     Field,
     /// Maxwell stress, Pa: the film wrinkles, as no tension is left.
     Tension,
+    /// The same of a film whose stress `membrane.law` says.
+    OwnTension,
+    /// Deflection, m: a measured membrane goes on beyond its last point.
+    Measured,
 }
 
 impl Limit {
@@ -80,6 +85,12 @@ impl Limit {
                 "Maxwell stress",
                 " Pa",
                 "the elastic stress commonly quoted for VHB 4910: loss of tension (Koh et al. 2011)",
+            ],
+            Self::OwnTension => ["Maxwell stress", " Pa", "the elastic stress by membrane.law: loss of tension"],
+            Self::Measured => [
+                "deflection",
+                " m",
+                "the last point of membrane.file: force and capacitance go on with their last slopes",
             ],
         }
     }
@@ -104,7 +115,8 @@ impl fmt::Display for Excess {
         let [name, unit, source] = limit.words();
         let [value, bound] = [value, bound].map(|number| match limit {
             Limit::Area => format!("{number:.3}"),
-            Limit::Field | Limit::Tension => format!("{number:.3e}"),
+            Limit::Field | Limit::Tension | Limit::OwnTension => format!("{number:.3e}"),
+            Limit::Measured => format!("{number}"),
         });
         write!(out, "{name} {value}{unit} at {time:.6} s is above {bound}{unit}, {source}")
     }
@@ -115,14 +127,19 @@ impl Membrane {
     ///
     /// The breakdown field is the power of the stretch through its two measured values: that it grows as a power is the
     /// finding of Huang, Shian, Diebold, Suo and Clarke 2012, Applied Physics Letters 101, 122905. Tension is lost where
-    /// the Maxwell stress eps E^2 is above mu (lambda^2 - lambda^-4).
+    /// the Maxwell stress eps E^2 is above the elastic one, sigma = L/2 dW/dL of a Gent or Ogden film, mu (L^2 - L^-4) else.
     pub fn excesses(&self, deflection: f64, voltage: f64, time: f64) -> impl Iterator<Item = Excess> {
         let (stretch, field) = (self.stretch(deflection), self.field(deflection, voltage).abs());
+        let tension = match self.material() {
+            Some(material) => (Limit::OwnTension, material.stress(stretch.ln())),
+            None => (Limit::Tension, elastic_stress(stretch)),
+        };
         let exceeding = [
             (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch).powi(2)),
             // Each step asks: no power is taken where even the unstretched film stands the field.
             (Limit::Field, field, if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY }),
-            (Limit::Tension, self.permittivity * field * field, elastic_stress(stretch)),
+            (tension.0, self.permittivity * field * field, tension.1),
+            (Limit::Measured, deflection, self.table().map_or(f64::INFINITY, ForceTable::end)),
         ];
         let above = exceeding.into_iter().filter(|(_, value, bound)| value > bound);
         above.map(move |(limit, value, bound)| Excess { limit, value, bound, time })
@@ -146,7 +163,7 @@ fn elastic_stress(stretch: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::VACUUM_PERMITTIVITY;
+    use crate::parameters::{MembraneLaw, VACUUM_PERMITTIVITY};
     use approx::assert_relative_eq;
 
     fn exceeded(membrane: &Membrane, deflection: f64, voltage: f64) -> Vec<Limit> {
@@ -174,6 +191,54 @@ mod tests {
         let deepest = (1..10_000).map(|k| 1e-5 * f64::from(k)).find(|x| membrane.area_ratio(*x) > 9.0).unwrap();
         assert_eq!(exceeded(&membrane, deepest, 0.0), [Limit::Area]);
         assert_eq!(exceeded(&membrane, deepest - 1e-5, 0.0), []);
+    }
+
+    /// Voltage at which the flat film of `p` loses its tension, V.
+    fn slack(p: &Parameters) -> f64 {
+        let membrane = Membrane::new(p);
+        let (mut low, mut high) = (0.0, 1e6);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if exceeded(&membrane, 0.0, middle).contains(&Limit::OwnTension) { high = middle } else { low = middle }
+        }
+        low
+    }
+
+    #[test]
+    fn a_flat_neo_hookean_film_loses_its_tension_at_the_voltage_of_the_closed_form() {
+        // U = h_1 sqrt(mu / eps) sqrt(lambda^-2 - lambda^-8), at most 0.6874 h_1 sqrt(mu / eps), at lambda = 2^(1/3): the pull-in
+        // of a film that nothing holds.
+        let film = |law, prestretch| Parameters {
+            membrane_law: law,
+            prestretch,
+            initial_radius: 0.006,
+            stretch_limit: 1e12,
+            shear_modulus: 68e3,
+            ogden_modulus_1: 68e3,
+            ..Parameters::default()
+        };
+        let unit = 1e-3 * (68e3 / (VACUUM_PERMITTIVITY * 3.4)).sqrt();
+        for law in [MembraneLaw::Gent, MembraneLaw::Ogden] {
+            for prestretch in [1.05_f64, 1.2, 2.0, 4.0] {
+                let closed = unit * (prestretch.powi(-2) - prestretch.powi(-8)).sqrt();
+                assert_relative_eq!(slack(&film(law, prestretch)), closed, max_relative = 1e-9);
+            }
+            let pull_in = 2.0_f64.powf(1.0 / 3.0);
+            let [before, there, after] = [0.99, 1.0, 1.01].map(|factor| slack(&film(law, factor * pull_in)));
+            assert!(before < there && after < there);
+            assert_relative_eq!(there, 0.687_4 * unit, max_relative = 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_measured_membrane_ends_at_its_last_point() {
+        let p = Parameters { membrane_law: MembraneLaw::Table, ..Parameters::default() };
+        let table = ForceTable::new(vec![0.0, 1e-3, 2e-3], vec![0.0, 0.1, 0.3], None).unwrap();
+        let membrane = Membrane::new(p.with_table(Some(&table)));
+        assert_eq!(exceeded(&membrane, 2e-3, 0.0), []);
+        assert_eq!(exceeded(&membrane, 2.1e-3, 0.0), [Limit::Measured]);
+        let text = membrane.excesses(2.5e-3, 0.0, 1.0).next().unwrap().to_string();
+        assert!(text.starts_with("deflection 0.0025 m at 1.000000 s is above 0.002 m, the last point of"), "{text}");
     }
 
     #[test]

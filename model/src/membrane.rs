@@ -1,10 +1,23 @@
-//! A pre-stretched membrane that a ball presses in at its centre, as a variable capacitor.
+//! A pre-stretched membrane that a ball presses in at its centre, as a spring and a variable capacitor.
 
-use crate::paper::{force, membrane};
-use crate::parameters::{Parameters, VACUUM_PERMITTIVITY};
+pub(crate) mod course;
+mod elasticity;
+mod film;
+pub(crate) mod material;
+mod pchip;
+mod spring;
+pub(crate) mod table;
+pub(crate) mod viscosity;
+
+use self::elasticity::Elasticity;
+use self::table::ForceTable;
+use self::viscosity::Viscosity;
+use crate::paper::membrane;
+use crate::parameters::VACUUM_PERMITTIVITY;
+use crate::setup::Setup;
 
 /// The membranes of a harvester, both alike. Deflections in m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Membrane {
     /// `R_2`, m.
     pub(crate) radius: f64,
@@ -18,27 +31,32 @@ pub struct Membrane {
     pub(crate) ball_radius: f64,
     /// `C_2`, F.
     pub(crate) rest_capacitance: f64,
-    /// n.
-    pub(crate) exponent: f64,
-    /// Constants of Eq. (10).
-    deflection: [f64; 2],
+    /// Mass, kg, whose kinetic energy it takes up.
+    mass: f64,
+    elasticity: Elasticity,
+    /// What makes a film viscous.
+    pub(crate) viscosity: Option<Viscosity>,
 }
 
 impl Membrane {
-    /// Membrane of validated `parameters`.
-    pub fn new(parameters: &Parameters) -> Self {
+    /// Membrane of a validated `setup`, or of parameters alone.
+    pub fn new<'a>(setup: impl Into<Setup<'a>>) -> Self {
+        let setup = setup.into();
+        let parameters = setup.parameters;
         let (radius, thickness) = (parameters.membrane_radius(), parameters.membrane_thickness());
         let permittivity = VACUUM_PERMITTIVITY * parameters.relative_permittivity;
-        let Parameters { stiffness, stiffness_exponent: exponent, .. } = *parameters;
+        let elasticity = Elasticity::of(&setup);
+        let measured = elasticity.table().and_then(ForceTable::rest_capacitance);
         Self {
             radius,
             thickness,
             prestretch: parameters.prestretch,
             permittivity,
             ball_radius: parameters.ball_radius,
-            rest_capacitance: membrane::capacitance(permittivity, radius, thickness),
-            exponent,
-            deflection: force::deflection_constants(stiffness, exponent, parameters.impact_mass()),
+            rest_capacitance: measured.unwrap_or_else(|| membrane::capacitance(permittivity, radius, thickness)),
+            mass: parameters.impact_mass(),
+            elasticity,
+            viscosity: Viscosity::of(parameters),
         }
     }
 
@@ -47,14 +65,9 @@ impl Membrane {
         self.radius
     }
 
-    /// `C_2`, F: Eq. (1) at stage 2 of Table 1.
+    /// `C_2`, F: Eq. (1) at stage 2 of Table 1, or as it was measured.
     pub fn rest_capacitance(&self) -> f64 {
         self.rest_capacitance
-    }
-
-    /// Largest deflection delta after an impact at relative `speed`, m/s: Eq. (10).
-    pub fn deflection(&self, speed: f64) -> f64 {
-        force::deflection(self.deflection, speed)
     }
 
     pub(crate) fn angle(&self, deflection: f64) -> membrane::Angle {
@@ -71,7 +84,7 @@ impl Membrane {
         1.0 + self.area_excess(deflection)
     }
 
-    fn area_excess(&self, deflection: f64) -> f64 {
+    pub(crate) fn area_excess(&self, deflection: f64) -> f64 {
         membrane::area_excess(self.radius, self.ball_radius, &self.angle(deflection))
     }
 
@@ -96,18 +109,24 @@ impl Membrane {
         voltage / self.thickness_at(deflection)
     }
 
-    /// Capacitance, F: Eq. (1) with constant volume, C = `C_2` (A / `A_2`)^2.
+    /// Capacitance, F: Eq. (1) with constant volume, C = `C_2` (A / `A_2`)^2, or as it was measured.
     pub fn capacitance(&self, deflection: f64) -> f64 {
         self.rest_capacitance * (1.0 + self.capacitance_excess(deflection))
     }
 
     /// `C_3` / `C_2` - 1, without cancellation.
     pub fn capacitance_excess(&self, deflection: f64) -> f64 {
-        membrane::capacitance_excess(self.area_excess(deflection))
+        match self.measured_excess_and_slope(deflection) {
+            Some([excess, _]) => excess,
+            None => membrane::capacitance_excess(self.area_excess(deflection)),
+        }
     }
 
     /// The same and its derivative, 1/m.
     pub(crate) fn capacitance_excess_and_slope(&self, deflection: f64) -> [f64; 2] {
+        if let Some(measured) = self.measured_excess_and_slope(deflection) {
+            return measured;
+        }
         let angle = self.angle(deflection);
         let excess = membrane::area_excess(self.radius, self.ball_radius, &angle);
         let slope = membrane::area_slope(self.radius, self.ball_radius, angle.cos) * angle.cos_slope;
@@ -116,20 +135,38 @@ impl Membrane {
 
     /// dC/dx, F/m: the derivative of [`Membrane::capacitance`].
     pub fn capacitance_slope(&self, deflection: f64) -> f64 {
-        2.0 * self.rest_capacitance * self.area_ratio(deflection) * self.area_slope(deflection)
+        match self.measured_excess_and_slope(deflection) {
+            Some([_, slope]) => self.rest_capacitance * slope,
+            None => 2.0 * self.rest_capacitance * self.area_ratio(deflection) * self.area_slope(deflection),
+        }
+    }
+
+    fn measured_excess_and_slope(&self, deflection: f64) -> Option<[f64; 2]> {
+        self.elasticity.table()?.capacitance_excess_and_slope(deflection)
     }
 
     /// Sum of `C_3` / `C_2` - 1 over the endless impacts at `speed`, r `speed`, r^2 `speed`, ... (m/s), r < 1.
     ///
-    /// Terms are added one by one until the deflection is so small that the excess is a power of the speed: with
-    /// `A_3` / `A_2` - 1 -> (delta / `R_2`)^2 / 2 it goes as speed^(4 / (n + 1)), and the rest is a geometric series.
+    /// Terms are added one by one until the deflection is so small that the excess is a power of the speed, and the rest is a
+    /// geometric series.
     pub(crate) fn excess_of_chatter(&self, speed: f64, restitution: f64) -> f64 {
         let mut sum = 0.0;
-        let (_, excess) = self.bounces(speed, restitution, |_, excess| sum += excess);
-        // 1 - r^(4 / (n + 1)), with its digits for r near 1, and without the logarithm of 0.
-        let exponent = 4.0 / (self.exponent + 1.0);
+        let (speed, excess) = self.bounces(speed, restitution, |_, excess| sum += excess);
+        // 1 - r^p, with its digits for r near 1, and without the logarithm of 0.
+        let exponent = self.excess_exponent(speed);
         let complement = if restitution > 0.0 { -(exponent * restitution.ln()).exp_m1() } else { 1.0 };
         sum + excess / complement
+    }
+
+    /// Power with which `C_3` / `C_2` - 1 of an impact grows with small `speed`, m/s: with
+    /// `A_3` / `A_2` - 1 -> (delta / `R_2`)^2 / 2 and a force as x^n that is 4 / (n + 1).
+    fn excess_exponent(&self, speed: f64) -> f64 {
+        let deflection = self.deflection(speed);
+        let grows = match self.measured_excess_and_slope(deflection) {
+            Some([excess, slope]) if excess > 0.0 => deflection * slope / excess,
+            _ => 2.0,
+        };
+        2.0 * grows / (self.exponent(deflection) + 1.0)
     }
 
     /// Shows speed and excess of each of these impacts to `term`, as long as the excess is no power of the speed. Returns
@@ -154,6 +191,7 @@ impl Membrane {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::Parameters;
     use approx::assert_relative_eq;
 
     #[test]

@@ -24,7 +24,7 @@ use self::cylinder::{CylinderMotion, CylinderState, Drive};
 use self::flight::Flight;
 use self::mount::{Load, Mount};
 use self::side::Side;
-use crate::contact::{Contact, Recoil};
+use crate::contact::{Contact, Creep, Recoil};
 use crate::paper::impact;
 use crate::parameters::{OutsideGap, Parameters};
 use crate::recording::{Playback, Segment};
@@ -49,6 +49,8 @@ pub struct Motion {
     pub search: Search,
     /// The recording that excites the cylinder, of which a segment is in the drive.
     pub playback: Option<Playback>,
+    /// Creep of the membranes where a ball last left them, if they are viscous.
+    pub creeps: [Creep; 2],
 }
 
 impl Clone for Motion {
@@ -70,12 +72,13 @@ impl Clone for Motion {
             flight,
             search,
             ref playback,
+            creeps,
         } = *source;
         self.ball.clone_from(ball);
         self.playback.clone_from(playback);
         (self.half_travel, self.restitution, self.recoil_share) = (half_travel, restitution, recoil_share);
         (self.accuracy, self.mount, self.cylinder, self.last) = (accuracy, mount, cylinder, last);
-        (self.slip, self.flight, self.search) = (slip, flight, search);
+        (self.slip, self.flight, self.search, self.creeps) = (slip, flight, search, creeps);
     }
 }
 
@@ -97,7 +100,7 @@ impl Motion {
         let here = cylinder.at(relative.time);
         let flight = Flight::new(&cylinder, &here, motion, half_travel, mount.relative(slip));
         let (restitution, recoil_share, accuracy) = (p.restitution, p.recoil_share(), Accuracy::Exact);
-        let (search, playback) = (Search::new(), None);
+        let (search, playback, creeps) = (Search::new(), None, [Creep::default(); 2]);
         Self {
             half_travel,
             restitution,
@@ -111,6 +114,7 @@ impl Motion {
             flight,
             search,
             playback,
+            creeps,
         }
     }
 
@@ -138,7 +142,8 @@ impl Motion {
         }
     }
 
-    fn recoil(&self, time: f64) -> Recoil {
+    /// What the contact adds to the cylinder's motion.
+    pub fn recoil(&self, time: f64) -> Recoil {
         self.ball.contact().map_or(Recoil::default(), |contact| self.recoil_of(contact, time))
     }
 
@@ -213,13 +218,19 @@ impl Motion {
         self.cylinder.drive_at(time)
     }
 
-    /// The same where a piece ends: the recording may go on with its next segment there.
+    /// The same where a piece ends.
     fn drive_after(&self, cylinder: &CylinderMotion, time: f64) -> Drive {
-        let Drive { recorded, .. } = cylinder.drive;
-        let next = self.playback.as_ref().filter(|_| recorded.end <= time);
+        self.drive_from(&cylinder.drive, cylinder.start, time)
+    }
+
+    /// The `drive` of a motion from `start`, s, as it is at `time`, s, where a piece ends: the recording may go on with its next segment
+    /// there.
+    fn drive_from(&self, drive: &Drive, start: f64, time: f64) -> Drive {
+        let next = self.playback.as_ref().filter(|_| drive.recorded.end <= time);
         Drive {
-            recorded: next.map_or(recorded, |playback| playback.segment(recorded.number + 1)),
-            ..cylinder.drive_at(time)
+            external: drive.external + drive.external_rate * (time - start),
+            recorded: next.map_or(drive.recorded, |playback| playback.segment(drive.recorded.number + 1)),
+            ..*drive
         }
     }
 
@@ -240,7 +251,7 @@ impl Motion {
     /// leaves it as fast as it should, however far the cylinder has drifted and however fast it is.
     pub fn new_flight(&mut self, here: &CylinderState, motion: [f64; 2]) {
         self.flight = Flight::new(&self.cylinder, here, motion, self.half_travel, self.mount.relative(self.slip));
-        self.search = Search::new();
+        self.search.begin();
     }
 
     /// The ball slides with this sign of dz', or the cylinder carries it, from `here` on, which becomes the cylinder with what the
@@ -252,7 +263,7 @@ impl Motion {
             return; // the cylinder goes on as before
         }
         let load = Self::load_of(&self.mount, &self.ball, slip);
-        self.cylinder = self.cylinder.changed(here, self.drive_at(here.time), load);
+        self.cylinder = CylinderMotion::from_state(here, self.drive_at(here.time), load);
         *here = self.cylinder.at(here.time);
     }
 

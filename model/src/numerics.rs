@@ -3,5 +3,6 @@
 pub mod chebyshev;
 pub mod elementary;
 pub mod product;
+pub mod quadrature;
 pub mod roots;
 pub mod series;

@@ -7,6 +7,9 @@ use crate::paper::{excitation, gap};
 /// Largest rate of a suspension, sqrt(k / M) or c / M, 1/s: it is followed in steps of about one over this.
 const MAX_RATE: f64 = 1e5;
 
+/// Shortest relaxation time of a viscous film, s.
+const SHORTEST_RELAXATION: f64 = 1e-6;
+
 /// Vacuum permittivity, F/m (CODATA 2022). The paper rounds it to 8.85e-12.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
 
@@ -81,6 +84,8 @@ macro_rules! parameters {
             pub electrostatic_feedback: bool,
             /// `excitation.fileRepeat`: the recording begins again at its end.
             pub file_repeat: bool,
+            /// `membrane.law`: the force of a membrane over its deflection.
+            pub membrane_law: MembraneLaw,
         }
 
         impl Default for Parameters {
@@ -95,6 +100,7 @@ macro_rules! parameters {
                     reaction: false,
                     electrostatic_feedback: false,
                     file_repeat: false,
+                    membrane_law: MembraneLaw::Power,
                 }
             }
         }
@@ -140,6 +146,16 @@ parameters! {
     acceleration: "excitation.acceleration", "m/s2", 0.0, 0.0, 1e6, "Amplitude of the cylinder's acceleration, if that is prescribed (excitation.kind = motion)";
     file_scale: "excitation.fileScale", "1", 1.0, -1e6, 1e6, "Factor of the recorded force or acceleration";
     file_offset: "excitation.fileOffset", "s", 0.0, -1e9, 1e9, "Time by which the recorded force or acceleration comes later than its samples say";
+    shear_modulus: "membrane.shearModulus", "Pa", 45e3, 1e-3, 1e12, "mu: shear modulus of the film (membrane.law = gent)";
+    stretch_limit: "membrane.stretchLimit", "1", 270.0, 1e-3, 1e12, "J: value of 2 L^2 + L^-4 - 3 at which the film is locked, L its stretch in both directions (membrane.law = gent)";
+    ogden_modulus_1: "membrane.ogdenModulus1", "Pa", 45e3, -1e12, 1e12, "mu_1: modulus of Ogden's first term, of the sign of its exponent; 0: no such term (membrane.law = ogden)";
+    ogden_exponent_1: "membrane.ogdenExponent1", "1", 2.0, -20.0, 20.0, "alpha_1: exponent of Ogden's first term";
+    ogden_modulus_2: "membrane.ogdenModulus2", "Pa", 0.0, -1e12, 1e12, "mu_2: modulus of Ogden's second term, likewise";
+    ogden_exponent_2: "membrane.ogdenExponent2", "1", 2.0, -20.0, 20.0, "alpha_2: exponent of Ogden's second term";
+    ogden_modulus_3: "membrane.ogdenModulus3", "Pa", 0.0, -1e12, 1e12, "mu_3: modulus of Ogden's third term, likewise";
+    ogden_exponent_3: "membrane.ogdenExponent3", "1", 2.0, -20.0, 20.0, "alpha_3: exponent of Ogden's third term";
+    viscous_modulus: "membrane.viscousModulus", "Pa", 0.0, 0.0, 1e12, "mu_v: shear modulus of a Maxwell branch beside the film (membrane.law = gent or ogden, contact.law = compliant), whose losses take the place of membrane.restitution; 0: none";
+    relaxation_time: "membrane.relaxationTime", "s", 0.0, 0.0, 1e9, "tau: relaxation time of the Maxwell branch, at least 1e-6 s; 0: no branch";
 }
 
 /// What the excitation prescribes.
@@ -178,6 +194,34 @@ pub enum ContactLaw {
     Compliant,
 }
 
+/// The force of a membrane over its deflection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MembraneLaw {
+    /// K x^n, Eq. (2): the paper's.
+    Power,
+    /// Measured: a table.
+    Table,
+    /// Virtual work of a film after Gent.
+    Gent,
+    /// Virtual work of a film after Ogden.
+    Ogden,
+}
+
+impl MembraneLaw {
+    /// All laws, in the order of their numbers.
+    const ALL: [Self; 4] = [Self::Power, Self::Table, Self::Gent, Self::Ogden];
+
+    /// Its number, from 1.
+    fn item(self) -> i32 {
+        match self {
+            Self::Power => 1,
+            Self::Table => 2,
+            Self::Gent => 3,
+            Self::Ogden => 4,
+        }
+    }
+}
+
 impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
     /// Every parameter that chooses or counts, in the order in which the FMU lists them.
     pub const TABLE: &'static [Self] = &[
@@ -189,7 +233,20 @@ impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
         Self::REACTION,
         Self::EXCITATION_KIND,
         Self::FILE_REPEAT,
+        Self::MEMBRANE_LAW,
     ];
+
+    /// `membrane.law`
+    pub const MEMBRANE_LAW: Self = Self {
+        name: "membrane.law",
+        start: 1,
+        description: "Force of a membrane over its deflection: Eq. (2), measured, or that of a film by virtual work",
+        get: |p| p.as_ref().membrane_law.item(),
+        set: |p, item| {
+            let law = MembraneLaw::ALL.into_iter().find(|law| law.item() == item);
+            p.as_mut().membrane_law = law.unwrap_or(MembraneLaw::Ogden);
+        },
+    };
 
     /// `excitation.fileRepeat`
     pub const FILE_REPEAT: Self = Self {
@@ -306,11 +363,15 @@ impl Parameters {
     /// # Errors
     /// The first parameter that is not finite or out of bounds; `ball.travel` not positive; `membrane.radius` not
     /// greater than `ball.radius` (the ball would not fit through the frame, and Eq. (6) has no solution); feedback without
-    /// the compliant law; a suspension beside a prescribed motion, or one too stiff for the cylinder's mass.
+    /// the compliant law; a suspension beside a prescribed motion, or one too stiff for the cylinder's mass; a Gent film that is
+    /// locked when flat; an Ogden film without a stiffness, or with a modulus against the sign of its exponent; a viscous film under
+    /// the impulsive law or without a material, or one that relaxes too fast.
     pub fn validate(&self) -> Result<(), ModelError> {
         Self::TABLE.iter().try_for_each(|quantity| quantity.check(self))?;
         self.check_contact()?;
         self.check_mount()?;
+        self.check_film()?;
+        self.check_viscosity()?;
         exceeds("membrane.radius", self.membrane_radius(), "ball.radius", self.ball_radius)?;
         exceeds("ball.travel", self.travel(), "its lower bound", 0.0)
     }
@@ -318,13 +379,67 @@ impl Parameters {
     /// What an impact that takes no time cannot have.
     fn check_contact(&self) -> Result<(), ModelError> {
         if self.contact_law == ContactLaw::Compliant {
-            return if self.reaction && self.is_suspended() { Err(ModelError::SuspendedReaction) } else { Ok(()) };
+            return Ok(());
         }
         if self.electrostatic_feedback {
             let reason = "an impact that takes no time does no electrical work";
             return Err(ModelError::NeedsCompliantLaw { name: "contact.electrostaticFeedback", reason });
         }
         Ok(())
+    }
+
+    /// That the film of a material is one: soft enough to be stretched as it is, and stiff enough to push back.
+    fn check_film(&self) -> Result<(), ModelError> {
+        match self.membrane_law {
+            MembraneLaw::Power | MembraneLaw::Table => Ok(()),
+            MembraneLaw::Gent => {
+                let square = self.prestretch * self.prestretch;
+                let flat = 2.0 * square + 1.0 / (square * square) - 3.0;
+                // Closer to the limit than rounding there is no room for a deflection.
+                let is_free = flat < self.stretch_limit * (1.0 - 1e-6);
+                let locked =
+                    ModelError::Locked { limit: self.stretch_limit, prestretch: self.prestretch, invariant: flat };
+                if is_free { Ok(()) } else { Err(locked) }
+            }
+            MembraneLaw::Ogden => self.check_ogden(),
+        }
+    }
+
+    /// Whether the film has a Maxwell branch.
+    pub(crate) fn is_viscous(&self) -> bool {
+        self.viscous_modulus > 0.0 && self.relaxation_time > 0.0
+    }
+
+    /// That a Maxwell branch has a film to be beside, a contact that takes time, and a time in which it can be followed.
+    fn check_viscosity(&self) -> Result<(), ModelError> {
+        if !self.is_viscous() {
+            return Ok(());
+        }
+        let (modulus, time) = (self.viscous_modulus, self.relaxation_time);
+        if self.contact_law != ContactLaw::Compliant || self.material().is_none() {
+            return Err(ModelError::NeedsFilm { modulus, time });
+        }
+        if time < SHORTEST_RELAXATION {
+            return Err(ModelError::TooFast { time, least: SHORTEST_RELAXATION });
+        }
+        Ok(())
+    }
+
+    fn check_ogden(&self) -> Result<(), ModelError> {
+        /// Pa: as little as a Gent film may have.
+        const LEAST: f64 = 1e-3;
+        let terms = [
+            ("membrane.ogdenModulus1", self.ogden_modulus_1, self.ogden_exponent_1),
+            ("membrane.ogdenModulus2", self.ogden_modulus_2, self.ogden_exponent_2),
+            ("membrane.ogdenModulus3", self.ogden_modulus_3, self.ogden_exponent_3),
+        ];
+        if let Some((name, modulus, exponent)) =
+            terms.into_iter().find(|(_, modulus, exponent)| modulus * exponent < 0.0)
+        {
+            return Err(ModelError::OgdenSign { name, modulus, exponent });
+        }
+        let modulus: f64 = terms.iter().map(|(_, modulus, exponent)| 0.5 * modulus * exponent).sum();
+        if modulus >= LEAST { Ok(()) } else { Err(ModelError::NoStiffness { modulus, least: LEAST }) }
     }
 
     /// Where the ball is at the start, m: on the membrane that it is beyond, if it is put there.

@@ -4,11 +4,11 @@
 //! samples are multiplied by the first and come later by the second. Before the first sample there is nothing. After the last
 //! one there is nothing either, or the recording begins again.
 
-use core::f64::consts::TAU;
 use core::fmt;
 use std::sync::Arc;
 
 use crate::error::ModelError;
+use crate::fingerprint::fingerprint;
 use crate::parameters::{ExcitationKind, Parameters};
 
 /// Most samples of a recording.
@@ -66,7 +66,7 @@ impl Recording {
                 return Err(ModelError::SampleOrder { index: index + 1, time, before, spacing: MIN_SPACING });
             }
         }
-        let fingerprint = fingerprint(kind, times.iter().chain(&values));
+        let fingerprint = fingerprint(kind == ExcitationKind::Motion, times.iter().chain(&values));
         Ok(Self(Arc::new(Samples { kind, times, values, fingerprint })))
     }
 
@@ -105,71 +105,27 @@ impl fmt::Debug for Recording {
     }
 }
 
-/// FNV-1a over words, with a rotation that brings high bits down.
-fn fingerprint<'a>(kind: ExcitationKind, numbers: impl Iterator<Item = &'a f64>) -> u64 {
-    const PRIME: u64 = 0x0100_0000_01b3;
-    let first = 0xcbf2_9ce4_8422_2325 ^ u64::from(kind == ExcitationKind::Motion);
-    let mix = |hash: u64, number: &f64| ((hash ^ number.to_bits()).wrapping_mul(PRIME)).rotate_left(29);
-    numbers.fold(first, mix).max(1)
-}
-
-/// What a harvester is made from: parameters, and the recording that excites it besides the harmonic force, if there is one.
-#[derive(Debug, Clone, Copy)]
-pub struct Setup<'a> {
-    /// The parameters.
-    pub parameters: &'a Parameters,
-    /// The recording.
-    pub recording: Option<&'a Recording>,
-}
-
-impl<'a> From<&'a Parameters> for Setup<'a> {
-    fn from(parameters: &'a Parameters) -> Self {
-        Self { parameters, recording: None }
+impl Recording {
+    /// The recording as it excites a harvester of these parameters.
+    pub(crate) fn playback(&self, p: &Parameters) -> Playback {
+        let mass = if p.excitation_kind == ExcitationKind::Force { p.cylinder_mass } else { 1.0 };
+        let Parameters { file_scale, file_offset: offset, file_repeat: repeats, .. } = *p;
+        Playback { recording: self.clone(), factor: file_scale / mass, offset, repeats }
     }
-}
 
-impl Parameters {
-    /// These parameters with a recording: `Harvester::new(parameters.with_recording(Some(&recording)), 0.0)`.
-    pub fn with_recording<'a>(&'a self, recording: Option<&'a Recording>) -> Setup<'a> {
-        Setup { parameters: self, recording }
-    }
-}
-
-impl Setup<'_> {
-    /// Checks the parameters, and that the recording is one of what they prescribe.
+    /// Checks that it is one of what the parameters prescribe.
     ///
     /// # Errors
-    /// As [`Parameters::validate`]; a recording of the other kind; one that is repeated with less than 1e-6 s from sample to
-    /// sample on average.
-    pub fn validate(&self) -> Result<(), ModelError> {
-        self.parameters.validate()?;
-        let Some(recording) = self.recording else { return Ok(()) };
-        if recording.kind() != self.parameters.excitation_kind {
-            return Err(ModelError::RecordingKind { is_motion: recording.kind() == ExcitationKind::Motion });
+    /// A recording of the other kind; one that is repeated with less than 1e-6 s from sample to sample on average.
+    pub(crate) fn validate(&self, p: &Parameters) -> Result<(), ModelError> {
+        if self.kind() != p.excitation_kind {
+            return Err(ModelError::RecordingKind { is_motion: self.kind() == ExcitationKind::Motion });
         }
-        let spacing = recording.0.duration() / (recording.times().len() - 1) as f64;
-        if self.parameters.file_repeat && spacing < MIN_REPEATED_SPACING {
+        let spacing = self.0.duration() / (self.times().len() - 1) as f64;
+        if p.file_repeat && spacing < MIN_REPEATED_SPACING {
             return Err(ModelError::RepeatedTooFast { spacing, min: MIN_REPEATED_SPACING });
         }
         Ok(())
-    }
-
-    /// The excitation without phase noise at these `times`, s: the force on the cylinder, N, or the acceleration that a shaker
-    /// prescribes, m/s^2.
-    pub fn excitation(&self, times: impl IntoIterator<Item = f64>) -> Vec<f64> {
-        let (p, playback) = (self.parameters, self.playback());
-        let mass = if p.excitation_kind == ExcitationKind::Force { p.cylinder_mass } else { 1.0 };
-        let harmonic = |time: f64| p.harmonic_acceleration() * (TAU * p.frequency * time + p.phase).cos();
-        let recorded = |time: f64| playback.as_ref().map_or(0.0, |playback| playback.segment_at(time).at(time));
-        times.into_iter().map(|time| mass * (harmonic(time) + recorded(time))).collect()
-    }
-
-    /// The recording as it excites the harvester.
-    pub(crate) fn playback(&self) -> Option<Playback> {
-        let (p, recording) = (self.parameters, self.recording?);
-        let mass = if p.excitation_kind == ExcitationKind::Force { p.cylinder_mass } else { 1.0 };
-        let Parameters { file_scale, file_offset: offset, file_repeat: repeats, .. } = *p;
-        Some(Playback { recording: recording.clone(), factor: file_scale / mass, offset, repeats })
     }
 }
 

@@ -13,7 +13,7 @@ mod ledger;
 mod membrane;
 mod pulse;
 
-pub use self::impact::{GRAZING_SPEED, Hit, grazes};
+pub use self::impact::{Hit, grazes};
 
 use self::membrane::MembraneChange;
 use self::pulse::ShapeChange;
@@ -127,6 +127,8 @@ pub struct Sensitivities {
     pub capacitance: [f64; 2],
     /// Of the relative speed of the last impact.
     pub last_speed: f64,
+    /// Of [`Harvester::effective_restitution`](crate::Harvester::effective_restitution), 1.
+    pub rebound: f64,
     /// Of the sum of `U_DE4` - `U_in`.
     pub voltage_gain: f64,
     /// Of the sum of W.

@@ -102,8 +102,9 @@ def watch(processes: dict[str, subprocess.Popen], grace: float) -> None:
 def summary(options: argparse.Namespace, effort: dict) -> dict:
     """What the run comes to, with the keys of videg cosim --json, and the effort that it took."""
     last, harvester = rows(options.output / "circuit.csv")[-1], rows(options.output / "harvester.csv")[-1]
-    energy = {name: last[f"{name}.energy"] for name in ("supply", "load", "zener", "diode", "stored")}
-    energy["converted"] = energy["load"] + energy["zener"] + energy["diode"] + energy["stored"] - energy["supply"]
+    energy = {name: last[f"{name}.energy"] for name in ("supply", "load", "zener", "diode", "leakage", "stored")}
+    given = energy["load"] + energy["zener"] + energy["diode"] + energy["leakage"] + energy["stored"]
+    energy["converted"] = given - energy["supply"]
     energy |= {"surplus": energy["load"] - energy["supply"], "eq13": harvester["gain.energyEq13"]}
     charge = {name: last[f"{name}.charge"] for name in ("supply", "load")}
     run = {"case": options.case, "until": options.until, "step": options.step, "master": options.master}

@@ -83,6 +83,7 @@ class Circuit:
         "mechanical.energy",
         "supply.charge",
         "load.charge",
+        "leakage.energy",
     ]
 
     def __init__(self, slave: Slave, parameters: dict[str, str], until: float, capacitance: Pair):

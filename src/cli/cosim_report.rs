@@ -23,16 +23,27 @@ pub const EXPLANATION: [&str; 10] = [
 /// A row of the energy table: its name and how to read it from a circuit, in J.
 type EnergyRow = (&'static str, fn(&LabelledCircuit) -> f64);
 
-const ENERGIES: [EnergyRow; 8] = [
+const ENERGIES: [EnergyRow; 5] = [
     ("W, Eq. (13)", |c| c.summary.energy.eq13),
     ("supply", |c| c.summary.energy.supply),
     ("Zener", |c| c.summary.energy.zener),
     ("diode", |c| c.summary.energy.diode),
     ("load", |c| c.summary.energy.load),
+];
+
+/// What the paper's circuit does not have is named where it is.
+const LEAKAGE: [EnergyRow; 3] = [
+    ("leakage", |c| c.summary.energy.leakage),
+    ("stored", |c| c.summary.energy.stored),
+    ("converted = load + Zener + diode + leakage + stored - supply", |c| c.summary.energy.converted),
+];
+
+const NO_LEAKAGE: [EnergyRow; 2] = [
     ("stored", |c| c.summary.energy.stored),
     ("converted = load + Zener + diode + stored - supply", |c| c.summary.energy.converted),
-    ("surplus = load - supply", |c| c.summary.energy.surplus),
 ];
+
+const SURPLUS: EnergyRow = ("surplus = load - supply", |c| c.summary.energy.surplus);
 
 /// Significant digits of energies.
 const DIGITS: usize = 5;
@@ -43,7 +54,10 @@ pub fn energies(results: &Results) -> Sheet {
         let values = results.circuits.iter().map(|circuit| significant(value(circuit), DIGITS));
         std::iter::once(name.to_owned()).chain(values).collect()
     };
-    let mut rows: Vec<_> = ENERGIES.iter().map(|(name, value)| row(name, &|circuit| 1e3 * value(circuit))).collect();
+    let leaks = results.circuits.iter().any(|circuit| circuit.summary.energy.leakage != 0.0);
+    let balance: &[EnergyRow] = if leaks { &LEAKAGE } else { &NO_LEAKAGE };
+    let energies = ENERGIES.iter().chain(balance).chain([&SURPLUS]);
+    let mut rows: Vec<_> = energies.map(|(name, value)| row(name, &|circuit| 1e3 * value(circuit))).collect();
     if results.cycle_charge > 0.0 {
         rows.push(row("supply charge / (U_in dC)", &|circuit| circuit.summary.charge.supply / results.cycle_charge));
     }

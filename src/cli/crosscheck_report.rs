@@ -102,26 +102,32 @@ pub fn claim_table(found: &Crosscheck) -> String {
 /// An energy that is compared: heading and value.
 type Energy = (&'static str, fn(&Energies) -> f64);
 
-const ENERGIES: [Energy; 6] = [
+const ENERGIES: [Energy; 7] = [
     ("supply, mJ", |energy| energy.supply),
     ("Zener, mJ", |energy| energy.zener),
     ("diode, mJ", |energy| energy.diode),
+    LEAKAGE,
     ("load, mJ", |energy| energy.load),
     ("converted, mJ", |energy| energy.converted),
     ("surplus, mJ", |energy| energy.surplus),
 ];
 
+/// A column only where films leak.
+const LEAKAGE: Energy = ("leakage, mJ", |energy| energy.leakage);
+
 /// The paper's circuit, the switch and the storage.
 pub fn comparison(found: &Crosscheck) -> Sheet {
+    let leaks = found.compared.iter().any(|circuit| circuit.embedded.energy.leakage > 0.0);
+    let shown: Vec<_> = ENERGIES.iter().filter(|(name, _)| leaks || *name != LEAKAGE.0).collect();
     let row = |circuit: &ComparedCircuit, solver: &str, energy: &Energies| {
-        let values = ENERGIES.iter().map(|(_, value)| value(energy)).chain([circuit.closed_form]);
+        let values = shown.iter().map(|(_, value)| value(energy)).chain([circuit.closed_form]);
         let values = values.map(|value| number(1e3 * value));
         [circuit.label.clone(), solver.to_owned()].into_iter().chain(values).collect()
     };
     let rows = found.compared.iter().flat_map(|circuit| {
         [row(circuit, "embedded", &circuit.embedded.energy), row(circuit, "ngspice", &circuit.ngspice.energy)]
     });
-    let energies = ENERGIES.iter().map(|(name, _)| *name);
+    let energies = shown.iter().map(|(name, _)| *name);
     let headings = ["circuit", "solver"].into_iter().chain(energies).chain(["quick release, mJ"]);
     Sheet::new(headings, &[0, 1], rows.collect())
 }

@@ -113,15 +113,17 @@ impl Arguments {
     /// Does what was asked for.
     fn find(&self, problem: &Problem, observer: &dyn Progress) -> Result<Found, DynamicsError> {
         let (parameters, transient) = (&problem.parameters, self.transient);
+        let setup = problem.setup(parameters);
         let (motion, exponent) = during(observer, "section", "Poincare section and Lyapunov exponent", || {
-            let motion = Motion::take(parameters, transient, self.taken(SECTION))?;
-            let exponent = exponent(parameters, motion.last(), self.taken(SECTION))?;
+            let motion = Motion::take(setup, transient, self.taken(SECTION))?;
+            let exponent = exponent(setup, motion.last(), self.taken(SECTION))?;
             Ok::<_, DynamicsError>((motion, exponent))
         })?;
         let diagram = problem.varied.as_ref().map(|varied| {
             let periods = Periods { transient, taken: self.taken(DIAGRAM) };
             during(observer, "diagram", "bifurcation diagram", || {
-                Diagram::new(varied.values.clone(), |value| problem.at(value), periods, observer)
+                let at = |value| problem.at(value);
+                Diagram::new(varied.values.clone(), (at, &problem.files), periods, observer)
             })
         });
         let diagram = diagram.transpose()?;
@@ -130,9 +132,7 @@ impl Arguments {
             let fastest = parameters.travel() * std::f64::consts::TAU * parameters.frequency;
             let periods = Periods { transient, taken: BASINS };
             let fastest = self.basins_speed.unwrap_or(fastest);
-            during(observer, "basins", "basins of attraction", || {
-                Basins::new(parameters, count, fastest, periods, observer)
-            })
+            during(observer, "basins", "basins of attraction", || Basins::new(setup, count, fastest, periods, observer))
         });
         Ok(Found {
             transient,

@@ -6,8 +6,8 @@ use videg_circuit::Ledger;
 /// Variables with the energies of the harvester, J: kinetic energies of ball and cylinder, elastic energy of the membranes,
 /// energy lost in them so far, work of excitation and external force on the cylinder so far, work of the walls on the ball
 /// so far, energy lost by friction and work of gravity on the ball so far, energy in the suspension, energy lost in its damper so
-/// far.
-pub(super) const ENERGIES: [&str; 10] = [
+/// far, energy lost in viscous films so far.
+pub(super) const ENERGIES: [&str; 11] = [
     "energy.kinetic",
     "energy.cylinderKinetic",
     "energy.elastic",
@@ -18,6 +18,7 @@ pub(super) const ENERGIES: [&str; 10] = [
     "energy.gravity",
     "energy.suspension",
     "energy.damping",
+    "energy.viscous",
 ];
 
 /// The energy balance of the system over the run, J. Field names are the keys of `--json`.
@@ -39,6 +40,8 @@ pub struct EnergyBalance {
     pub elastic: f64,
     /// Lost in the membranes.
     pub impact_loss: f64,
+    /// Lost in viscous films.
+    pub viscous: f64,
     /// Lost by friction between ball and cylinder.
     pub friction: f64,
     /// Work of gravity on the ball.
@@ -49,9 +52,9 @@ pub struct EnergyBalance {
     pub damping: f64,
     /// Energy into load, Zener, diodes and the field of the membranes, minus that from the supply.
     pub converted: f64,
-    /// wall + gravity - kinetic - elastic - impact loss - friction - converted.
+    /// wall + gravity - kinetic - elastic - impact loss - viscous - friction - converted.
     pub residual: f64,
-    /// The residual over the sum of impact loss, friction and supply.
+    /// The residual over the sum of impact loss, viscous loss, friction and supply.
     pub relative_residual: f64,
 }
 
@@ -60,11 +63,22 @@ impl EnergyBalance {
     pub(super) fn new(start: [f64; ENERGIES.len()], end: [f64; ENERGIES.len()], ledger: &Ledger) -> Self {
         let mut change = end;
         change.iter_mut().zip(start).for_each(|(energy, start)| *energy -= start);
-        let [kinetic, cylinder_kinetic, elastic, impact_loss, excitation, wall, friction, gravity, suspension, damping] =
-            change;
+        let [
+            kinetic,
+            cylinder_kinetic,
+            elastic,
+            impact_loss,
+            excitation,
+            wall,
+            friction,
+            gravity,
+            suspension,
+            damping,
+            viscous,
+        ] = change;
         let converted = ledger.converted();
-        let residual = wall + gravity - (kinetic + elastic + impact_loss + friction + converted);
-        let through = impact_loss.abs() + friction + ledger.supply.abs();
+        let residual = wall + gravity - (kinetic + elastic + impact_loss + viscous + friction + converted);
+        let through = impact_loss.abs() + viscous + friction + ledger.supply.abs();
         let relative_residual = if through > 0.0 { residual.abs() / through } else { 0.0 };
         Self {
             excitation,
@@ -73,6 +87,7 @@ impl EnergyBalance {
             cylinder_kinetic,
             elastic,
             impact_loss,
+            viscous,
             friction,
             gravity,
             suspension,

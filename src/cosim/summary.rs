@@ -79,9 +79,11 @@ pub struct Energies {
     pub zener: f64,
     /// Burnt in the charging diodes.
     pub diode: f64,
+    /// Burnt by leakage through the films.
+    pub leakage: f64,
     /// Change of the energy stored in the membranes.
     pub stored: f64,
-    /// Energy from the mechanics: load + zener + diode + stored - supply.
+    /// Energy from the mechanics: load + zener + diode + leakage + stored - supply.
     pub converted: f64,
     /// The same, summed independently as the work -1/2 U^2 dC.
     pub mechanical: f64,
@@ -110,6 +112,7 @@ impl CircuitSummary {
                 load: ledger.load,
                 zener: ledger.zener,
                 diode: ledger.diode,
+                leakage: ledger.leakage,
                 stored: ledger.stored,
                 converted: ledger.converted(),
                 mechanical: ledger.mechanical,

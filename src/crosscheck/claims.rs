@@ -188,14 +188,18 @@ impl Findings<'_> {
         let zener = (self.settings.circuit.release == Release::Zener).then_some(("the Zener burns U_z U_in dC", zener));
         let supplied = ("the supply gives U_in^2 dC = 2 W", 2.0 * eq13);
         let gain = ("W of Eq. (13) is what a user gains", eq13);
-        vec![
+        let mut checks = vec![
             self.total("supply energy", "J", |ledger| ledger.supply, Some(supplied)),
             self.total("load energy", "J", |ledger| ledger.load, Some(("the load gets W of Eq. (13)", eq13))),
             self.total("Zener energy", "J", |ledger| ledger.zener, zener),
             self.difference("diode energy", |ledger| ledger.diode, None),
             self.difference("change of the stored energy", |ledger| ledger.stored, None),
             self.difference("surplus = load - supply", Ledger::surplus, Some(gain)),
-        ]
+        ];
+        if self.settings.circuit.leaks() {
+            checks.push(self.total("leakage energy", "J", |ledger| ledger.leakage, None));
+        }
+        checks
     }
 
     /// The energy from the mechanics, against the closed forms.

@@ -168,6 +168,8 @@ fn jobs<'a>(
         let highest = pulses.expected(mechanics, Topology::Isolated, 1.0).into_iter().fold(1.0, f64::max);
         let mut settings = *settings;
         settings.circuit.release = Release::Zener;
+        // Eq. (12) is of a constant charge.
+        settings.circuit.leakage_time_constant = 0.0;
         // Twice the highest `U_DE4`: out of reach.
         settings.circuit.zener_voltage = 2.0 * settings.circuit.supply_voltage * highest;
         let name = format!("open circuit in {}", solver.name());

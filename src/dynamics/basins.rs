@@ -1,6 +1,6 @@
 //! Basins of attraction: which motion a start leads to, over relative position and velocity of the ball.
 
-use videg_model::Parameters;
+use videg_model::Setup;
 
 use super::DynamicsError;
 use super::diagram::Periods;
@@ -67,13 +67,14 @@ impl Basins {
     ///
     /// # Errors
     /// A parameter out of its bounds; more events than can be resolved; stopped by the observer.
-    pub fn new(
-        parameters: &Parameters,
+    pub fn new<'a>(
+        setup: impl Into<Setup<'a>>,
         count: u32,
         fastest: f64,
         periods: Periods,
         observer: &dyn Progress,
     ) -> Result<Self, DynamicsError> {
+        let Setup { parameters, recording, table } = setup.into();
         let middle = |k: u32| 2.0 * (f64::from(k) + 0.5) / f64::from(count) - 1.0;
         let xs: Vec<f64> = (0..count).map(|k| middle(k) * parameters.travel() / 2.0).collect();
         let ys: Vec<f64> = (0..count).map(|k| middle(k) * fastest).collect();
@@ -84,7 +85,9 @@ impl Basins {
             if observer.is_stopped() {
                 return Err(DynamicsError::Stopped);
             }
-            Ok(Attractor::of(&Motion::take(&start.start(*parameters), periods.transient, periods.taken)?))
+            let parameters = start.start(*parameters);
+            let setup = Setup { parameters: &parameters, recording, table };
+            Ok(Attractor::of(&Motion::take(setup, periods.transient, periods.taken)?))
         })?;
         let attractors = by_share(&ends);
         Ok(Self { xs, ys, ends, attractors, periods })

@@ -2,8 +2,8 @@
 
 use videg_model::Parameters;
 
-use super::DynamicsError;
 use super::motion::Motion;
+use super::{DynamicsError, Files};
 use crate::progress::Progress;
 use crate::threads;
 
@@ -31,14 +31,14 @@ pub struct Diagram {
 }
 
 impl Diagram {
-    /// The motions at the values `xs`, where the parameters and the start are `at` them: from that start, and upwards and downwards,
+    /// The motions at the values `xs`, where the parameters and the start are `at` them, with these files: from that start, and upwards and downwards,
     /// each motion going on from the last state of the one before.
     ///
     /// # Errors
     /// The first parameter out of its bounds; more events than can be resolved; stopped by the observer.
     pub fn new(
         xs: Vec<f64>,
-        at: impl Fn(f64) -> Parameters + Sync,
+        (at, files): (impl Fn(f64) -> Parameters + Sync, &Files),
         periods: Periods,
         observer: &dyn Progress,
     ) -> Result<Self, DynamicsError> {
@@ -46,7 +46,7 @@ impl Diagram {
             if observer.is_stopped() {
                 return Err(DynamicsError::Stopped);
             }
-            Ok(Motion::take(parameters, periods.transient, periods.taken)?)
+            Motion::take(files.setup(parameters), periods.transient, periods.taken)
         };
         let fresh = threads::map(&xs, observer, |&x| take(&at(x)))?;
         // Each motion begins where the one before has ended, so these are one task each.

@@ -18,7 +18,24 @@ pub enum DynamicsError {
     /// Something that is set is no parameter of the model.
     #[error("{name}: the dynamics are those of constant parameters of the model, and this is none of them")]
     NoParameter { name: String },
-    #[error("excitation.file: dynamics needs an excitation that repeats, and a recording has no period of its own")]
+    /// A file cannot be read.
+    #[error("{name} = {file:?}: {reason}")]
+    File { name: &'static str, file: String, reason: String },
+    #[error(
+        "excitation.fileRepeat = false: dynamics needs an excitation that repeats; with true the recording begins again \
+         where it ends"
+    )]
+    RecordedOnce,
+    #[error(
+        "the recording begins at {first} s with excitation.fileOffset; dynamics needs it from 0 s on at the latest"
+    )]
+    RecordedLate { first: f64 },
+    #[error(
+        "the recording of {duration} s has {periods} periods of excitation.frequency = {frequency} Hz; dynamics needs a whole \
+         number of them, or excitation.amplitude and excitation.acceleration = 0"
+    )]
+    Incommensurate { duration: f64, periods: f64, frequency: f64 },
+    #[error("excitation.file: periodic orbits are followed under a harmonic excitation alone")]
     Recording,
     /// What varies has no numbers between its ends.
     #[error(

@@ -1,8 +1,9 @@
 //! How fast nearby motions part: the largest Lyapunov exponent.
 
-use videg_model::{Harvester, ModelError, Parameters};
+use videg_model::{Harvester, Setup};
 
 use super::motion::Flash;
+use super::{DynamicsError, excitation};
 
 /// Distance, m, of the neighbour at the start of each period.
 const DISTANCE: f64 = 1e-9;
@@ -10,30 +11,38 @@ const DISTANCE: f64 = 1e-9;
 const NOTHING: f64 = 1e-17;
 
 /// The largest Lyapunov exponent, 1/s, along `periods` that go on from `flash`: the mean growth, by logarithm, of the distance to a
-/// neighbour, which is scaled back along its direction after each period (Benettin's method). Above 0 the motion is chaotic, below 0
+/// neighbour, which is scaled back along its direction after each 1 / f0 (Benettin's method). Above 0 the motion is chaotic, below 0
 /// its neighbours approach it. Where the ball rests on a membrane at the start of a period its neighbour starts there, too. A ball
 /// that has a compliant membrane pressed in then cannot start anew: the distance grows on until it is free.
 ///
 /// # Errors
-/// A parameter out of its bounds; more events than can be resolved.
-pub fn exponent(parameters: &Parameters, flash: Flash, periods: u32) -> Result<f64, ModelError> {
+/// As [`Motion::take`](super::Motion::take).
+pub fn exponent<'a>(setup: impl Into<Setup<'a>>, flash: Flash, periods: u32) -> Result<f64, DynamicsError> {
+    let setup = setup.into();
+    let Setup { parameters, recording, table } = setup;
     let frequency = parameters.frequency;
     // Velocities count by the distance that they cover in 1/(2 pi f0).
     let scale = 1.0 / (std::f64::consts::TAU * frequency);
+    // During a recording the neighbour is scaled back as often as without.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+    let intervals = (f64::from(periods) * excitation::period(&setup)? * frequency).round().max(1.0) as u64;
     let half = parameters.travel() / 2.0;
     let is_suspended = parameters.is_suspended();
     let mut apart = if is_suspended { [0.5 * DISTANCE; 4] } else { [DISTANCE * 0.6, DISTANCE * 0.8, 0.0, 0.0] };
-    let start = |flash: Flash| Harvester::new(&flash.start(*parameters), 0.0);
+    let start = |flash: Flash, time: f64| {
+        let parameters = flash.start(*parameters);
+        Harvester::new(Setup { parameters: &parameters, recording, table }, time)
+    };
     let neighbour_of = |flash: Flash, apart: [f64; 4]| Flash {
         displacement: flash.displacement + apart[0],
         velocity: flash.velocity + apart[1] / scale,
         cylinder: [flash.cylinder[0] + apart[2], flash.cylinder[1] + apart[3] / scale],
         ..flash
     };
-    let mut pair = [start(flash)?, start(neighbour_of(flash, apart))?];
+    let mut pair = [start(flash, 0.0)?, start(neighbour_of(flash, apart), 0.0)?];
     let mut elapsed = 0.0;
     let mut sum = 0.0;
-    for _ in 0..periods {
+    for _ in 0..intervals {
         elapsed += 1.0 / frequency;
         for harvester in &mut pair {
             harvester.advance(elapsed)?;
@@ -55,8 +64,9 @@ pub fn exponent(parameters: &Parameters, flash: Flash, periods: u32) -> Result<f
         if distance > NOTHING {
             apart = now.map(|part| part * DISTANCE / distance);
         }
-        pair = [start(flash)?, start(neighbour_of(flash, apart))?];
-        elapsed = 0.0;
+        // A harmonic excitation is at the start of a period what it is at 0.
+        elapsed = if recording.is_some() { elapsed } else { 0.0 };
+        pair = [start(flash, elapsed)?, start(neighbour_of(flash, apart), elapsed)?];
     }
-    Ok(sum * frequency / f64::from(periods))
+    Ok(sum * frequency / intervals as f64)
 }

@@ -1,6 +1,8 @@
 //! The motion once a period, in phase with the excitation: what Poincare sections and bifurcation diagrams are made of.
 
-use videg_model::{ExcitationKind, Harvester, ModelError, Parameters};
+use videg_model::{ExcitationKind, Harvester, Parameters, Setup};
+
+use super::{DynamicsError, excitation};
 
 /// The motion at the start of a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,10 +52,11 @@ impl Motion {
     /// Lets `transient` periods of the excitation pass and takes the motion at the ends of `periods` more, and before.
     ///
     /// # Errors
-    /// A parameter out of its bounds; more events than can be resolved.
-    pub fn take(parameters: &Parameters, transient: u32, periods: u32) -> Result<Self, ModelError> {
-        let period = 1.0 / parameters.frequency;
-        let mut harvester = Harvester::new(parameters, 0.0)?;
+    /// A parameter out of its bounds; an excitation that does not repeat; more events than can be resolved.
+    pub fn take<'a>(setup: impl Into<Setup<'a>>, transient: u32, periods: u32) -> Result<Self, DynamicsError> {
+        let setup = setup.into();
+        let period = excitation::period(&setup)?;
+        let mut harvester = Harvester::new(setup, 0.0)?;
         let mut flashes = Vec::new();
         for k in 0..=periods {
             // Products, not sums, so that the flashes do not drift against the excitation.

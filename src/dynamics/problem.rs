@@ -1,14 +1,17 @@
 //! What the dynamics of is looked at: the parameters of a case, and one of them that varies.
 
-use videg_model::{Parameters, Quantity};
+use videg_model::{Parameters, Quantity, Setup};
 
-use super::DynamicsError;
+use super::excitation::period;
+use super::{DynamicsError, Files};
 
 /// A case, and the parameter over which it is followed.
 #[derive(Debug, Clone)]
 pub struct Problem {
     /// Its parameters.
     pub parameters: Parameters,
+    /// What it has besides them.
+    pub files: Files,
     /// The one that varies.
     pub varied: Option<Varied>,
 }
@@ -45,12 +48,17 @@ impl Problem {
         parameters
     }
 
+    /// What a harvester with these `parameters` is made from.
+    pub fn setup<'a>(&'a self, parameters: &'a Parameters) -> Setup<'a> {
+        self.files.setup(parameters)
+    }
+
     /// The value in the parameters themselves; NaN if none varies.
     pub fn own_value(&self) -> f64 {
         self.varied.as_ref().map_or(f64::NAN, |varied| (varied.quantity.get)(&self.parameters))
     }
 
-    /// Checks that the excitation is periodic: without noise.
+    /// Checks that the excitation is periodic.
     pub(super) fn check_periodic(&self) -> Result<(), DynamicsError> {
         let name = "excitation.phaseNoise";
         let varies = self.varied.as_ref().is_some_and(|varied| varied.quantity.name == name);
@@ -58,7 +66,7 @@ impl Problem {
             let value = self.parameters.phase_noise;
             return Err(DynamicsError::NotPeriodic { name, value });
         }
-        Ok(())
+        period(&self.setup(&self.parameters)).map(drop)
     }
 
     /// Checks that periodic orbits can be followed: under a periodic excitation, over a parameter of the motion.
@@ -67,6 +75,9 @@ impl Problem {
     /// What stands against it, by name.
     pub fn check_orbits(&self) -> Result<(), DynamicsError> {
         self.check_periodic()?;
+        if self.files.recording.is_some() {
+            return Err(DynamicsError::Recording);
+        }
         match &self.varied {
             Some(varied) if varied.quantity.name.starts_with("initial.") => {
                 Err(DynamicsError::InitialState { name: varied.quantity.name })

@@ -2,7 +2,7 @@
 
 use videg_model::{Parameters, Quantity};
 
-use super::{DynamicsError, Problem, Varied};
+use super::{DynamicsError, Files, Problem, Varied};
 use crate::scenario::Setting;
 use crate::sweep::{self, BuiltIn, Request, Sampling, Sweep, Times, Vary};
 
@@ -17,10 +17,11 @@ impl Problem {
     /// less than two values; an excitation that does not repeat.
     pub fn new(settings: &[Setting], vary: Option<&Vary>) -> Result<Self, DynamicsError> {
         // A sweep has at least one run.
-        let parameters = resolve(settings, None)?.into_iter().next().unwrap_or_default();
-        parameters.validate()?;
-        let varied = vary.map(|vary| Varied::new(settings, vary)).transpose()?;
-        let problem = Self { parameters, varied };
+        let (files, settings) = Files::read(settings)?;
+        let parameters = resolve(&settings, None)?.into_iter().next().unwrap_or_default();
+        files.setup(&parameters).validate()?;
+        let varied = vary.map(|vary| Varied::new(&settings, vary)).transpose()?;
+        let problem = Self { parameters, files, varied };
         problem.check_periodic()?;
         Ok(problem)
     }
@@ -64,9 +65,6 @@ fn resolve(settings: &[Setting], vary: Option<&Vary>) -> Result<Vec<Parameters>,
     let is_parameter = |name: &str| {
         Parameters::TABLE.iter().any(|it| it.name == name) || Parameters::CHOICES.iter().any(|it| it.name == name)
     };
-    if settings.iter().any(|setting| setting.name == "excitation.file" && !setting.value.is_empty()) {
-        return Err(DynamicsError::Recording);
-    }
     let Some(built_in) = BuiltIn::new(&sweep) else {
         let names = settings.iter().map(|setting| &setting.name).chain(vary.map(|vary| &vary.name));
         let name = names.into_iter().find(|name| !is_parameter(name)).cloned().unwrap_or_default();

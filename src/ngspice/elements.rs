@@ -99,7 +99,12 @@ impl Elements {
             (Topology::Isolated, Release::Switch) => template!("switch_isolated.cir"),
             (Topology::Isolated, Release::Storage) => template!("storage_isolated.cir"),
         };
-        let (release, models) = (values.render(release)?, values.render(template!("models.cir"))?);
+        let leakage = match self.circuit.topology {
+            _ if !self.circuit.leaks() => "",
+            Topology::SharedNode => template!("leakage_shared.cir"),
+            Topology::Isolated => template!("leakage_isolated.cir"),
+        };
+        let (release, models) = (values.render(&[release, leakage].concat())?, values.render(template!("models.cir"))?);
         values.part("release", &release).part("models", &models).render(circuit)
     }
 
@@ -114,6 +119,7 @@ impl Elements {
             .number("load_resistance", self.resistance())
             .number("zener_voltage", release)
             .number("storage_voltage", release)
+            .number("leakage_time_constant", self.circuit.leakage_time_constant)
             .number("saturation_current", diode.saturation_current)
             .number("emission_coefficient", diode.emission_coefficient)
             .number("breakdown_current", diode.breakdown_current)
@@ -155,12 +161,16 @@ mod tests {
         let run = Run::new(0.1, 1.4);
         let is_complete = |text: &str| !text.contains(['<', '>']) && text.ends_with(".end\n");
         for topology in [Topology::SharedNode, Topology::Isolated] {
-            for release in [Release::Zener, Release::Switch, Release::Storage] {
-                let elements = Elements::new(&Parameters { topology, release, ..Parameters::default() }, 1.4).unwrap();
+            for (release, leakage_time_constant) in
+                [Release::Zener, Release::Switch, Release::Storage].into_iter().flat_map(|it| [(it, 0.0), (it, 0.5)])
+            {
+                let parameters = Parameters { topology, release, leakage_time_constant, ..Parameters::default() };
+                let elements = Elements::new(&parameters, 1.4).unwrap();
                 for source in [CapacitanceSource::Table, CapacitanceSource::External] {
                     let netlist = elements.netlist(source, [15e-12; 2], &run).unwrap();
                     let text = netlist.text();
                     assert!(is_complete(text), "{text}");
+                    assert_eq!(text.contains("5e-1*V("), leakage_time_constant > 0.0, "{text}");
                     // A program that has loaded ngspice gives the commands and takes the vectors itself.
                     let by_itself = source == CapacitanceSource::Table;
                     assert_eq!(text.contains(".control"), by_itself);

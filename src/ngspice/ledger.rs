@@ -1,7 +1,7 @@
 //! Energies and charges from the time points of ngspice.
 //!
 //! Currents are summed by the trapezoidal rule over ngspice's own points. The change of a node's charge C V equals the
-//! charge that has flowed in less the charge that has flowed out. So the error of the rule where a current jumps is known,
+//! charge that has flowed in less the charge that has flowed out. What leaks through a film follows from C and V. So the error of the rule where a current jumps is known,
 //! and the flows take it in proportion to the change of their currents. Integrators within the netlist would have tolerances
 //! of their own and would weigh in the control of the step.
 
@@ -89,7 +89,9 @@ impl TrapezoidalLedger {
         let entered = ends(&|at| at.supply[j]);
         let left = ends(&|at| at.release[j]);
         let charge = |[a, b]: [f64; 2]| half * (a + b);
-        let missing = missing(&last, now, j, half, [charge(entered), charge(left)]);
+        let leak = self.elements.circuit.leakage_rate();
+        let leaked = ends(&|at| leak * at.capacitance[j] * at.voltage[j]);
+        let missing = missing(&last, now, j, half, [charge(entered), charge(left) + charge(leaked)]);
         // Energy of a current that crosses a voltage, with what the rule has missed of its charge.
         let energy = |[i, k]: [f64; 2], missing: f64, voltage: &dyn Fn(&TimePoint) -> f64| {
             let [a, b] = ends(voltage);
@@ -110,6 +112,7 @@ impl TrapezoidalLedger {
         self.sums.load += load;
         self.sums.zener += zener;
         self.sums.diode += energy(entered, missing[0], &|at| supply_voltage - at.voltage[j]) + release_diode;
+        self.sums.leakage += energy(leaked, 0.0, &|at| at.voltage[j]);
         self.sums.mechanical += work(&last, now, j);
     }
 

@@ -49,6 +49,8 @@ pub struct Power {
     pub load: f64,
     /// Into the Zener diodes.
     pub zener: f64,
+    /// Into the films that leak.
+    pub leakage: f64,
 }
 
 impl Power {
@@ -59,7 +61,12 @@ impl Power {
 
     fn between(start: &Ledger, end: &Ledger, time: f64) -> Self {
         let mean = |energy: fn(&Ledger) -> f64| (energy(end) - energy(start)) / time;
-        Self { supply: mean(|l| l.supply), load: mean(|l| l.load), zener: mean(|l| l.zener) }
+        Self {
+            supply: mean(|l| l.supply),
+            load: mean(|l| l.load),
+            zener: mean(|l| l.zener),
+            leakage: mean(|l| l.leakage),
+        }
     }
 }
 

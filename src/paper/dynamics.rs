@@ -4,7 +4,7 @@ use videg_model::Parameters;
 
 use super::excitation::{Cylinder, FORCE, FREQUENCY};
 use super::{Artefact, Finding, PaperError, Sheet, Study, Verdict};
-use crate::dynamics::{Diagram, Motion, Periods, Problem, exponent, periods, pictures, sheets};
+use crate::dynamics::{Diagram, Files, Motion, Periods, Problem, exponent, periods, pictures, sheets};
 use videg_report::{Column, Table};
 
 /// r of Figure 14.
@@ -60,7 +60,7 @@ pub fn make(study: &Study<'_>) -> Result<Artefact, PaperError> {
         let count = study.effort.of(400_u32, 100);
         let [from, to] = path.range;
         let xs: Vec<f64> = (0..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)).collect();
-        let diagram = Diagram::new(xs, |x| (path.start)(&cylinder, x), PERIODS, study.observer)?;
+        let diagram = Diagram::new(xs, (|x| (path.start)(&cylinder, x), &Files::default()), PERIODS, study.observer)?;
         artefact.findings.push(path.finding(&diagram));
         artefact.tables.push(path.table(&diagram));
         artefact.pictures.push(pictures::diagram(path.name, path.axis, &diagram, &[], &path.long_caption())?);

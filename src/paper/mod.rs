@@ -17,12 +17,14 @@ mod fig4;
 mod fig7;
 mod fig8;
 mod fixed_step;
+mod leakage;
 mod motion;
 mod orbit;
 mod patterns;
 mod peak;
 mod power;
 mod recording;
+mod restitution;
 mod stability;
 mod statistics;
 mod study;
@@ -75,6 +77,7 @@ pub const ITEMS: &[Item] = &[
     item("table2", "Table 2: voltage gain", table2::make),
     item("table3", "Table 3: power density", table3::make),
     item("fig4", "Figure 4: force law", fig4::make),
+    item("restitution", "Restitution of viscous films", restitution::make),
     item("fig7", "Figure 7: shape of the membrane", fig7::make),
     item("fig8", "Figure 8(b): one harvesting cycle", fig8::make),
     item("fig9", "Figure 9: no impact", |study| motion::make(study, &motion::FIG9)),
@@ -87,6 +90,7 @@ pub const ITEMS: &[Item] = &[
     item("fig16", "Figure 16: amplitude and frequency", fig16::make),
     item("fig17", "Figure 17: phase noise", fig17::make),
     item("tuning", "Tuning of the circuit", tuning::make),
+    item("leakage", "Leakage of the film and the best load", leakage::make),
     item("power", "Power density by Eq. (14) and by net gain", power::make),
     item("dynamics", "Poincare sections and bifurcation diagrams", dynamics::make),
     item("basins", "Basins of attraction", basins::make),

@@ -52,7 +52,7 @@ impl Grid {
     }
 }
 
-fn drive() -> Drive {
+pub(super) fn drive() -> Drive {
     Drive { case: "fig14", settings: Vec::new(), window: WINDOW, tolerance: TOLERANCE }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::{Origin, Setting};
 
 /// Names of these variables.
-const VARIABLES: [&str; 1] = ["excitation.file"];
+const VARIABLES: [&str; 2] = ["excitation.file", "membrane.file"];
 
 /// Whether a value of the variable called `name` is the name of a file.
 pub(crate) fn is_file(name: &str) -> bool {

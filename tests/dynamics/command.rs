@@ -78,8 +78,26 @@ fn everything_that_is_asked_for_is_written_and_said() {
 }
 
 #[test]
+fn a_measured_membrane_is_found_beside_its_case_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let deflections = (0..=100).map(|k| 1e-4 * f64::from(k));
+    let rows: Vec<_> = deflections.map(|x| format!("{x:e},{:e}", 408_470.0 * x.powf(2.6))).collect();
+    std::fs::write(folder.path().join("film.csv"), format!("deflection,force\n{}\n", rows.join("\n"))).unwrap();
+    let file = folder.path().join("own.toml");
+    let text = "case = 'fig14'\n[set]\nmembrane.law = 'table'\nmembrane.file = 'film.csv'\n";
+    std::fs::write(&file, text).unwrap();
+    let gain = |arguments: &[&str]| {
+        let (code, stdout, stderr, _) = dynamics(&[arguments, &["--samples", "10", "--json"]].concat());
+        assert_eq!(code, Some(0), "{stderr}");
+        serde_json::from_str::<Value>(&stdout).unwrap()["average_voltage_gain"].as_f64().unwrap()
+    };
+    let [measured, power] = [gain(&["--case-file", file.to_str().unwrap()]), gain(&["--case", "fig14"])];
+    assert!((measured / power - 1.0).abs() < 1e-4, "{measured} {power}");
+}
+
+#[test]
 fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
-    let cases: [(&[&str], &[&str]); 12] = [
+    let cases: [(&[&str], &[&str]); 14] = [
         (&["--set", "excitation.phaseNoise=0.5"], &["excitation.phaseNoise = 0.5", "repeats"]),
         (&["--orbits", "--vary", "initial.ballPosition=0:1e-3:3"], &["--vary initial.ballPosition"]),
         (&["--vary", "contact.law=impulsive,compliant"], &["--vary contact.law", "real parameter"]),
@@ -89,7 +107,9 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
         (&["--vary", "membrane.restitution=0:1:1000000"], &["--vary membrane.restitution", "1000000", "100000"]),
         (&["--vary", "membrane.restitution=0:1:100000", "--samples", "1000"], &["--samples 1000", "20000000"]),
         (&["--set", "externalForce=0.1"], &["externalForce"]),
-        (&["--set", "excitation.file=shaker.csv"], &["excitation.file"]),
+        (&["--set", "excitation.file=shaker.csv"], &["excitation.file = \"shaker.csv\"", "No such file"]),
+        (&["--set", "membrane.law=table", "--set", "membrane.file=film.csv"], &["membrane.file = \"film.csv\""]),
+        (&["--set", "membrane.law=table"], &["membrane.law = table", "membrane.file"]),
         (&["--samples", "3"], &["--samples", "4..=1000000"]),
         (&["--basins", "10", "--basins-speed", "nan"], &["--basins-speed NaN"]),
     ];

@@ -5,9 +5,10 @@
 mod capsule;
 mod closed_form;
 mod command;
+mod files;
 mod orbits;
 
-use videg::dynamics::{Problem, Varied};
+use videg::dynamics::{Files, Problem, Varied};
 use videg_model::{Parameters, Quantity};
 
 /// The real parameter called `name`.
@@ -17,10 +18,14 @@ fn quantity(name: &str) -> &'static Quantity {
 
 /// A problem over one parameter.
 fn over(parameters: Parameters, name: &str, from: f64, to: f64) -> Problem {
-    Problem { parameters, varied: Some(Varied { quantity: quantity(name), values: vec![from, to] }) }
+    Problem {
+        parameters,
+        files: Files::default(),
+        varied: Some(Varied { quantity: quantity(name), values: vec![from, to] }),
+    }
 }
 
 /// A problem at its own parameters.
 fn at(parameters: Parameters) -> Problem {
-    Problem { parameters, varied: None }
+    Problem { parameters, files: Files::default(), varied: None }
 }

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use videg::dynamics::orbits::{self, Bifurcation, End, Orbit, Search};
-use videg::dynamics::{Basins, Diagram, DynamicsError, Flash, Motion, Periods, Problem, exponent};
+use videg::dynamics::{Basins, Diagram, DynamicsError, Files, Flash, Motion, Periods, Problem, exponent};
 use videg_model::{Case, ContactLaw, Event, Harvester, Impact, Parameters, Side};
 
 use super::{at, over};
@@ -260,7 +260,7 @@ fn diagrams_and_basins_work_with_soft_membranes_suspension_and_friction() {
     let periods = Periods { transient: 20, taken: 10 };
     let xs = vec![0.4, 0.5, 0.6];
     let at = |restitution: f64| Parameters { restitution, ..p };
-    let diagram = Diagram::new(xs, at, periods, &()).unwrap();
+    let diagram = Diagram::new(xs, (at, &Files::default()), periods, &()).unwrap();
     assert!(diagram.ways.iter().all(|motions| motions.len() == 3 && motions.iter().all(|it| it.flashes.len() == 11)));
     let basins = Basins::new(&p, 4, 0.3, periods, &()).unwrap();
     let shares: f64 = basins.attractors.iter().map(|(_, share)| share).sum();
@@ -268,6 +268,6 @@ fn diagrams_and_basins_work_with_soft_membranes_suspension_and_friction() {
     let motion = Motion::take(&p, 20, 10).unwrap();
     assert!(exponent(&p, motion.last(), 50).unwrap().is_finite());
     // A parameter beyond its bound is named.
-    let refused = Diagram::new(vec![0.5, 1.5], at, periods, &()).unwrap_err().to_string();
+    let refused = Diagram::new(vec![0.5, 1.5], (at, &Files::default()), periods, &()).unwrap_err().to_string();
     assert!(refused.contains("membrane.restitution = 1.5"), "{refused}");
 }

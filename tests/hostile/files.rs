@@ -11,6 +11,12 @@ fn recording(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
     refused(what, command, vec![("evil.csv", text.into())])
 }
 
+fn membrane(what: &'static str, text: impl Into<Vec<u8>>) -> Input {
+    let settings = ["--set", "membrane.law=table", "--set", "membrane.file=evil.csv"];
+    let command = [&["simulate", "--output", "out", "--until", "1"][..], &settings].concat();
+    refused(what, &command, vec![("evil.csv", text.into())])
+}
+
 /// A recording that no file holds.
 fn no_recording(what: &'static str, file: &'static str) -> Input {
     let setting: &'static str = match file {
@@ -77,6 +83,18 @@ pub fn inputs() -> Vec<Input> {
         no_recording("a recording that is not there", "missing.csv"),
         no_recording("a recording without end", "/dev/zero"),
         no_recording("a folder in place of a recording", "out"),
+        membrane("a membrane in millimetres", "deflection_mm,force\n0,0\n1,0.1\n2,0.3\n"),
+        membrane("a membrane without its first row", "deflection,force\n1e-3,0.1\n2e-3,0.3\n3e-3,0.6\n"),
+        membrane("a membrane whose force falls", "deflection,force\n0,0\n1e-3,0.3\n2e-3,0.1\n"),
+        membrane("a deflection twice", "deflection,force\n0,0\n1e-3,0.1\n1e-3,0.3\n"),
+        membrane(
+            "a capacitance that falls",
+            "deflection,force,capacitance\n0,0,2e-11\n1e-3,0.1,1e-11\n2e-3,0.3,3e-11\n",
+        ),
+        membrane("a force that is no number", "deflection,force\n0,0\n1e-3,NaN\n2e-3,0.3\n"),
+        membrane("a force beyond all bounds of a membrane", "deflection,force\n0,0\n1e-3,0.1\n2e-3,1e300\n"),
+        membrane("two points of a membrane", "deflection,force\n0,0\n1e-3,0.1\n"),
+        membrane("a recording in place of a membrane", "time,force\n0,0\n1,1\n2,2\n"),
         sweep("an unknown design", "design = 'square'"),
         sweep("a negative number of points", "points = -1"),
         sweep("values that are none", "[vary]\na.b = 3"),

@@ -60,6 +60,7 @@ fn assert_ledger(found: &Waveforms, expected: &Waveforms, tolerance: f64, what: 
         ("supply energy", a.supply, b.supply),
         ("load energy", a.load, b.load),
         ("zener energy", a.zener, b.zener),
+        ("leakage energy", a.leakage, b.leakage),
         ("supply charge", a.supply_charge, b.supply_charge),
         ("load charge", a.load_charge, b.load_charge),
     ] {
@@ -98,6 +99,27 @@ fn both_solvers_agree() {
         for ideal in variants() {
             for difference in compare(&ngspice, &table, &ideal, &(case, ideal.topology, ideal.release)) {
                 assert!(difference < volts, "{case}: {difference} V RMS");
+            }
+        }
+    }
+}
+
+/// Films that leak while a membrane waits for the next impact, and such that lose all their charge until then.
+#[test]
+fn both_solvers_agree_on_films_that_leak() {
+    let Some(ngspice) = ngspice() else { return };
+    let table = table(&harvester_fmu(), "fig14", 5.0);
+    for leakage_time_constant in [0.05, 1.0, 30.0] {
+        for release in [Release::Zener, Release::Switch, Release::Storage] {
+            for topology in TOPOLOGIES {
+                let ideal = Parameters {
+                    topology,
+                    release,
+                    leakage_time_constant,
+                    storage_voltage: 2200.0,
+                    ..Parameters::default()
+                };
+                compare(&ngspice, &table, &ideal, &(topology, release, leakage_time_constant));
             }
         }
     }

@@ -47,21 +47,25 @@ const KINK: f64 = 4.0;
 /// Load voltage, in supply voltages, below which the energy of the load is not asked to be accurate by itself.
 const SMALL_LOAD: f64 = 1e-2;
 
-/// What flows, or has flowed since the start of the call; also its rate or its error.
+/// What flows, or has flowed since the start of the call; also its rate or its error. What leaks is 0, and costs nothing,
+/// unless it is of films that do.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Flow {
+pub(crate) struct Flow<const LEAKS: bool> {
     /// Charges through the charging diodes (C).
     pub drawn: [f64; 2],
     /// Charges through the release elements (C).
     pub released: [f64; 2],
-    /// Energies of the load, the Zener diodes and the other diodes, and work of the mechanics (J).
+    /// Charges through the films (C).
+    pub leaked: [f64; 2],
+    /// Energies of the load, the Zener diodes, the other diodes and the films, and work of the mechanics (J).
     pub load: f64,
     pub zener: f64,
     pub diode: f64,
+    pub leakage: f64,
     pub mechanical: f64,
 }
 
-impl Flow {
+impl<const LEAKS: bool> Flow<LEAKS> {
     fn add(&mut self, other: &Self, factor: f64) {
         for j in 0..2 {
             self.drawn[j] += factor * other.drawn[j];
@@ -71,8 +75,14 @@ impl Flow {
         self.zener += factor * other.zener;
         self.diode += factor * other.diode;
         self.mechanical += factor * other.mechanical;
+        if LEAKS {
+            self.leaked[0] += factor * other.leaked[0];
+            self.leaked[1] += factor * other.leaked[1];
+            self.leakage += factor * other.leakage;
+        }
     }
 
+    #[inline]
     fn sum(flows: &[Self], weights: [f64; STAGES], h: f64) -> Self {
         let mut sum = Self::default();
         for (flow, weight) in flows.iter().zip(weights) {
@@ -83,8 +93,8 @@ impl Flow {
 }
 
 /// Result of one internal step.
-pub(crate) struct Step {
-    pub flow: Flow,
+pub(crate) struct Step<const LEAKS: bool> {
+    pub flow: Flow<LEAKS>,
     pub point: Point,
     /// Error estimate over tolerance.
     pub error: f64,
@@ -100,10 +110,10 @@ struct Scale {
     load: f64,
 }
 
-impl Exponential<'_> {
+impl<const LEAKS: bool> Exponential<'_, LEAKS> {
     /// One step of `h` seconds from `start`, `elapsed` seconds after the start of the call; `None` where the node
     /// equations are not solved.
-    pub fn step(&self, start: &Flow, guess: &Point, elapsed: f64, h: f64) -> Option<Step> {
+    pub fn step(&self, start: &Flow<LEAKS>, guess: &Point, elapsed: f64, h: f64) -> Option<Step<LEAKS>> {
         let probe = self.equations(start, elapsed + PROBE * h, PROBE * h).solve(guess)?;
         let mut rates = [Flow::default(); STAGES];
         let (mut flow, mut point) = (*start, probe);
@@ -114,15 +124,15 @@ impl Exponential<'_> {
                 flow.add(rate, h * weight);
             }
             point = self.equations(&flow, elapsed + NODES[i] * h, GAMMA * h).solve(&point)?;
-            rates[i] = self.rates(&point);
+            rates[i] = self.rates(&point, elapsed + NODES[i] * h);
             flow.add(&rates[i], h * GAMMA);
             top = top.max(point.load_voltage);
         }
         let mut second = Flow::sum(&rates, SECOND, h);
-        second.add(&self.rates(&probe), START * h * GAMMA / (GAMMA - PROBE));
+        second.add(&self.rates(&probe, elapsed + PROBE * h), START * h * GAMMA / (GAMMA - PROBE));
         second.add(&rates[0], -START * h * PROBE / (GAMMA - PROBE));
         let scale = self.scale(start, elapsed, top);
-        let damped = |difference: &Flow| self.damped(difference, &point, elapsed + h, h);
+        let damped = |difference: &Flow<LEAKS>| self.damped(difference, &point, elapsed + h, h);
         // The probe may be within the transients: twice for it.
         let error = [damped(&Flow::sum(&rates, ERROR, h)), damped(&damped(&second))]
             .into_iter()
@@ -133,8 +143,8 @@ impl Exponential<'_> {
     }
 
     /// Node charges when `flow` has flowed (C).
-    pub fn charges(&self, flow: &Flow) -> [f64; 2] {
-        [0, 1].map(|j| self.charge[j] + (flow.drawn[j] - flow.released[j]))
+    pub fn charges(&self, flow: &Flow<LEAKS>) -> [f64; 2] {
+        [0, 1].map(|j| self.charge[j] + net(flow, j))
     }
 
     /// Node capacitances `t` seconds after the start of the call (F).
@@ -142,19 +152,19 @@ impl Exponential<'_> {
         [0, 1].map(|j| self.capacitance[j] + self.rate[j] * t)
     }
 
-    fn equations(&self, flow: &Flow, t: f64, span: f64) -> NodeEquations<'_> {
+    fn equations(&self, flow: &Flow<LEAKS>, t: f64, span: f64) -> NodeEquations<'_> {
         NodeEquations {
             devices: self.devices,
             count: self.count,
-            capacitance: self.capacitances(t),
+            capacitance: self.capacitances(t).map(|c| if LEAKS { c * (1.0 + span * self.devices.leak) } else { c }),
             charge: self.charges(flow),
             span,
             trials: &self.trials,
         }
     }
 
-    /// Currents and powers at a solution of the node equations (A, W).
-    fn rates(&self, point: &Point) -> Flow {
+    /// Currents and powers at a solution of the node equations (A, W), `t` seconds after the start of the call.
+    fn rates(&self, point: &Point, t: f64) -> Flow<LEAKS> {
         let (supply, out) = (self.devices.supply, point.load_voltage);
         let mut rates = Flow { drawn: point.supply, released: point.release, ..Flow::default() };
         for j in 0..self.count {
@@ -172,22 +182,31 @@ impl Exponential<'_> {
             }
             rates.diode += (supply - v) * drawn;
             rates.mechanical -= 0.5 * v * v * self.rate[j];
+            if LEAKS {
+                rates.leaked[j] = self.devices.leak * ((self.capacitance[j] + self.rate[j] * t) * v);
+                rates.leakage += v * rates.leaked[j];
+            }
         }
         rates
     }
 
     /// An estimate, without what steep elements take back by the end of the step.
-    fn damped(&self, difference: &Flow, end: &Point, t: f64, h: f64) -> Flow {
+    fn damped(&self, difference: &Flow<LEAKS>, end: &Point, t: f64, h: f64) -> Flow<LEAKS> {
         let mut damped = *difference;
         let capacitances = self.capacitances(t);
         for (j, capacitance) in capacitances.into_iter().enumerate().take(self.count) {
             let (v, span) = (end.voltage[j], GAMMA * h / capacitance);
             let supply = span * self.devices.charging(v).1;
             let release = span * self.devices.holding(v).1;
-            let charge = (difference.drawn[j] - difference.released[j]) / (1.0 + supply + release);
+            let leak = if LEAKS { GAMMA * h * self.devices.leak } else { 0.0 };
+            let charge = net(difference, j) / (1.0 + supply + release + leak);
             let (less, more) = (supply * charge, release * charge);
             damped.drawn[j] -= less;
             damped.released[j] += more;
+            if LEAKS {
+                damped.leaked[j] += leak * charge;
+                damped.leakage += v * (leak * charge);
+            }
             damped.diode -= (self.devices.supply - v) * less;
             match self.devices.release {
                 Release::Zener => {}
@@ -203,7 +222,7 @@ impl Exponential<'_> {
 
     /// Charge that steep elements which conduct at the start, but no longer at the probe, pass before the first stage
     /// (C), unless the step is short enough to resolve it.
-    fn left(&self, start: &Flow, probe: &Point, elapsed: f64, h: f64) -> f64 {
+    fn left(&self, start: &Flow<LEAKS>, probe: &Point, elapsed: f64, h: f64) -> f64 {
         let (charge, capacitance) = (self.charges(start), self.capacitances(elapsed));
         let mut left = 0.0;
         for j in 0..self.count {
@@ -220,7 +239,7 @@ impl Exponential<'_> {
 
     /// Charges are relative to `C U_in` or to what is there, if more; energies to that at its voltage; that of the load
     /// to the same charge at the voltage of the load, which may be small.
-    fn scale(&self, start: &Flow, elapsed: f64, top: f64) -> Scale {
+    fn scale(&self, start: &Flow<LEAKS>, elapsed: f64, top: f64) -> Scale {
         let supply = self.devices.supply;
         let (charges, capacitances) = (self.charges(start), self.capacitances(elapsed));
         let mut scale = Scale { charge: 0.0, energy: 0.0, load: 0.0 };
@@ -237,19 +256,30 @@ impl Exponential<'_> {
     }
 
     /// Largest relative component.
-    fn norm(&self, error: &Flow, scale: &Scale) -> f64 {
+    fn norm(&self, error: &Flow<LEAKS>, scale: &Scale) -> f64 {
         let mut largest: f64 = 0.0;
         for j in 0..self.count {
-            let (drawn, released) = (error.drawn[j], error.released[j]);
-            for charge in [drawn, released, drawn - released] {
+            for charge in [error.drawn[j], error.released[j], net(error, j)] {
                 largest = larger(largest, charge / scale.charge);
+            }
+            if LEAKS {
+                largest = larger(largest, error.leaked[j] / scale.charge);
             }
         }
         for energy in [error.zener, error.diode, error.mechanical] {
             largest = larger(largest, energy / scale.energy);
         }
+        if LEAKS {
+            largest = larger(largest, error.leakage / scale.energy);
+        }
         larger(largest, error.load / scale.load)
     }
+}
+
+/// Charge that node `j` gains (C).
+fn net<const LEAKS: bool>(flow: &Flow<LEAKS>, j: usize) -> f64 {
+    let through = flow.drawn[j] - flow.released[j];
+    if LEAKS { through - flow.leaked[j] } else { through }
 }
 
 /// The larger one in size; NaN must not be lost, as it would be in `f64::max`.

@@ -1,6 +1,7 @@
 //! Shared by the tests: capacitance signals, and a solver that has nothing in common with the crate's.
 #![allow(dead_code, clippy::unwrap_used)]
 
+use proptest::prelude::*;
 use videg_circuit::{Circuit, Ledger, Parameters, Release, Topology};
 
 /// A piece of a piecewise linear signal: its length [s] and the capacitances at its end [F].
@@ -62,6 +63,7 @@ pub fn difference(a: &Ledger, b: &Ledger) -> Ledger {
         load: a.load - b.load,
         zener: a.zener - b.zener,
         diode: a.diode - b.diode,
+        leakage: a.leakage - b.leakage,
         stored: a.stored - b.stored,
         mechanical: a.mechanical - b.mechanical,
         supply_charge: a.supply_charge - b.supply_charge,
@@ -71,16 +73,27 @@ pub fn difference(a: &Ledger, b: &Ledger) -> Ledger {
 
 /// Sum of all energies, the scale of the ledger's error.
 pub fn moved(ledger: &Ledger) -> f64 {
-    ledger.supply.abs() + ledger.load.abs() + ledger.zener.abs() + ledger.mechanical.abs() + ledger.stored.abs()
+    ledger.supply.abs()
+        + ledger.load.abs()
+        + ledger.zener.abs()
+        + ledger.leakage.abs()
+        + ledger.mechanical.abs()
+        + ledger.stored.abs()
 }
 
-/// The sums of the independent solver: supply charge, load charge, load energy, Zener energy, final charges.
+/// No leakage in half of the cases, else time constants (s) of these decades.
+pub fn leakage(decades: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), decades.prop_map(|d| 10.0_f64.powf(d))]
+}
+
+/// The sums of the independent solver: supply charge, load charge, energies of load, Zener diodes and leakage, final charges.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reference {
     pub supply_charge: f64,
     pub load_charge: f64,
     pub load: f64,
     pub zener: f64,
+    pub leakage: f64,
     pub charge: [f64; 2],
 }
 
@@ -95,6 +108,7 @@ pub fn reference(parameters: &Parameters, start: [f64; 2], ramps: &[Ramp], steps
         load_charge: extrapolate(coarse.load_charge, fine.load_charge),
         load: extrapolate(coarse.load, fine.load),
         zener: extrapolate(coarse.zener, fine.zener),
+        leakage: extrapolate(coarse.leakage, fine.leakage),
         charge: [extrapolate(coarse.charge[0], fine.charge[0]), extrapolate(coarse.charge[1], fine.charge[1])],
     }
 }
@@ -148,6 +162,11 @@ const REFINEMENT: u32 = 1000;
 
 /// One step to the capacitances `c`; which diodes and release elements conducted, and if above the voltage of release.
 fn euler(parameters: &Parameters, sums: &mut Reference, c: [f64; 2], h: f64) -> [bool; 5] {
+    // A leak takes l C V at the end of the step, as a capacitance does that is larger by the factor.
+    let t = parameters.leakage_time_constant;
+    let leak = if t > 0.0 { h / t } else { 0.0 };
+    let held = c;
+    let c = c.map(|c| c * (1.0 + leak));
     let (u_in, u_z) = (parameters.supply_voltage, parameters.release_voltage());
     let drop = if parameters.release == Release::Zener { u_z } else { 0.0 };
     let free = [0, 1].map(|j| sums.charge[j] / c[j]);
@@ -171,6 +190,11 @@ fn euler(parameters: &Parameters, sums: &mut Reference, c: [f64; 2], h: f64) -> 
         }
     }
     conducting[4] = top > u_z;
+    for j in 0..2 {
+        let voltage = sums.charge[j] / c[j];
+        sums.charge[j] = held[j] * voltage;
+        sums.leakage += leak * held[j] * voltage * voltage;
+    }
     sums.load_charge += h * current;
     sums.zener += h * current * drop;
     sums.load += h * current * (top - drop);

@@ -50,6 +50,9 @@ static DIODE_MODEL: EnumerationType = enumeration("DiodeModel", &Choice::DIODE_M
 
 static QUANTITIES: [V; Settings::QUANTITIES.len()] = real_rows(Quantity::TABLE);
 
+/// Those before the leakage came, which have their value references; it and its energy come last.
+static FIRST: (&[V], &[V]) = QUANTITIES.split_at(11);
+
 static CHOICES: [V; Settings::CHOICES.len()] = [
     choice(&Choice::TOPOLOGY, &TOPOLOGY),
     choice(&Choice::RELEASE, &RELEASE),
@@ -75,8 +78,11 @@ const SUPPLY: &[&str] = &[names::SUPPLY_VOLTAGE];
 /// A storage has its voltage; a load has none before the first charge comes.
 const STORAGE: &[&str] = &["release", names::STORAGE_VOLTAGE];
 
+/// The supply gives what leaks at rest.
+const LEAK: &[&str] = &[names::LEAKAGE_TIME_CONSTANT, names::LEFT_CAPACITANCE, names::RIGHT_CAPACITANCE];
+
 /// The outputs, with what their initial values depend on. The membranes hold charge, so no output depends on an input of the
-/// same communication point, nor does an initial value.
+/// same communication point.
 macro_rules! outputs {
     ($($name:expr, $unit:literal, $description:literal, $initially:expr, $get:expr;)*) => {
         [$(V::output($name, $unit, $description)
@@ -91,23 +97,27 @@ static OUTPUTS: [V; 14] = outputs! {
     names::RIGHT_VOLTAGE, "V", "U_DE: voltage of the right membrane, Table 1", &[SUPPLY], |c| c.voltage()[1];
     "load.voltage", "V", "U_out: voltage across the load or of the storage, Fig. 8", &[STORAGE], Circuit::load_voltage;
     "load.current", "A", "Current through the load or into the storage", &[], Circuit::load_current;
-    "supply.current", "A", "Current drawn from the supply", &[], Circuit::supply_current;
+    "supply.current", "A", "Current drawn from the supply", &[SUPPLY, LEAK], Circuit::supply_current;
     "supply.energy", "J", "Energy drawn from the supply since the start", &[], |c| c.ledger().supply;
     "load.energy", "J", "Energy given to the load or the storage since the start", &[], |c| c.ledger().load;
     "zener.energy", "J", "Energy burnt in the Zener diodes since the start", &[], |c| c.ledger().zener;
     "diode.energy", "J", "Energy burnt in the charging diodes and those into a storage since the start", &[], |c| c.ledger().diode;
     "stored.energy", "J", "Change of the energy stored in the membranes since the start", &[], |c| c.ledger().stored;
-    "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + stored - supply", &[], |c| c.ledger().converted();
+    "converted.energy", "J", "Energy that the mechanics gave: load + Zener + diode + leakage + stored - supply", &[], |c| c.ledger().converted();
     "mechanical.energy", "J", "The same, as the work -1/2 U^2 dC on the capacitances: an independent sum", &[], |c| c.ledger().mechanical;
     "supply.charge", "C", "Charge drawn from the supply since the start", &[], |c| c.ledger().supply_charge;
     "load.charge", "C", "Charge through the load or into the storage since the start", &[], |c| c.ledger().load_charge;
 };
 
+static LEAKAGE: [V; 1] = outputs! {
+    "leakage.energy", "J", "Energy burnt by leakage through the films of the membranes since the start", &[], |c| c.ledger().leakage;
+};
+
 /// Number of variables.
-const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.len();
+const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.len() + LEAKAGE.len();
 
 /// The table; the value reference of a variable is its index.
-pub static VARIABLES: [V; COUNT] = concat(&[&QUANTITIES, &CHOICES, &INPUTS, &OUTPUTS]);
+pub static VARIABLES: [V; COUNT] = concat(&[FIRST.0, &CHOICES, &INPUTS, &OUTPUTS, FIRST.1, &LEAKAGE]);
 
 #[cfg(test)]
 mod tests {

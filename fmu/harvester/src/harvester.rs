@@ -3,19 +3,23 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use videg_model::{Harvester as Model, ModelError, Parameters, Setup};
+use videg_model::{ForceTable, Harvester as Model, ModelError, Parameters, Recording, Setup};
 
-use crate::recording::{FILE, Recorded};
+use crate::file::Loaded;
 
 /// The harvester as a slave.
 pub struct Harvester {
     pub(crate) parameters: Parameters,
     /// `excitation.file`
     pub(crate) file: Arc<str>,
+    /// `membrane.file`
+    pub(crate) membrane_file: Arc<str>,
     /// Folder `resources` of the unpacked FMU.
     pub(crate) resources: Option<Arc<Path>>,
-    /// What was read from the file, or from one that was set before.
-    pub(crate) recorded: Recorded,
+    /// What was read from the first file, or from one that was set before.
+    pub(crate) recorded: Loaded<Recording>,
+    /// The same of the second.
+    pub(crate) measured: Loaded<ForceTable>,
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
@@ -32,7 +36,8 @@ pub struct Harvester {
 impl Clone for Harvester {
     fn clone(&self) -> Self {
         let (file, resources, recorded) = (self.file.clone(), self.resources.clone(), self.recorded.clone());
-        Self { file, resources, recorded, model: self.model.clone(), ..*self }
+        let (membrane_file, measured) = (self.membrane_file.clone(), self.measured.clone());
+        Self { file, membrane_file, resources, recorded, measured, model: self.model.clone(), ..*self }
     }
 
     /// Takes no memory that is there already.
@@ -40,8 +45,10 @@ impl Clone for Harvester {
         let Self {
             parameters,
             ref file,
+            ref membrane_file,
             ref resources,
             ref recorded,
+            ref measured,
             external_force,
             external_force_rate,
             voltages,
@@ -55,6 +62,8 @@ impl Clone for Harvester {
         self.file.clone_from(file);
         self.resources.clone_from(resources);
         self.recorded.clone_from(recorded);
+        self.membrane_file.clone_from(membrane_file);
+        self.measured.clone_from(measured);
         (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
         (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
         (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
@@ -87,12 +96,12 @@ impl Harvester {
         self.model.as_ref().ok()
     }
 
-    /// The parameters with the recording.
+    /// The parameters with the recording and the measured membrane.
     pub(crate) fn setup(&self) -> Result<Setup<'_>, String> {
-        Ok(self.parameters.with_recording(self.recorded.recording()?))
+        Ok(self.parameters.with_recording(self.recorded.content()?).with_table(self.measured.content()?))
     }
 
-    /// The model at the start, as parameters, recording and inputs have it.
+    /// The model at the start, as parameters, files and inputs have it.
     pub(crate) fn at_start(&self) -> Result<Model, String> {
         let setup = self.setup()?;
         let start = || {
@@ -103,16 +112,20 @@ impl Harvester {
         };
         start().map_err(|error| match error {
             ModelError::RecordingKind { .. } | ModelError::RepeatedTooFast { .. } => {
-                format!("{FILE} = {:?}: {error}", self.file)
+                Loaded::<Recording>::named(&self.file, error)
             }
+            ModelError::UnusedTable => Loaded::<ForceTable>::named(&self.membrane_file, error),
             _ => error.to_string(),
         })
     }
 
-    /// Reads the file, unless it was the last one to be read.
-    pub(crate) fn read_file(&mut self) {
+    /// Reads the files, unless they were the last ones to be read.
+    pub(crate) fn read_files(&mut self) {
         if self.recorded.file != self.file {
-            self.recorded = Recorded::read(&self.file, self.resources.as_deref());
+            self.recorded = Loaded::read(&self.file, self.resources.as_deref());
+        }
+        if self.measured.file != self.membrane_file {
+            self.measured = Loaded::read(&self.membrane_file, self.resources.as_deref());
         }
     }
 }

@@ -5,9 +5,9 @@
 //! in `variables.rs`, the parameters among them in the model's own table.
 #![allow(non_snake_case)] // the library is named after the model identifier
 
+mod file;
 mod harvester;
 mod limits;
-mod recording;
 mod sensitivity;
 mod slave;
 mod state;

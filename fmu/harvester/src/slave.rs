@@ -6,11 +6,11 @@ use fmu_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
     Variable,
 };
-use videg_model::{ContactLaw, Event, Harvester as Model, Impact, Membrane, Parameters, Peak, PulseShape, Side};
+use videg_model::{ContactLaw, Event, Harvester as Model, Impact, Parameters, Peak, PulseShape, Side};
 
+use crate::file::Loaded;
 use crate::harvester::Harvester;
 use crate::limits;
-use crate::recording::Recorded;
 use crate::variables::VARIABLES;
 
 /// Relative tolerance at which the integrators of common importers keep a free cylinder in its place in model exchange; with
@@ -65,8 +65,10 @@ impl Slave for Harvester {
         Self {
             parameters,
             file: "".into(),
+            membrane_file: "".into(),
             resources: None,
-            recorded: Recorded::nothing(),
+            recorded: Loaded::nothing(),
+            measured: Loaded::nothing(),
             external_force: 0.0,
             external_force_rate: 0.0,
             voltages: [parameters.bias_voltage; 2],
@@ -88,7 +90,7 @@ impl Slave for Harvester {
     }
 
     fn update(&mut self) {
-        self.read_file();
+        self.read_files();
         self.model = self.at_start();
     }
 
@@ -123,8 +125,9 @@ impl Slave for Harvester {
         if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
             return Err(elsewhere(t, time));
         }
-        let Self { parameters, model, .. } = self;
+        let Self { parameters, measured, model, .. } = self;
         let model = running(model)?;
+        let setup = parameters.with_table(measured.content().ok().flatten());
         let mut number = model.totals().impacts;
         let show = |event: &Event| match event {
             Event::Impact(impact) => {
@@ -133,7 +136,7 @@ impl Slave for Harvester {
                     log.event(describe(number, impact));
                 }
             }
-            Event::Peak(peak) => limits::check(&Membrane::new(parameters), peak, log),
+            Event::Peak(peak) => limits::check(setup, peak, log),
         };
         let advanced = model
             .set_external_force(self.external_force, self.external_force_rate)
@@ -205,7 +208,7 @@ fn show_impact(model: &Model, impact: &Impact, voltages: [f64; 2], log: &Logger)
     log.event(describe(model.totals().impacts, impact));
     if model.parameters().contact_law == ContactLaw::Impulsive {
         let (deflection, voltage) = (model.membrane().deflection(speed), voltages[side.index()]);
-        limits::check(model.membrane(), &Peak { time, side, deflection, voltage }, log);
+        limits::warn(model.membrane(), &Peak { time, side, deflection, voltage }, log);
     }
 }
 

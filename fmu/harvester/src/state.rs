@@ -1,10 +1,10 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
 use fmu_export::{Slave, StateError, StateReader, StateWriter};
-use videg_model::{Harvester as Model, ModelError, Snapshot};
+use videg_model::{ForceTable, Harvester as Model, ModelError, Recording, Snapshot};
 
+use crate::file::Loaded;
 use crate::harvester::Harvester;
-use crate::recording::{FILE, Recorded};
 
 /// External force and its rate, voltages and their rates, and the start time.
 type Inputs = ([f64; 2], [f64; 2], [f64; 2], f64);
@@ -15,7 +15,10 @@ impl Harvester {
         let force = [self.external_force, self.external_force_rate];
         let inputs: Inputs = (force, self.voltages, self.voltage_rates, self.start_time);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
-        let is_present = |model: &&Model| *model.parameters() == self.parameters && self.recorded.file == self.file;
+        let is_present = |model: &&Model| {
+            let are_read = self.recorded.file == self.file && self.measured.file == self.membrane_file;
+            are_read && *model.parameters() == self.parameters
+        };
         let model = self.model().filter(is_present);
         out.write_parameters(self)?;
         let origin = model.and_then(Model::origin).map(Model::snapshot);
@@ -36,10 +39,13 @@ impl Harvester {
         [slave.external_force, slave.external_force_rate] = force;
         (slave.voltages, slave.voltage_rates, slave.start_time) = (voltages, voltage_rates, start_time);
         slave.placed = placed;
-        if present.recorded.recording().is_ok() {
+        if present.recorded.content().is_ok() {
             slave.recorded = present.recorded.clone();
         }
-        slave.read_file();
+        if present.measured.content().is_ok() {
+            slave.measured = present.measured.clone();
+        }
+        slave.read_files();
         slave.model = match snapshot {
             Some(snapshot) => Ok(slave.restored(&snapshot).map_err(StateError::Invalid)?),
             None => slave.at_start(),
@@ -53,21 +59,26 @@ impl Harvester {
         Ok(slave)
     }
 
-    /// The model of `snapshot`. The bytes of a state name the file of its recording and have no samples. If those that are in memory
-    /// are others, the file is read again.
+    /// The model of `snapshot`. The bytes of a state name its files and have nothing of what is in them. If what is in memory is
+    /// something else, they are read again.
     fn restored(&mut self, snapshot: &Snapshot) -> Result<Model, String> {
         let mut restored = self.restored_with(snapshot)?;
         if matches!(restored, Err(ModelError::OtherRecording)) {
-            self.recorded = Recorded::read(&self.file, self.resources.as_deref());
+            self.recorded = Loaded::read(&self.file, self.resources.as_deref());
+            restored = self.restored_with(snapshot)?;
+        }
+        if matches!(restored, Err(ModelError::OtherTable)) {
+            self.measured = Loaded::read(&self.membrane_file, self.resources.as_deref());
             restored = self.restored_with(snapshot)?;
         }
         restored.map_err(|error| match error {
-            ModelError::OtherRecording => format!("{FILE} = {:?}: {error}", self.file),
+            ModelError::OtherRecording => Loaded::<Recording>::named(&self.file, error),
+            ModelError::OtherTable => Loaded::<ForceTable>::named(&self.membrane_file, error),
             _ => error.to_string(),
         })
     }
 
-    /// The same with the recording that is in memory.
+    /// The same with what is in memory.
     fn restored_with(&self, snapshot: &Snapshot) -> Result<Result<Model, ModelError>, String> {
         let setup = self.setup()?;
         Ok(if self.placed { Model::restore_placed(setup, snapshot) } else { Model::restore(setup, snapshot) })

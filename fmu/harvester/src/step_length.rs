@@ -46,7 +46,7 @@ impl Harvester {
 
     /// Mean time from sample to sample, s, of a recording that goes on for ever.
     fn spacing(&self) -> Option<f64> {
-        let recording = self.recorded.recording().ok().flatten().filter(|_| self.parameters.file_repeat)?;
+        let recording = self.recorded.content().ok().flatten().filter(|_| self.parameters.file_repeat)?;
         let times = recording.times();
         Some((times.last()? - times.first()?) / (times.len() - 1) as f64)
     }

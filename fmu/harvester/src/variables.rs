@@ -5,10 +5,10 @@ mod initial;
 mod parameters;
 
 use fmu_export::{Variable, concat};
-use videg_model::Side;
+use videg_model::{ForceTable, Recording, Side};
 
+use crate::file::{Content, LONGEST};
 use crate::harvester::Harvester;
-use crate::recording::{FILE, LONGEST};
 use initial::{FILM, FORCE_LAW, IMPACT, OPTIONS};
 use parameters::{choices, reals};
 
@@ -241,11 +241,11 @@ macro_rules! energies {
 
 static ENERGIES: [V; 7] = energies! {
     "energy.kinetic" ball 1e-4 ["cylinder.velocity", "ball.velocity"] [IMPACT]
-        "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss + energy.friction = their sum at the start + energy.wall + energy.electrical + energy.gravity";
+        "1/2 m z_m'^2: kinetic energy of the ball in the laboratory frame. Balance at any time: energy.kinetic + energy.elastic + energy.impactLoss + energy.viscous + energy.friction = their sum at the start + energy.wall + energy.electrical + energy.gravity";
     "energy.cylinderKinetic" cylinder 1e-3 ["cylinder.velocity"] [IMPACT]
         "1/2 M z_M'^2: kinetic energy of the cylinder in the laboratory frame. Balance: its change + that of energy.suspension + energy.damping = energy.excitation, less energy.wall with contact.reaction";
     "energy.elastic" elastic 1e-4 [] []
-        "r^2 K x^(n+1) / (n+1): energy that the membranes can give back; 0 under the impulsive law";
+        "r^2 K x^(n+1) / (n+1), or r^2 times the work of another membrane.law: energy that the membranes can give back, with what viscous films have stored; 0 under the impulsive law";
     "energy.impactLoss" impact_loss 1e-4 [] [IMPACT]
         "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact, with contact.reaction m M / (m + M) for m";
     "energy.excitation" excitation 1e-3 ["cylinder.position", "cylinder.velocity"] [IMPACT]
@@ -408,7 +408,7 @@ const MOUNT_CHOICES: &[V] = choices(6, 7);
 
 /// The recorded part of the excitation.
 static RECORDING_FILE: [V; 1] = [V::string_parameter(
-    FILE,
+    Recording::VARIABLE,
     "",
     "CSV file of a recorded excitation, added to the harmonic one: time,acceleration in s and m/s2 (excitation.kind = motion) or time,force in s and N, straight lines between the samples and 0 outside; looked for in the resources of the FMU and then from the working folder; none if empty",
 )
@@ -416,6 +416,34 @@ static RECORDING_FILE: [V; 1] = [V::string_parameter(
 .access(|slave| slave.file.to_string(), |slave, file| slave.file = file.into())];
 const RECORDING_PARAMETERS: &[V] = reals(28, 30);
 const RECORDING_CHOICES: &[V] = choices(7, 8);
+
+/// The membrane of the user's own.
+const FILM_CHOICES: &[V] = choices(8, 9);
+static MEMBRANE_FILE: [V; 1] = [V::string_parameter(
+    ForceTable::VARIABLE,
+    "",
+    "CSV file of a measured membrane (membrane.law = table): deflection,force in m and N, or deflection,force,capacitance in m, N and F, monotone cubic between the points and straight lines beyond the last; looked for in the resources of the FMU and then from the working folder",
+)
+.longest(LONGEST)
+.access(|slave| slave.membrane_file.to_string(), |slave, file| slave.membrane_file = file.into())];
+const FILM_PARAMETERS: &[V] = reals(30, 38);
+
+/// The viscosity of a film, and what follows from it.
+const VISCOUS_PARAMETERS: &[V] = reals(38, 40);
+static EFFECTIVE_RESTITUTION: [V; 1] = [V::output(
+    "impact.effectiveRestitution",
+    "1",
+    "Rebound speed over impact speed of the last impact that is over: membrane.restitution under the impulsive law, under the compliant law that of the contact, of wall and viscous film; 0 before the first",
+)
+.discrete()
+.depends_on(&[])
+.initially_depends_on(&[IMPACT])
+.partial_derivative(change!(rebound))
+.get(|slave| slave.read(videg_model::Harvester::effective_restitution))];
+static VISCOUS_ENERGY: [V; 1] = energies! {
+    "energy.viscous" viscous 1e-5 [] []
+        "Energy lost in viscous films (membrane.viscousModulus) since the start";
+};
 
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
@@ -438,7 +466,13 @@ const COUNT: usize = PARAMETERS.len()
     + MOUNT.len()
     + RECORDING_FILE.len()
     + RECORDING_PARAMETERS.len()
-    + RECORDING_CHOICES.len();
+    + RECORDING_CHOICES.len()
+    + FILM_CHOICES.len()
+    + MEMBRANE_FILE.len()
+    + FILM_PARAMETERS.len()
+    + VISCOUS_PARAMETERS.len()
+    + EFFECTIVE_RESTITUTION.len()
+    + VISCOUS_ENERGY.len();
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
@@ -463,4 +497,10 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &RECORDING_FILE,
     RECORDING_PARAMETERS,
     RECORDING_CHOICES,
+    FILM_CHOICES,
+    &MEMBRANE_FILE,
+    FILM_PARAMETERS,
+    VISCOUS_PARAMETERS,
+    &EFFECTIVE_RESTITUTION,
+    &VISCOUS_ENERGY,
 ]);

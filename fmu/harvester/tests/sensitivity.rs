@@ -24,7 +24,13 @@ const INSIDE: [(&str, f64); 7] = [
 ];
 
 /// At their lower bound: there are no central differences.
-const AT_BOUND: [&str; 3] = ["ball.friction", "cylinder.suspensionStiffness", "cylinder.suspensionDamping"];
+const AT_BOUND: [&str; 5] = [
+    "ball.friction",
+    "cylinder.suspensionStiffness",
+    "cylinder.suspensionDamping",
+    "membrane.viscousModulus",
+    "membrane.relaxationTime",
+];
 
 fn with(more: &[(&'static str, f64)]) -> Settings {
     [&INSIDE[..], more].concat()

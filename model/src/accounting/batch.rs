@@ -40,7 +40,7 @@ impl Batch {
             *excess = membrane.capacitance_excess(*peak);
         }
         for (&(start, side, speed), (&peak, &excess)) in impacts.iter().zip(peaks.iter().zip(&excesses)) {
-            pulses.push(side, Pulse { start, speed, peak, change: PulseChange::default() });
+            pulses.push(membrane, side, Pulse { start, speed, peak, change: PulseChange::default() });
             ledger.credit(excess);
         }
         self.len = 0;

@@ -1,6 +1,6 @@
 //! The ledger: what impacts gain, and the works on ball and cylinder.
 //!
-//! For the ball, from any time to any other: kinetic + elastic + impact loss + friction = what they were + wall + electrical +
+//! For the ball, from any time to any other: kinetic + elastic + impact loss + viscous loss + friction = what they were + wall + electrical +
 //! gravity. For the cylinder: kinetic + suspension + damping = what they were + excitation, minus the work of the wall if
 //! there is reaction.
 
@@ -24,6 +24,8 @@ pub struct Totals {
     pub voltage_gain: f64,
     /// Sum of W, J, Eq. (13): the numerator of Eq. (14).
     pub energy: f64,
+    /// Rebound speed over impact speed of the last contact under the compliant law that is over; 0 before.
+    pub rebound: f64,
 }
 
 impl Totals {
@@ -42,6 +44,8 @@ pub struct Works {
     pub electrical: f64,
     /// Energy lost in contacts that have ended, J.
     pub loss: f64,
+    /// Energy lost in viscous films, J, up to the last event of each membrane.
+    pub viscous: f64,
     /// Energy lost by friction, J.
     pub friction: f64,
     /// `z_M` and dz, m, up to where the work of friction is contained.
@@ -61,6 +65,8 @@ pub struct Energies {
     pub elastic: f64,
     /// Energy lost in the membranes.
     pub impact_loss: f64,
+    /// Energy lost in viscous films.
+    pub viscous: f64,
     /// Energy lost by friction between ball and cylinder.
     pub friction: f64,
     /// Work of gravity on the ball.
@@ -123,6 +129,14 @@ impl Ledger {
     pub fn count_impact(&mut self, speed: f64) {
         self.totals.impacts += 1;
         self.totals.last_speed = speed;
+    }
+
+    /// A contact ends at this relative `speed`, m/s.
+    pub fn end_contact(&mut self, speed: f64) {
+        let before = self.totals.last_speed;
+        if before > impact::GRAZING_SPEED {
+            self.totals.rebound = speed / before;
+        }
     }
 
     /// Kinetic and potential energy of a ball at `position`, m, and `velocity`, m/s.

@@ -1,12 +1,12 @@
 //! The forces of a contact: membrane with hysteresis, Maxwell force, and what accelerates the wall.
 
-use super::point::Point;
+use super::point::{Point, Recoil};
 use crate::membrane::Membrane;
 use crate::motion::cylinder::CylinderMotion;
 use crate::motion::flight::Flight;
 use crate::motion::mount::Mount;
 use crate::motion::side::Side;
-use crate::paper::{excitation, force};
+use crate::paper::excitation;
 use crate::parameters::{ExcitationKind, Parameters};
 
 /// A voltage that is linear in time.
@@ -77,13 +77,6 @@ pub(crate) struct Law<'a> {
     pub(crate) voltage: Ramp,
 }
 
-/// Position, m, and velocity, m/s, that the contact adds to the cylinder's.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Recoil {
-    pub(crate) position: f64,
-    pub(crate) velocity: f64,
-}
-
 impl Law<'_> {
     /// Mass that answers to forces between ball and cylinder, kg: m, or with reaction m M / (m + M).
     pub(crate) fn mass(&self) -> f64 {
@@ -99,24 +92,39 @@ impl Law<'_> {
         }
     }
 
-    /// K x^n, N: Eq. (2).
+    /// f, N: Eq. (2), or that of another law of the membrane.
     pub(super) fn loading(&self, x: f64) -> f64 {
-        force::force(self.parameters.stiffness, self.parameters.stiffness_exponent, x)
+        self.membrane.force(x)
     }
 
-    /// r^2: the share of the work of loading that comes back.
+    /// Force of the membrane, N, at a `point` of the contact, outwards: on the branch of this `phase`, or of the film if it is
+    /// viscous.
+    pub(super) fn pull_of(&self, phase: Phase, point: &Point) -> f64 {
+        match &self.membrane.viscosity {
+            Some(viscosity) => self.membrane.strained(viscosity, point.x, point.creep).force,
+            None => self.spring(phase, point.x),
+        }
+    }
+
+    /// r^2: the share of the work of loading that comes back. A viscous film loses what its dashpot takes, and nothing else.
     pub(super) fn recovered(&self) -> f64 {
+        if self.membrane.viscosity.is_some() {
+            return 1.0;
+        }
         self.parameters.restitution * self.parameters.restitution
     }
 
-    /// Work, J, of the force K x^n from 0 to `x`, m: Eq. (9).
+    /// Work, J, of that force from 0 to `x`, m: Eq. (9).
     pub(crate) fn loading_work(&self, x: f64) -> f64 {
-        force::work(self.loading(x), self.parameters.stiffness_exponent, x)
+        self.membrane.work(x)
     }
 
-    /// Energy, J, that the membrane gives back from `x`, m.
-    pub(crate) fn elastic(&self, x: f64) -> f64 {
-        self.recovered() * self.loading_work(x)
+    /// Energy, J, that the membrane gives back from a `point` of the contact, with what a viscous film has stored beside.
+    pub(crate) fn elastic(&self, point: &Point) -> f64 {
+        match &self.membrane.viscosity {
+            Some(viscosity) => self.membrane.strained(viscosity, point.x, point.creep).stored,
+            None => self.recovered() * self.loading_work(point.x),
+        }
     }
 
     /// Energy, J, lost in a contact whose largest deflection is `largest`, m.
@@ -160,8 +168,8 @@ impl Law<'_> {
     /// Force on the ball, N, outwards.
     pub(crate) fn total(&self, phase: Phase, point: &Point) -> f64 {
         match phase {
-            Phase::Held | Phase::Stuck => self.mass() * self.push(point.time, 0.0),
-            _ => self.spring(phase, point.x) - self.maxwell(point.time, 0.0, point.x) + self.friction(phase),
+            Phase::Held | Phase::Stuck => self.mass() * self.push_at(point),
+            _ => self.pull_of(phase, point) - self.maxwell(point.time, 0.0, point.x) + self.friction(phase),
         }
     }
 
@@ -190,9 +198,34 @@ impl Law<'_> {
         self.side.sign() * (excitation::acceleration(drive.amplitude, cosine, given) + self.mount.incline)
     }
 
-    /// What the contact adds to the cylinder's motion when deflection and rate are `x`, m, and `v`, m/s.
-    pub(crate) fn recoil(&self, time: f64, x: f64, v: f64) -> Recoil {
-        Recoil::new(self.parameters.recoil_share(), self.flight, self.side, &Point { time, x, v })
+    /// The same at a point of the contact, what the mount does against the recoil included.
+    pub(super) fn push_at(&self, point: &Point) -> f64 {
+        self.push(point.time, 0.0) + if self.recoils() { self.yielding(&point.recoil) } else { 0.0 }
+    }
+
+    /// Whether the recoil is a motion of its own: the mount acts against it.
+    pub(super) fn recoils(&self) -> bool {
+        self.parameters.recoil_share() > 0.0 && self.cylinder.is_suspended()
+    }
+
+    /// What the mount adds to x'', m/s^2, because of the recoil.
+    pub(super) fn yielding(&self, recoil: &Recoil) -> f64 {
+        self.side.sign() * self.cylinder.load.suspension.acceleration(recoil.position, recoil.velocity)
+    }
+
+    /// Acceleration of the recoil, m/s^2, under this `force` of the contact on the ball, N, outwards.
+    pub(super) fn recoil_acceleration(&self, recoil: &Recoil, force: f64) -> f64 {
+        self.side.sign() * (self.yielding(recoil) - force / self.parameters.cylinder_mass)
+    }
+
+    /// Power, W, that the damper takes because of a recoil at this velocity, m/s, which that of the wall contains.
+    pub(super) fn damping_power(&self, recoil: f64, wall: f64) -> f64 {
+        self.parameters.suspension_damping * recoil * (2.0 * wall - recoil)
+    }
+
+    /// What the contact adds to the cylinder's motion.
+    pub(crate) fn recoil(&self, point: &Point) -> Recoil {
+        Recoil::new(self.parameters.recoil_share(), self.flight, self.side, point)
     }
 }
 
@@ -211,10 +244,11 @@ impl Recoil {
     /// What a contact adds to the cylinder's motion.
     ///
     /// Both forces between the bodies are opposite and equal. They change the relative motion by the difference between x
-    /// and the deflection that free bodies would have, of which the cylinder makes its `share`.
-    pub(crate) fn new(share: f64, flight: &Flight, side: Side, &Point { time, x, v }: &Point) -> Self {
-        if share == 0.0 {
-            return Self::default();
+    /// and the deflection that free bodies would have, of which a free cylinder makes its `share`. A mount acts against the
+    /// recoil: that of a suspended cylinder is integrated.
+    pub(crate) fn new(share: f64, flight: &Flight, side: Side, &Point { time, x, v, recoil, .. }: &Point) -> Self {
+        if share == 0.0 || flight.piece().is_some() {
+            return recoil;
         }
         let [dz, rate] = flight.at(time - flight.start);
         let (position, velocity) = (side.sign() * (flight.half_travel() + x) - dz, side.sign() * v - rate);

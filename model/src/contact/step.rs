@@ -1,8 +1,9 @@
-//! One internal step of a contact: x and x' as series in time, by collocation.
+//! One internal step of a contact: its states as series in time.
 
+use super::collocation::{Forces, Given, at_nodes};
 use super::law::{Law, Phase};
-use super::point::Point;
-use crate::numerics::chebyshev::{DEGREE, GRID, NODES, Series, Values};
+use super::point::{Point, Recoil};
+use crate::numerics::chebyshev::{DEGREE, GRID, Series, Values};
 
 /// Error of the velocity that a step may make, relative to the velocity.
 const TOLERANCE: f64 = 1e-13;
@@ -11,13 +12,17 @@ const TOLERANCE: f64 = 1e-13;
 /// is gained by resolving their rounding.
 const FLOOR: f64 = 1e-2;
 
-/// Work on the ball since the start of a step, J.
+/// Works since the start of a step, J.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Work {
     /// Of the wall, with its own velocity.
     pub(crate) wall: f64,
     /// Of the Maxwell force, along x.
     pub(crate) electrical: f64,
+    /// Taken by the mount's damper because of the contact.
+    pub(crate) damping: f64,
+    /// Lost in the viscous film.
+    pub(crate) viscous: f64,
 }
 
 /// The motion between two times.
@@ -29,8 +34,15 @@ pub(super) struct Step {
     pub(super) rate: Series,
     /// While held: the push, m/s^2, that the membrane balances.
     pub(super) push: Series,
+    /// What the contact adds to the position, m, and velocity, m/s, of a suspended cylinder.
+    recoil: [Series; 2],
+    /// The creep of a viscous film, and while a ball is at rest on it, its force over the mass, m/s^2.
+    creep: Series,
+    pub(super) relaxing: Option<Series>,
     wall: Series,
     electrical: Series,
+    damping: Series,
+    viscous: Series,
     /// Length to try next.
     pub(super) proposal: f64,
 }
@@ -45,36 +57,46 @@ impl Step {
     /// The step of `length`, s, from `from`.
     pub(super) fn new(law: &Law<'_>, phase: Phase, from: &Point, length: f64) -> Result<Self, TooLong> {
         let half = 0.5 * length;
-        let elapsed = GRID.nodes.map(|node| half * (1.0 + node));
-        let rubbing = phase.direction() * law.deceleration();
-        let pushes = elapsed.map(|elapsed| law.push(from.time, elapsed) - rubbing);
-        let at_nodes = |f: &dyn Fn(usize) -> f64| -> Values { core::array::from_fn(f) };
-        let (x, deflection, rate, push) = if phase.is_at_rest() {
-            let push = at_nodes(&|j| pushes[j] + law.maxwell(from.time, elapsed[j], from.x) / law.mass());
-            ([from.x; NODES], Series::constant(from.x), Series::default(), GRID.fit(&push))
+        let given = Given::new(law, phase, from.time, half);
+        let states = given.collocate(from, half).ok_or(TooLong { proposal: 0.3 * length })?;
+        let forces = given.forces(&states);
+        let push = GRID.fit(&at_nodes(|j| given.acceleration(&states, &forces, j)));
+        let rate = if phase.is_at_rest() { Series::default() } else { push.integral(half, from.v) };
+        let deflection = rate.integral(half, from.x);
+        let recoil = if given.recoils {
+            let acceleration = GRID.fit(&at_nodes(|j| given.recoil_acceleration(&states, &forces, j)));
+            let velocity = acceleration.integral(half, from.recoil.velocity);
+            [velocity.integral(half, from.recoil.position), velocity]
         } else {
-            let x = collocate(law, phase, from, half, &pushes).ok_or(TooLong { proposal: 0.3 * length })?;
-            let acceleration =
-                GRID.fit(&at_nodes(&|j| acceleration(law, phase, from.time, elapsed[j], x[j], pushes[j])));
-            let rate = acceleration.integral(half, from.v);
-            (x, rate.integral(half, from.x), rate, acceleration)
+            [Series::default(); 2]
         };
+        let is_viscous = given.viscosity.is_some();
+        let flow = if is_viscous { GRID.fit(&forces.flow) } else { Series::default() };
+        let creep = if is_viscous { GRID.fit(&states.creep) } else { Series::default() };
         let v = GRID.nodes.map(|node| rate.value(node));
-        let maxwell = at_nodes(&|j| law.maxwell(from.time, elapsed[j], x[j]));
-        let spring = at_nodes(&|j| law.spring(phase, x[j]));
-        // What the wall, membrane included, does to the ball in the ball's direction of z.
-        let force = at_nodes(&|j| match phase {
-            Phase::Held | Phase::Stuck => law.mass() * pushes[j],
-            _ => spring[j] - maxwell[j] + law.friction(phase),
+        let recoils = at_nodes(|j| {
+            let point = Point {
+                time: from.time + given.elapsed[j],
+                x: states.x[j],
+                v: v[j],
+                recoil: states.recoil(j),
+                creep: 0.0,
+            };
+            law.recoil(&point).velocity
         });
-        let wall_velocity = at_nodes(&|j| {
-            let time = from.time + elapsed[j];
-            law.cylinder.at(time).velocity + law.recoil(time, x[j], v[j]).velocity
-        });
+        let wall_velocity = at_nodes(|j| law.cylinder.at(from.time + given.elapsed[j]).velocity + recoils[j]);
         let largest = |values: &Values| values.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
-        let forces = law.push_size(from.time, length) + (largest(&spring) + largest(&maxwell)) / law.mass();
-        let scale = largest(&v) + FLOOR * length * forces;
-        let error = length * push.tail() / DEGREE as f64 / scale.max(f64::MIN_POSITIVE);
+        let Forces { spring, maxwell, .. } = &forces;
+        let rounding = law.membrane.magnified_rounding(largest(&states.x));
+        let size = law.push_size(from.time, length) + (rounding * largest(spring) + largest(maxwell)) / law.mass();
+        let scale = largest(&v) + FLOOR * length * size;
+        let mut error = length * push.tail() / DEGREE as f64 / scale.max(f64::MIN_POSITIVE);
+        if is_viscous {
+            // What flows in faster than the film relaxes is gone again.
+            let lasting = length / (1.0 + length * forces.recovery[DEGREE]);
+            let strain = given.strain(&states).max(f64::MIN_POSITIVE);
+            error = error.max(lasting * flow.tail() / DEGREE as f64 / strain);
+        }
         if !error.is_finite() {
             return Err(TooLong { proposal: 0.3 * length }); // forces overflow
         }
@@ -84,9 +106,33 @@ impl Step {
             return Err(TooLong { proposal });
         }
         let sign = law.side.sign();
-        let wall = GRID.fit(&at_nodes(&|j| sign * force[j] * wall_velocity[j])).integral(half, 0.0);
-        let electrical = GRID.fit(&at_nodes(&|j| maxwell[j] * v[j])).integral(half, 0.0);
-        Ok(Self { start: from.time, length, deflection, rate, push, wall, electrical, proposal })
+        let integral = |values: Values| GRID.fit(&values).integral(half, 0.0);
+        let wall = integral(at_nodes(|j| sign * given.force(&states, &forces, j) * wall_velocity[j]));
+        let electrical = integral(at_nodes(|j| maxwell[j] * v[j]));
+        let damping = if given.recoils {
+            integral(at_nodes(|j| law.damping_power(recoils[j], wall_velocity[j])))
+        } else {
+            Series::default()
+        };
+        let viscous = if is_viscous { integral(forces.loss) } else { Series::default() };
+        let at_rest = is_viscous && phase.is_at_rest();
+        let relaxing = at_rest.then(|| GRID.fit(&spring.map(|force| force / law.mass())));
+        let start = from.time;
+        Ok(Self {
+            start,
+            length,
+            deflection,
+            rate,
+            push,
+            recoil,
+            creep,
+            relaxing,
+            wall,
+            electrical,
+            damping,
+            viscous,
+            proposal,
+        })
     }
 
     pub(super) fn end(&self) -> f64 {
@@ -105,44 +151,16 @@ impl Step {
 
     pub(super) fn at(&self, time: f64) -> Point {
         let place = self.place(time);
-        Point { time, x: self.deflection.value(place), v: self.rate.value(place) }
+        let [position, velocity] = self.recoil.map(|series| series.value(place));
+        let recoil = Recoil { position, velocity };
+        let [x, v, creep] = [&self.deflection, &self.rate, &self.creep].map(|series| series.value(place));
+        Point { time, x, v, recoil, creep }
     }
 
     pub(super) fn work(&self, time: f64) -> Work {
         let place = self.place(time);
-        Work { wall: self.wall.value(place), electrical: self.electrical.value(place) }
+        let [wall, electrical, damping, viscous] =
+            [&self.wall, &self.electrical, &self.damping, &self.viscous].map(|series| series.value(place));
+        Work { wall, electrical, damping, viscous }
     }
-}
-
-/// x'' of a moving ball, m/s^2.
-fn acceleration(law: &Law<'_>, phase: Phase, time: f64, elapsed: f64, x: f64, push: f64) -> f64 {
-    push - (law.spring(phase, x) - law.maxwell(time, elapsed, x)) / law.mass()
-}
-
-/// x at the nodes: Picard's iteration, which gains a factor (omega h)^2 / (2k)^2 in its k-th round.
-fn collocate(law: &Law<'_>, phase: Phase, from: &Point, half: f64, pushes: &Values) -> Option<Values> {
-    const MAX_ROUNDS: u32 = 16;
-    let elapsed = GRID.nodes.map(|node| half * (1.0 + node));
-    let straight = elapsed.map(|elapsed| from.x + from.v * elapsed);
-    let mut x = straight;
-    for _ in 0..MAX_ROUNDS {
-        let a: Values = core::array::from_fn(|j| acceleration(law, phase, from.time, elapsed[j], x[j], pushes[j]));
-        let mut change: f64 = 0.0;
-        let mut size: f64 = 0.0;
-        for (j, row) in GRID.double_integral.iter().enumerate() {
-            let integral: f64 = row.iter().zip(&a).map(|(weight, a)| weight * a).sum();
-            let next = straight[j] + half * half * integral;
-            change = change.max((next - x[j]).abs());
-            size = size.max(next.abs());
-            x[j] = next;
-        }
-        // Overflowing forces can cancel to NaN, which no maximum shows.
-        if !x.iter().all(|x| x.is_finite()) {
-            return None;
-        }
-        if change <= 4.0 * f64::EPSILON * size {
-            return Some(x);
-        }
-    }
-    None
 }

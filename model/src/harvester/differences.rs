@@ -13,9 +13,9 @@ use super::Harvester;
 use crate::accounting::ledger::Energies;
 use crate::contact::Phase;
 use crate::error::ModelError;
-use crate::motion::cylinder::CylinderState;
+use crate::motion::cylinder::{CylinderMotion, CylinderState};
 use crate::motion::side::Side;
-use crate::parameters::{ContactLaw, Parameters};
+use crate::parameters::{ContactLaw, MembraneLaw, Parameters};
 use crate::sensitivity::{Direction, Sensitivities};
 
 /// The first step, in units of what the cause typically is, and by how much each is shorter than the one before.
@@ -69,12 +69,12 @@ impl Direction {
 }
 
 impl Harvester {
-    /// Whether changes are carried along in closed form: under the impulsive law, without friction, suspension and reaction. With
-    /// these they are taken by differences.
+    /// Whether changes are carried along in closed form: under the impulsive law and Eq. (2), without friction, suspension and
+    /// reaction. With these they are taken by differences.
     pub fn has_closed_changes(&self) -> bool {
         let p = &self.parameters;
         let is_plain = p.contact_law == ContactLaw::Impulsive && !p.reaction;
-        is_plain && p.friction == 0.0 && !p.is_suspended()
+        is_plain && p.friction == 0.0 && !p.is_suspended() && p.membrane_law == MembraneLaw::Power
     }
 
     /// Where the changes along a `direction` begin, if they are taken by differences, of this harvester before all events, under this
@@ -184,7 +184,8 @@ impl Harvester {
             (quantity.set)(&mut moved, (quantity.get)(&self.parameters) + distance * change);
         }
         let recording = self.motion.playback.as_ref().map(|playback| &playback.recording);
-        let mut copy = Self::new(moved.with_recording(recording), start).ok()?;
+        let setup = moved.with_recording(recording).with_table(self.membrane.table());
+        let mut copy = Self::new(setup, start).ok()?;
         copy.push(force + distance * direction.force, 0.0);
         copy.take_voltages_of(self)?;
         copy.advance(self.time).ok()?;
@@ -221,7 +222,7 @@ impl Harvester {
         let here = self.motion.cylinder.at(self.time);
         let moved = CylinderState { position: position + change[0], velocity: velocity + change[1], ..here };
         let motion = &mut self.motion;
-        motion.cylinder = motion.cylinder.changed(&moved, motion.drive_at(self.time), motion.cylinder.load);
+        motion.cylinder = CylinderMotion::from_state(&moved, motion.drive_at(self.time), motion.cylinder.load);
         motion.last.time = self.time;
         (motion.last.position, motion.last.velocity) = (ball_position + change[2], ball_velocity + change[3]);
         let is_searched = !motion.is_left_to_integrator();
@@ -253,7 +254,7 @@ impl Harvester {
             contact: motion.ball.contact().map(|contact| contact.state.phase),
             pulses: self.pulses.under_way.each_ref().map(|pulses| {
                 let largest = pulses.first()?;
-                Some(self.pulses.shape.peak_time(largest) <= self.time)
+                Some(largest.peak_time(&self.pulses.shape) <= self.time)
             }),
         }
     }
@@ -329,6 +330,7 @@ impl Harvester {
             field_per_volt: of_membrane(&|x| membrane.field(x, 1.0)),
             capacitance: of_membrane(&|x| membrane.capacitance(x)),
             last_speed: totals.last_speed,
+            rebound: self.effective_restitution(),
             voltage_gain: totals.voltage_gain,
             energy: totals.energy,
             energies: self.energies(),
@@ -356,6 +358,7 @@ impl Sensitivities {
             field_per_volt: pair(self.field_per_volt, other.field_per_volt),
             capacitance: pair(self.capacitance, other.capacitance),
             last_speed: of(self.last_speed, other.last_speed),
+            rebound: of(self.rebound, other.rebound),
             voltage_gain: of(self.voltage_gain, other.voltage_gain),
             energy: of(self.energy, other.energy),
             energies: Energies {
@@ -363,6 +366,7 @@ impl Sensitivities {
                 cylinder: of(e.cylinder, f.cylinder),
                 elastic: of(e.elastic, f.elastic),
                 impact_loss: of(e.impact_loss, f.impact_loss),
+                viscous: of(e.viscous, f.viscous),
                 friction: of(e.friction, f.friction),
                 gravity: of(e.gravity, f.gravity),
                 suspension: of(e.suspension, f.suspension),

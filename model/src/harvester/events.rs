@@ -6,7 +6,7 @@ use crate::contact::Ending;
 use crate::error::ModelError;
 use crate::motion::cylinder::{CylinderState, Drive};
 use crate::motion::flight::Flight;
-use crate::motion::pulse::{Pulse, PulseChange};
+use crate::motion::pulse::{Pulse, PulseChange, Running};
 use crate::motion::side::Side;
 use crate::motion::{Ball, Prediction, Start, Tail};
 use crate::parameters::ContactLaw;
@@ -39,6 +39,9 @@ pub struct Peak {
     pub voltage: f64,
 }
 
+/// What looks at the events of a run; only for it largest deflections are worked out.
+pub(super) type Show<'a> = dyn FnMut(&Event) + 'a;
+
 /// What [`Harvester::advance_with`] shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event {
@@ -54,15 +57,19 @@ impl Harvester {
         &mut self,
         time: f64,
         batch: &mut Batch,
-        show: &mut impl FnMut(&Event),
+        mut show: Option<&mut Show<'_>>,
     ) -> Result<(), ModelError> {
         while let Some(event) = self.motion.next_event(&mut self.noise, time, true).filter(|event| event.time() <= time)
         {
+            let Some(show) = show.as_deref_mut() else {
+                self.process(event, batch)?;
+                continue;
+            };
             let turn = self.turn_at(event);
             self.process(event, batch)?;
             let impact = self.impact_of(event);
             let peak = turn.or_else(|| impact.and_then(|impact| self.peak_after(impact)));
-            impact.map(Event::Impact).iter().chain(&peak.map(Event::Peak)).for_each(&mut *show);
+            impact.map(Event::Impact).iter().chain(&peak.map(Event::Peak)).for_each(show);
         }
         Ok(())
     }
@@ -76,11 +83,14 @@ impl Harvester {
                 let speed = self.motion.search.speed;
                 self.budget.spend(time)?;
                 match self.parameters.contact_law {
-                    ContactLaw::Impulsive => self.impact(time, side, speed, batch),
+                    ContactLaw::Impulsive => {
+                        self.membrane.check_impact(time, speed)?;
+                        self.impact(time, side, speed, batch);
+                    }
                     ContactLaw::Compliant => {
                         let (motion, forces, limit, ledger, _) = self.parts();
                         ledger.count_impact(speed);
-                        motion.begin_contact(forces, limit, time, side, speed);
+                        motion.begin_contact(forces, limit, ledger, (time, side, speed));
                     }
                 }
             }
@@ -137,7 +147,8 @@ impl Harvester {
         let before = wall.velocity;
         self.ledger.count_impact(speed);
         let changes = if self.tangent.idle {
-            if batch.push(time, side, speed) {
+            // A pulse that takes its own way is worked out once.
+            if batch.push(time, side, speed) || !self.membrane.is_power() {
                 batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
             }
             0.0
@@ -172,7 +183,7 @@ impl Harvester {
         let peak = self.membrane.deflection(speed);
         let [excess, excess_slope] = self.membrane.capacitance_excess_and_slope(peak);
         let change = self.tangential().change_of(&Hit { side, speed, peak, excess_slope, wall: *wall });
-        self.pulses.push(side, Pulse { start: wall.time, speed, peak, change: change.pulse });
+        self.pulses.push(&self.membrane, side, Pulse { start: wall.time, speed, peak, change: change.pulse });
         self.ledger.credit(excess);
         self.tangent.pass_impact(&self.parameters, &self.membrane, &change, excess);
         change.slip
@@ -258,7 +269,15 @@ impl Harvester {
         let deflection = self.membrane.deflection(speed);
         let pulse = Pulse { start: time, speed, peak: deflection, change: PulseChange::default() };
         let voltage = self.voltages[side.index()].at(time);
-        Some(Peak { time: self.pulses.shape.peak_time(&pulse), side, deflection, voltage })
+        let shape = &self.pulses.shape;
+        let time = if self.membrane.is_power() {
+            shape.peak_time(&pulse)
+        } else {
+            let mut running = self.pulses.under_way[side.index()].iter();
+            let running = running.find(|running| running.pulse.start == time && running.pulse.speed == speed);
+            running.map_or_else(|| Running::new(&self.membrane, pulse).peak_time(shape), |it| it.peak_time(shape))
+        };
+        Some(Peak { time, side, deflection, voltage })
     }
 
     /// The largest deflection at which the contact turns, if that is the `event`.

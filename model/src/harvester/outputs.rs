@@ -2,6 +2,7 @@
 
 use super::Harvester;
 use crate::accounting::ledger::{Energies, Totals};
+use crate::contact::Recoil;
 use crate::membrane::Membrane;
 use crate::motion::Ball;
 use crate::motion::pulse::Deflection;
@@ -43,11 +44,13 @@ impl Harvester {
     /// What the contact adds to `z_M''`, m/s^2.
     fn recoil_acceleration(&self) -> f64 {
         let p = &self.parameters;
-        if p.reaction_ratio() > 0.0 {
-            -self.motion.contact_force(self.forces(), self.time) / p.cylinder_mass
-        } else {
-            0.0
+        if p.reaction_ratio() == 0.0 {
+            return 0.0;
         }
+        let mount = self.motion.cylinder.load.suspension;
+        let Recoil { position, velocity } =
+            if mount.is_none() { Recoil::default() } else { self.motion.recoil(self.time) };
+        mount.acceleration(position, velocity) - self.motion.contact_force(self.forces(), self.time) / p.cylinder_mass
     }
 
     /// `z_m`, m.
@@ -109,7 +112,7 @@ impl Harvester {
     pub fn deflection(&self, side: Side) -> Deflection {
         match self.parameters.contact_law {
             ContactLaw::Impulsive => self.pulses.at(side, self.time),
-            ContactLaw::Compliant => self.motion.contact_deflection(side, self.time),
+            ContactLaw::Compliant => self.motion.contact_deflection(&self.membrane, side, self.time),
         }
     }
 
@@ -130,6 +133,20 @@ impl Harvester {
         self.motion.resting()
     }
 
+    /// ln(`L_v` / lambda) of the membrane at `side`: how far the dashpot of a viscous film has given way.
+    pub fn creep(&self, side: Side) -> f64 {
+        self.membrane.viscosity.as_ref().map_or(0.0, |viscosity| self.motion.creep_at(viscosity, side, self.time))
+    }
+
+    /// Rebound speed over impact speed of the last impact that is over, 0 before the first: r under the impulsive law. Contacts
+    /// slower than [`GRAZING_SPEED`](crate::GRAZING_SPEED) do not count.
+    pub fn effective_restitution(&self) -> f64 {
+        match self.parameters.contact_law {
+            ContactLaw::Impulsive if self.totals().impacts > 0 => self.parameters.restitution,
+            _ => self.totals().rebound,
+        }
+    }
+
     /// Sums over all impacts so far.
     pub fn totals(&self) -> &Totals {
         &self.ledger.totals
@@ -142,15 +159,23 @@ impl Harvester {
     pub fn energies(&self) -> Energies {
         let (p, mut works) = (&self.parameters, self.ledger.works);
         let (ball, mut elastic) = (self.ledger.kinetic(self.ball_velocity()), 0.0);
+        let mut damping = p.cylinder_mass * self.motion.cylinder.at(self.time).damped;
         if let Some((work, stored, lost)) = self.motion.contact_energies(self.forces(), self.time) {
             works.wall += work.wall;
             works.electrical += work.electrical;
+            damping += work.damping;
             works.friction +=
                 p.ball_mass * self.motion.mount.friction * self.motion.ball.contact().map_or(0.0, |c| c.way(self.time));
             elastic = stored;
             works.loss += lost;
+            works.viscous += work.viscous;
         } else if self.motion.ball.is_carried() {
             works.wall += self.ledger.mechanical(self.ball_position(), self.ball_velocity());
+        }
+        for side in Side::BOTH {
+            let [stored, lost] = self.motion.relaxation_energies(&self.membrane, side, self.time);
+            elastic += stored;
+            works.viscous += lost;
         }
         if self.motion.slip != 0.0 {
             let [loss, wall] = self.ledger.friction_since(self.motion.slip, self.motion.slide_at(self.time));
@@ -160,8 +185,7 @@ impl Harvester {
         let of_cylinder = |velocity: f64| 0.5 * p.cylinder_mass * velocity * velocity;
         let cylinder = of_cylinder(self.cylinder_velocity());
         let spring = |position: f64| 0.5 * p.suspension_stiffness * position * position;
-        let (suspension, damping) =
-            (spring(self.cylinder_position()), p.cylinder_mass * self.motion.cylinder.damped_at(self.time));
+        let suspension = spring(self.cylinder_position());
         let gained = cylinder - of_cylinder(p.cylinder_velocity);
         let held = suspension - spring(p.cylinder_position) + damping;
         Energies {
@@ -169,6 +193,7 @@ impl Harvester {
             cylinder,
             elastic,
             impact_loss: works.loss,
+            viscous: works.viscous,
             friction: works.friction,
             gravity: self.ledger.gravity(self.ball_position()),
             suspension,
@@ -224,6 +249,7 @@ impl Harvester {
             field_per_volt: of_membrane(2),
             capacitance: of_membrane(3),
             last_speed: sums.last_speed,
+            rebound: self.tangent.of(|change| change.of.restitution) * f64::from(u8::from(self.totals().impacts > 0)),
             voltage_gain: sums.voltage_gain,
             energy: sums.energy,
             energies: changes.energies_change(time),

@@ -54,7 +54,7 @@ impl Harvester {
     /// This harvester after what is due at its present time.
     pub(super) fn after_due(&self) -> Option<Self> {
         let mut ahead = self.clone();
-        ahead.advance_through_events(self.time, |_| {}).ok()?;
+        ahead.advance_through_events(self.time, None).ok()?;
         Some(ahead)
     }
 
@@ -62,7 +62,7 @@ impl Harvester {
     fn at_release(&self) -> Option<Self> {
         let time = self.motion.found_start()?;
         let mut ahead = self.clone();
-        ahead.go_to(time, &mut |_| {}).ok()?;
+        ahead.go_to(time, None).ok()?;
         ahead.search_from(time);
         Some(ahead)
     }

@@ -6,21 +6,24 @@ use super::Harvester;
 use super::integrator::MAX_LAG;
 use crate::accounting::budget::Budget;
 use crate::accounting::ledger::{Ledger, Totals, Works};
-use crate::contact::{Contact, ContactState, Ramp};
+use crate::contact::{Contact, ContactState, Creep, Ramp, Recoil};
 use crate::error::ModelError;
 use crate::membrane::Membrane;
+use crate::membrane::table::ForceTable;
 use crate::motion::cylinder::Drive;
 use crate::motion::mount::Mount;
-use crate::motion::pulse::{Pulse, PulseShape, Pulses};
+use crate::motion::pulse::{Pulse, PulseShape, Pulses, Running};
 use crate::motion::side::Side;
 use crate::motion::{Ball, Motion, Prediction, Search, Start};
 use crate::noise::Noise;
 use crate::noise::block::BLOCK;
 use crate::parameters::{ContactLaw, Parameters};
-use crate::recording::{Recording, Segment, Setup};
+use crate::recording::{Recording, Segment};
 use crate::sensitivity::{Changes, Tangent};
+use crate::setup::Setup;
 
-/// Everything that a [`Harvester`] carries from one step to the next, besides its parameters and its recording.
+/// Everything that a [`Harvester`] carries from one step to the next, besides its parameters, its recording and the table of its
+/// membranes.
 ///
 /// Exported by [`Harvester::snapshot`], imported by [`Harvester::restore`]. What follows from these values, such as the
 /// time of the next impact, is worked out again.
@@ -53,12 +56,16 @@ pub struct Snapshot {
     pub noise_walk: f64,
     /// Fingerprint of the recording, 0 if there is none.
     pub recording: u64,
-    /// Number of its segment at the start of the cylinder's motion.
+    /// Fingerprint of the table of the membranes, 0 if there is none.
+    pub table: u64,
+    /// Number of the recording's segment at the start of the cylinder's motion.
     pub segment: u64,
     /// Pulses under way on the left and on the right membrane, the largest peak first.
     pub pulses: [Vec<Pulse>; 2],
     /// The present contact under the compliant law.
     pub contact: Option<ContactState>,
+    /// Creep of the left and the right membrane where a ball last left them, if they are viscous.
+    pub creeps: [Creep; 2],
     /// Voltages across the left and the right membrane.
     pub voltages: [Ramp; 2],
     /// Sums over all impacts so far.
@@ -95,9 +102,11 @@ impl Harvester {
             noise_sample: state.sample,
             noise_walk: noise.walk,
             recording: motion.playback.as_ref().map_or(0, |playback| playback.recording.fingerprint()),
+            table: self.membrane.table().map_or(0, ForceTable::fingerprint),
             segment: motion.cylinder.drive.recorded.number,
-            pulses: self.pulses.under_way.clone(),
+            pulses: self.pulses.lists(),
             contact: motion.ball.contact().map(|contact| contact.state),
+            creeps: motion.creeps,
             voltages: self.voltages,
             totals: ledger.totals,
             works: ledger.works,
@@ -149,6 +158,9 @@ impl Harvester {
         if snapshot.recording != setup.recording.map_or(0, Recording::fingerprint) {
             return Err(ModelError::OtherRecording);
         }
+        if snapshot.table != setup.table.map_or(0, ForceTable::fingerprint) {
+            return Err(ModelError::OtherTable);
+        }
         let mut noise = Noise::new(p, snapshot.noise_sample, snapshot.noise_walk);
         let mut drive = Drive::new(p, noise.phase(noise.sample), [snapshot.external, snapshot.external_rate]);
         let playback = setup.playback();
@@ -171,12 +183,15 @@ impl Harvester {
         let relative = Start { velocity: rate, ..snapshot.relative };
         let mut motion = Motion::new(p, snapshot.cylinder, drive, snapshot.ball, (ball, snapshot.slip), relative);
         motion.cylinder.damped = snapshot.damped;
-        (motion.search, motion.playback) = (Search::none(), playback);
+        (motion.search, motion.playback, motion.creeps) = (Search::none(), playback, snapshot.creeps);
         let tangent = snapshot
             .changes
             .map_or_else(Tangent::none, |changes| Tangent { changes, ..Tangent::of_force(changes.since, p) });
-        let membrane = Membrane::new(p);
+        let membrane = Membrane::new(*setup);
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
+        let ledger = Ledger::new(p, membrane.rest_capacitance, snapshot.totals, snapshot.works);
+        let running = |list: &Vec<Pulse>| list.iter().map(|pulse| Running::new(&membrane, *pulse)).collect();
+        let under_way = snapshot.pulses.each_ref().map(running);
         Ok(Self {
             parameters: *p,
             membrane,
@@ -184,8 +199,8 @@ impl Harvester {
             motion,
             noise,
             voltages: snapshot.voltages,
-            pulses: Pulses { shape, under_way: snapshot.pulses.clone() },
-            ledger: Ledger::new(p, membrane.rest_capacitance, snapshot.totals, snapshot.works),
+            pulses: Pulses { shape, under_way },
+            ledger,
             budget: Budget::new(p, snapshot.second, snapshot.second_events),
             tangent,
             origin: None,
@@ -246,14 +261,18 @@ impl Snapshot {
             let in_force = (sample + 1.0 + lag) * hold > time && sample * hold <= time.max(0.0) + hold;
             check("noise sample", sample, in_force)?;
         }
-        for sum in [totals.last_speed, totals.voltage_gain, totals.energy] {
+        for sum in [totals.last_speed, totals.voltage_gain, totals.energy, totals.rebound] {
             check_size("sum over the impacts", sum)?;
         }
         for Ramp { start, value, rate } in self.voltages {
             finite("voltage or sum of work", &[start, value, rate])?;
         }
-        let Works { wall, electrical, loss, friction, contact_time, .. } = works;
-        finite("voltage or sum of work", &[wall, electrical, loss, friction, contact_time])?;
+        let Works { wall, electrical, loss, viscous, friction, contact_time, .. } = works;
+        finite("voltage or sum of work", &[wall, electrical, loss, viscous, friction, contact_time])?;
+        for Creep { since, value } in self.creeps {
+            check("creep since", since, since.is_finite() && since <= time.max(0.0))?;
+            check_creep(parameters, value)?;
+        }
         finite("begin of friction", &works.slide)?;
         if let Some(ContactState { since, largest, start, credited, proposal, .. }) = self.contact {
             let is_compliant = parameters.contact_law == ContactLaw::Compliant && self.resting.is_none();
@@ -261,6 +280,11 @@ impl Snapshot {
             check("start of a contact", start.time, start.time <= time && periods_since(start.time) <= 2.0)?;
             finite("deflection", &[start.x])?;
             finite("rate of a deflection", &[start.v])?;
+            check_creep(parameters, start.creep)?;
+            let Recoil { position, velocity } = start.recoil;
+            let may_recoil = parameters.recoil_share() > 0.0 && parameters.is_suspended();
+            finite("recoil", &[position, velocity])?;
+            check("recoil of a free cylinder", position, may_recoil || start.recoil == Recoil::default())?;
             check_size("largest deflection", largest)?;
             check_size("credited excess", credited)?;
             check("first step", proposal, proposal.is_finite() && proposal > 0.0)?;
@@ -282,6 +306,14 @@ fn validate_pulses(pulses: &[Pulse], time: f64) -> Result<(), ModelError> {
     }
     let ascent = pulses.windows(2).find(|pair| pair[0].peak < pair[1].peak);
     check("order of the pulses", ascent.map_or(0.0, |pair| pair[1].peak), ascent.is_none())
+}
+
+/// That a film has given way as far as one can.
+fn check_creep(parameters: &Parameters, value: f64) -> Result<(), ModelError> {
+    /// A film as long as that has no thickness left.
+    const LARGEST: f64 = 30.0;
+    let largest = if parameters.is_viscous() { LARGEST } else { 0.0 };
+    check("creep of a film", value, value.abs() <= largest)
 }
 
 /// That a value that is never negative is finite, too.

@@ -8,13 +8,17 @@ use super::side::Side;
 use super::{Ball, Motion, Start};
 use crate::accounting::budget::Budget;
 use crate::accounting::ledger::Ledger;
-use crate::contact::{Contact, Ending, Law, Ramp, Work};
+use crate::contact::{Contact, Creep, Ending, Law, Point, Ramp, Recoil, Work};
 use crate::error::ModelError;
 use crate::membrane::Membrane;
+use crate::membrane::viscosity::Viscosity;
 use crate::parameters::Parameters;
 
 /// First step to try, in units of the loading time and of the excitation period: the force sets in as x^n.
 const FIRST_STEP: f64 = 1e-3;
+
+/// Part of the deflection at which a film is locked in which the last step of a ball that goes on fails.
+const AT_LIMIT: f64 = 1e-6;
 
 /// Events of the budget that an internal step counts for: it takes as long as some twenty impacts.
 const STEP_COST: usize = 20;
@@ -48,13 +52,16 @@ impl Motion {
         })
     }
 
-    /// Deflection of the membrane at `side` by the present contact, at `time`, s.
-    pub fn contact_deflection(&self, side: Side, time: f64) -> Deflection {
+    /// Deflection of the `membrane` at `side` by the present contact, or of a viscous film that has not recovered yet, at `time`, s.
+    pub fn contact_deflection(&self, membrane: &Membrane, side: Side, time: f64) -> Deflection {
         let here = self.ball.contact().filter(|contact| contact.state.side == side);
-        here.map_or(Deflection::default(), |contact| {
-            let point = contact.at(time);
-            Deflection { value: point.x.max(0.0), rate: point.v }
-        })
+        let point = here.map(|contact| contact.at(time));
+        if let Some(viscosity) = &membrane.viscosity {
+            let [x, v] = point.map_or([0.0; 2], |point| [point.x, point.v]);
+            let [value, rate] = membrane.film_deflection(viscosity, [x, v], self.creep_at(viscosity, side, time));
+            return Deflection { value, rate };
+        }
+        point.map_or(Deflection::default(), |Point { x, v, .. }| Deflection { value: x.max(0.0), rate: v })
     }
 
     /// Works on the ball in the present pass of the contact, the elastic energy and the energy lost in this contact, J, up to
@@ -62,17 +69,50 @@ impl Motion {
     pub fn contact_energies(&self, forces: Forces<'_>, time: f64) -> Option<(Work, f64, f64)> {
         let contact = self.ball.contact()?;
         let law = self.law(forces, contact.state.side);
-        Some((contact.work(time), law.elastic(contact.at(time).x), law.loss(contact.largest_at(time))))
+        Some((contact.work(time), law.elastic(&contact.at(time)), law.loss(contact.largest_at(time))))
+    }
+
+    /// Creep of the viscous film at `side` at `time`, s.
+    pub fn creep_at(&self, viscosity: &Viscosity, side: Side, time: f64) -> f64 {
+        match self.ball.contact().filter(|contact| contact.state.side == side) {
+            Some(contact) => contact.at(time).creep,
+            None => self.relaxed_at(viscosity, side, time),
+        }
+    }
+
+    /// The same of a film that no ball presses.
+    fn relaxed_at(&self, viscosity: &Viscosity, side: Side, time: f64) -> f64 {
+        let Creep { since, value } = self.creeps[side.index()];
+        viscosity.relaxed(value, time - since)
+    }
+
+    /// Energy, J, that a viscous film at `side` has stored, and the energy, J, that it has lost since a ball last pressed it, at `time`,
+    /// s; of a film that a ball presses both are those of the contact.
+    pub fn relaxation_energies(&self, membrane: &Membrane, side: Side, time: f64) -> [f64; 2] {
+        let is_pressed = self.ball.contact().is_some_and(|contact| contact.state.side == side);
+        let Some(viscosity) = membrane.viscosity.as_ref().filter(|_| !is_pressed) else { return [0.0; 2] };
+        let stored = |creep: f64| membrane.strained(viscosity, 0.0, creep).stored;
+        let now = stored(self.relaxed_at(viscosity, side, time));
+        [now, stored(self.creeps[side.index()].value) - now]
     }
 
     /// A contact begins at `time`, s, at relative `speed`, m/s.
-    pub fn begin_contact(&mut self, forces: Forces<'_>, limit: Option<f64>, time: f64, side: Side, speed: f64) {
+    pub fn begin_contact(
+        &mut self,
+        forces: Forces<'_>,
+        limit: Option<f64>,
+        ledger: &mut Ledger,
+        (time, side, speed): (f64, Side, f64),
+    ) {
+        let [_, lost] = self.relaxation_energies(forces.membrane, side, time);
+        ledger.works.viscous += lost;
+        let creep = forces.membrane.viscosity.as_ref().map_or(0.0, |viscosity| self.relaxed_at(viscosity, side, time));
         let mut here = self.cylinder.at(time);
         self.change_ball(Ball::Free, 0.0, &mut here);
         self.new_flight(&here, [self.half_travel, speed].map(|value| side.sign() * value));
         let period = 1.0 / forces.parameters.frequency;
         let loading = if speed > 0.0 { forces.membrane.deflection(speed) / speed } else { period };
-        self.ball = Ball::InContact(Contact::new(side, time, speed, FIRST_STEP * loading.min(period)));
+        self.ball = Ball::InContact(Contact::new(side, time, [speed, creep], FIRST_STEP * loading.min(period)));
         self.plan_contact(forces, limit);
     }
 
@@ -104,10 +144,15 @@ impl Motion {
         }
         let is_at_end = self.end_of_piece() <= time;
         if steps == 0 && !is_at_end {
+            let (bound, limit) = (forces.membrane.deepest(), forces.parameters.stretch_limit);
+            if deflection > bound * (1.0 - AT_LIMIT) {
+                let speed = contact.at(time).v;
+                return Err(ModelError::HitsLimit { time, deflection, speed, bound, limit });
+            }
             return Err(budget.exceeded(time)); // no step is short enough
         }
         (0..STEP_COST * steps).try_for_each(|_| budget.spend(time))?;
-        self.book_pass(forces.membrane, ledger, time);
+        self.book_pass(forces, ledger, time);
         if is_at_end {
             self.restart_contact_booked(forces, limit, (time, self.drive_after(&self.cylinder, time)));
             return Ok(());
@@ -125,11 +170,13 @@ impl Motion {
 
     /// Books the works of the pass up to `time`, s, and, at a turning point, what Eqs. (12) and (13) give for the largest
     /// deflection.
-    fn book_pass(&mut self, membrane: &Membrane, ledger: &mut Ledger, time: f64) {
+    fn book_pass(&mut self, Forces { parameters, membrane, .. }: Forces<'_>, ledger: &mut Ledger, time: f64) {
         let Ball::InContact(contact) = &mut self.ball else { return };
         let work = contact.work(time);
         ledger.works.wall += work.wall;
         ledger.works.electrical += work.electrical;
+        ledger.works.viscous += work.viscous;
+        self.cylinder.damped += work.damping / parameters.cylinder_mass;
         ledger.rub(contact.way(time));
         if contact.ending() == Ending::Turn && time == contact.end() {
             let (excess, credited) = (membrane.capacitance_excess(contact.largest_at(time)), contact.state.credited);
@@ -144,7 +191,9 @@ impl Motion {
         let cylinder = self.recoiling_cylinder(time, self.drive_at(time));
         let Ball::InContact(contact) = core::mem::replace(&mut self.ball, Ball::Free) else { return };
         let side = contact.state.side;
-        let (sign, rate) = (side.sign(), contact.at(time).v);
+        let (sign, Point { v: rate, creep, .. }) = (side.sign(), contact.at(time));
+        self.creeps[side.index()] = Creep { since: time, value: creep.max(0.0) };
+        ledger.end_contact(rate.abs());
         ledger.works.loss += self.law(forces, side).loss(contact.largest_at(time));
         ledger.works.contact_time += time - contact.state.since;
         if self.mount.ratio > 0.0 {
@@ -161,7 +210,7 @@ impl Motion {
     fn recoiling_cylinder(&self, time: f64, drive: Drive) -> CylinderMotion {
         let here = self.cylinder.at(time);
         let (position, velocity) = (self.cylinder_position_at(time), self.cylinder_velocity_at(time));
-        self.cylinder.changed(&CylinderState { position, velocity, ..here }, drive, self.mount.sliding(0.0))
+        CylinderMotion::from_state(&CylinderState { position, velocity, ..here }, drive, self.mount.sliding(0.0))
     }
 
     /// The contact goes on from `time`, s, under other voltages.
@@ -172,7 +221,7 @@ impl Motion {
         ledger: &mut Ledger,
         time: f64,
     ) {
-        self.book_pass(forces.membrane, ledger, time);
+        self.book_pass(forces, ledger, time);
         if let Ball::InContact(contact) = &mut self.ball {
             *contact = contact.continued(time);
         }
@@ -187,14 +236,15 @@ impl Motion {
         ledger: &mut Ledger,
         (time, drive): (f64, Drive),
     ) {
-        self.book_pass(forces.membrane, ledger, time);
+        self.book_pass(forces, ledger, time);
         self.restart_contact_booked(forces, limit, (time, drive));
     }
 
     /// The same after the works of the pass are booked.
     fn restart_contact_booked(&mut self, forces: Forces<'_>, limit: Option<f64>, (time, drive): (f64, Drive)) {
         let Some(contact) = self.ball.contact() else { return };
-        let next = contact.continued(time);
+        let mut next = contact.continued(time);
+        next.state.start.recoil = Recoil::default(); // it becomes part of the cylinder's motion
         let sign = contact.state.side.sign();
         let velocity = self.ball_velocity_at(time);
         self.cylinder = self.recoiling_cylinder(time, drive);

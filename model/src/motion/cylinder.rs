@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::mount::Load;
-use super::suspended::{Oscillation, Suspension, damped_energy};
+use super::suspended::{Oscillation, Suspension, change, damped_energy};
 use crate::numerics::elementary::{round, sin_cos};
 use crate::numerics::product::cycle_fraction;
 use crate::paper::excitation;
@@ -162,6 +162,8 @@ pub struct CylinderState {
     pub turns: f64,
     /// Its sine and cosine.
     pub sine: [f64; 2],
+    /// Energy that the damper has taken up to then, over M, J/kg.
+    pub damped: f64,
 }
 
 impl CylinderMotion {
@@ -204,11 +206,16 @@ impl CylinderMotion {
         let acceleration = excitation::acceleration(amplitude, cos, external) + external_rate * elapsed;
         let jerk = external_rate - amplitude * self.drive.omega() * sin;
         if self.is_suspended() {
-            let suspension = self.suspension();
-            let [position, velocity] = self.after(elapsed, self.oscillation().change(elapsed));
-            let acceleration = acceleration + suspension.acceleration(position, velocity);
-            let jerk = jerk + suspension.acceleration(velocity, acceleration);
-            return CylinderState { time, position, velocity, acceleration, jerk, turns, sine };
+            return self.suspended_at(CylinderState {
+                time,
+                position: self.position,
+                velocity: self.velocity,
+                acceleration,
+                jerk,
+                turns,
+                sine,
+                damped: self.damped,
+            });
         }
         let drift = self.velocity - self.speed * self.sin_start;
         let displacement = 0.5 * external + elapsed * external_rate * (1.0 / 6.0);
@@ -222,7 +229,20 @@ impl CylinderMotion {
             jerk,
             turns,
             sine,
+            damped: self.damped,
         }
+    }
+
+    /// The same of a suspended cylinder, from what the forces alone would make of acceleration and jerk.
+    #[inline(never)] // what a free cylinder does stays small
+    fn suspended_at(&self, forced: CylinderState) -> CylinderState {
+        let (suspension, elapsed) = (self.suspension(), forced.time - self.start);
+        let terms = self.oscillation().terms(elapsed);
+        let [position, velocity] = self.after(elapsed, change(&terms, elapsed));
+        let damped = forced.damped + damped_energy(self.load.suspension.damping, &terms, elapsed);
+        let acceleration = forced.acceleration + suspension.acceleration(position, velocity);
+        let jerk = forced.jerk + suspension.acceleration(velocity, acceleration);
+        CylinderState { position, velocity, acceleration, jerk, damped, ..forced }
     }
 
     /// First-order changes of position, m, and velocity, m/s, at `time`, s, with the harmonic force; the values at the start
@@ -262,13 +282,12 @@ impl CylinderMotion {
     #[must_use]
     pub fn continued(&self, time: f64, drive: Drive) -> Self {
         let here = self.at(time);
-        self.changed(&here, drive, self.load)
+        Self::from_state(&here, drive, self.load)
     }
 
-    /// The motion that goes on from `here` under another drive or load.
-    #[must_use]
-    pub fn changed(&self, here: &CylinderState, drive: Drive, load: Load) -> Self {
-        Self { damped: self.damped_at(here.time), ..Self::new(here.time, here.position, here.velocity, drive, load) }
+    /// The motion that goes on from `here` under this drive and load.
+    pub fn from_state(here: &CylinderState, drive: Drive, load: Load) -> Self {
+        Self { damped: here.damped, ..Self::new(here.time, here.position, here.velocity, drive, load) }
     }
 
     /// Whether spring or damper hold it.
@@ -310,16 +329,6 @@ impl CylinderMotion {
         excitation::acceleration(self.amplitude, cosine, external)
             + rate * elapsed
             + self.suspension().acceleration(sums[0], velocity)
-    }
-
-    /// Energy that the damper has taken up to `time`, s, over M, J/kg.
-    pub fn damped_at(&self, time: f64) -> f64 {
-        let damping = self.load.suspension.damping;
-        if damping == 0.0 {
-            return self.damped;
-        }
-        let elapsed = time - self.start;
-        self.damped + damped_energy(damping, &self.oscillation().terms(elapsed), elapsed)
     }
 
     /// The constant part of `z_M''` at `time`, s, in m/s^2, and its rate, m/s^3.

@@ -102,6 +102,12 @@ impl Search {
         }
     }
 
+    /// Begins anew: what is not set is not read, and writing all of a piece would cost as much as a short search.
+    pub fn begin(&mut self) {
+        (self.window, self.found, self.speed, self.exhausted) = (0, None, 0.0, false);
+        (self.after_release, self.ahead, self.anchor, self.piece) = (None, None, None, None);
+    }
+
     /// No search at all: no event is predicted.
     pub fn none() -> Self {
         Self { exhausted: true, ..Self::new() }

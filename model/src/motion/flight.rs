@@ -10,7 +10,7 @@
 pub(super) mod angle;
 mod crossing;
 mod curved;
-mod piece;
+pub(super) mod piece;
 mod zeros;
 
 use core::f64::consts::TAU;
@@ -216,7 +216,8 @@ impl Flight {
         let [sin, cos] = self.sine;
         let middle = self.dz + self.swing * cos;
         let reach = self.half_travel - self.swing - self.rounding(0.0);
-        if self.external != [0.0; 2] || middle.abs() >= reach {
+        let [c2, c3] = self.external; // one by one: a comparison of arrays is a call
+        if c2 != 0.0 || c3 != 0.0 || middle.abs() >= reach {
             return Some(window);
         }
         let drift = self.rate - self.swing * self.omega() * sin;

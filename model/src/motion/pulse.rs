@@ -1,9 +1,14 @@
 //! The deflection of a membrane in time after an impact, under the impulsive law.
 //!
 //! The paper's impact takes no time; C(t) needs a pulse of finite length. Loading follows the paper's own energy
-//! balance, Eq. (9) with the upper limit left free: m x'' = -K x^n from x = 0 to delta. Unloading is its mirror image
-//! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball.
+//! balance, Eq. (9) with the upper limit left free: m x'' = -f(x) from x = 0 to delta. Unloading is its mirror image
+//! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball. For f = K x^n all pulses
+//! have one shape; under another law of the membrane each has its own.
 
+use std::sync::Arc;
+
+use crate::membrane::Membrane;
+use crate::membrane::course::Course;
 use crate::motion::side::Side;
 use crate::numerics::roots::convex_root;
 use crate::numerics::series::hypergeometric;
@@ -80,16 +85,21 @@ impl PulseShape {
 
     /// Deflection at `time`, s; zero before and after the pulse.
     pub fn at(&self, pulse: &Pulse, time: f64) -> Deflection {
-        let loading_time = self.loading_time(pulse);
+        self.follow(pulse, self.loading_time(pulse), time, |fraction| self.loading_curve(fraction))
+    }
+
+    /// The same of a pulse with this `loading_time`, s, and the `curve` of x over delta and of x' over the speed against the
+    /// fraction of that time.
+    fn follow(&self, pulse: &Pulse, loading_time: f64, time: f64, curve: impl Fn(f64) -> (f64, f64)) -> Deflection {
         let elapsed = time - pulse.start;
         if elapsed <= 0.0 || elapsed >= loading_time * (1.0 + self.stretch) {
             return Deflection::default();
         }
         if elapsed <= loading_time {
-            let (y, slope) = self.loading_curve(elapsed / loading_time);
+            let (y, slope) = curve(elapsed / loading_time);
             return Deflection { value: pulse.peak * y, rate: pulse.speed * slope };
         }
-        let (y, slope) = self.loading_curve(1.0 - (elapsed - loading_time) / (loading_time * self.stretch));
+        let (y, slope) = curve(1.0 - (elapsed - loading_time) / (loading_time * self.stretch));
         Deflection { value: pulse.peak * y, rate: -pulse.speed * slope / self.stretch }
     }
 
@@ -139,11 +149,46 @@ pub(crate) struct Knot<'a> {
     pub(crate) is_end: bool,
 }
 
+/// A pulse under way, and the way that it takes if its law of the membrane has no shape that all pulses share.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Running {
+    pub(crate) pulse: Pulse,
+    course: Option<Arc<Course>>,
+}
+
+impl Running {
+    pub(crate) fn new(membrane: &Membrane, pulse: Pulse) -> Self {
+        let course = (!membrane.is_power()).then(|| Arc::new(Course::new(membrane, pulse.peak)));
+        Self { pulse, course }
+    }
+
+    fn loading_time(&self, shape: &PulseShape) -> f64 {
+        self.course.as_ref().map_or_else(|| shape.loading_time(&self.pulse), |course| course.time())
+    }
+
+    /// Time of the largest deflection, s.
+    pub(crate) fn peak_time(&self, shape: &PulseShape) -> f64 {
+        self.pulse.start + self.loading_time(shape)
+    }
+
+    /// Time at which the membrane is flat again, s.
+    pub(crate) fn end_time(&self, shape: &PulseShape) -> f64 {
+        self.pulse.start + self.loading_time(shape) * (1.0 + shape.stretch)
+    }
+
+    fn at(&self, shape: &PulseShape, time: f64) -> Deflection {
+        match &self.course {
+            None => shape.at(&self.pulse, time),
+            Some(course) => shape.follow(&self.pulse, course.time(), time, |fraction| course.at(fraction)),
+        }
+    }
+}
+
 /// Pulses under way on both membranes, the largest peak first. Where they overlap, the larger deflection wins.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Pulses {
     pub(crate) shape: PulseShape,
-    pub(crate) under_way: [Vec<Pulse>; 2],
+    pub(crate) under_way: [Vec<Running>; 2],
 }
 
 impl Clone for Pulses {
@@ -163,19 +208,24 @@ impl Pulses {
     pub(crate) const CAPACITY: usize = 256;
 
     /// Adds the pulse of a new impact at `side`, and forgets those that have ended.
-    pub(crate) fn push(&mut self, side: Side, pulse: Pulse) {
+    pub(crate) fn push(&mut self, membrane: &Membrane, side: Side, pulse: Pulse) {
         let Self { shape, under_way } = self;
         let list = &mut under_way[side.index()];
-        list.retain(|old| shape.end_time(old) > pulse.start);
+        list.retain(|old| old.end_time(shape) > pulse.start);
         if list.len() >= Self::CAPACITY {
-            let ends = list.iter().map(|pulse| shape.end_time(pulse)).enumerate();
+            let ends = list.iter().map(|pulse| pulse.end_time(shape)).enumerate();
             if let Some((first, _)) = ends.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 list.remove(first);
             }
         }
         // Largest peak first, so that `largest` can stop early.
-        let position = list.partition_point(|old| old.peak >= pulse.peak);
-        list.insert(position, pulse);
+        let position = list.partition_point(|old| old.pulse.peak >= pulse.peak);
+        list.insert(position, Running::new(membrane, pulse));
+    }
+
+    /// The pulses themselves, of the left and of the right membrane.
+    pub(crate) fn lists(&self) -> [Vec<Pulse>; 2] {
+        self.under_way.each_ref().map(|list| list.iter().map(|running| running.pulse).collect())
     }
 
     /// Deflection of the membrane at `side` at `time`, s.
@@ -186,14 +236,14 @@ impl Pulses {
     /// The pulse with the largest deflection at `time`, s; none if the membrane is flat.
     pub(crate) fn largest(&self, side: Side, time: f64) -> Option<(&Pulse, Deflection)> {
         let mut largest: Option<(&Pulse, Deflection)> = None;
-        for pulse in &self.under_way[side.index()] {
+        for running in &self.under_way[side.index()] {
             let value = largest.map_or(0.0, |(_, deflection)| deflection.value);
-            if pulse.peak <= value {
+            if running.pulse.peak <= value {
                 break;
             }
-            let deflection = self.shape.at(pulse, time);
+            let deflection = running.at(&self.shape, time);
             if deflection.value > value {
-                largest = Some((pulse, deflection));
+                largest = Some((&running.pulse, deflection));
             }
         }
         largest
@@ -202,9 +252,10 @@ impl Pulses {
     /// The first time after `time`, s, at which a pulse peaks or ends, of each membrane that is not flat.
     pub(crate) fn next_knots(&self, time: f64) -> impl Iterator<Item = Knot<'_>> {
         self.under_way.iter().filter_map(move |pulses| {
-            let knots = pulses.iter().flat_map(|pulse| {
-                let peak = Knot { time: self.shape.peak_time(pulse), pulse, is_end: false };
-                [peak, Knot { time: self.shape.end_time(pulse), pulse, is_end: true }]
+            let knots = pulses.iter().flat_map(|running| {
+                let pulse = &running.pulse;
+                let peak = Knot { time: running.peak_time(&self.shape), pulse, is_end: false };
+                [peak, Knot { time: running.end_time(&self.shape), pulse, is_end: true }]
             });
             knots.filter(|knot| knot.time > time).min_by(|a, b| a.time.total_cmp(&b.time))
         })
@@ -263,9 +314,10 @@ mod tests {
     fn the_larger_of_two_overlapping_pulses_wins() {
         let shape = PulseShape::new(2.6, 0.5);
         let mut pulses = Pulses { shape, under_way: Default::default() };
+        let membrane = Membrane::new(&crate::Parameters::default());
         let both = [pulse(0.0, 1.0, 0.004), pulse(0.001, 0.1, 0.001)];
         for pulse in both {
-            pulses.push(Side::Left, pulse);
+            pulses.push(&membrane, Side::Left, pulse);
         }
         for k in 0..1000 {
             let t = f64::from(k) * 1e-4;

@@ -1,5 +1,12 @@
 //! What an impact does: Eqs. (11) to (13).
 
+/// Relative speed, m/s, below which an impact grazes if the wall recedes from the ball faster and faster, so that a little
+/// earlier or later they would just miss each other. The factor by which an impact magnifies changes grows as one over the
+/// relative speed; a grazing impact, which penetrates by less than the rounding of the positions, counts as none: changes
+/// pass it as they would if the ball missed the membrane. Slow impacts of a ball that the wall pushes are bounces of
+/// a chattering sequence, whose changes are as small as they are.
+pub const GRAZING_SPEED: f64 = 1e-7;
+
 /// Eq. (11): seen from the wall, the ball leaves it at r times the relative `speed`, m/s, at which it came.
 #[inline]
 pub fn rebound(restitution: f64, speed: f64) -> f64 {

@@ -7,14 +7,8 @@ use crate::motion::cylinder::CylinderState;
 use crate::motion::pulse::PulseChange;
 use crate::motion::side::Side;
 use crate::paper::impact;
+use crate::paper::impact::GRAZING_SPEED;
 use crate::parameters::Parameters;
-
-/// Relative speed, m/s, below which an impact grazes if the wall recedes from the ball faster and faster, so that a little
-/// earlier or later they would just miss each other. The factor by which an impact magnifies changes grows as one over the
-/// relative speed; a grazing impact, which penetrates by less than the rounding of the positions, counts as none: changes
-/// pass it as they would if the ball missed the membrane. Slow impacts of a ball that the wall pushes are bounces of
-/// a chattering sequence, whose changes are as small as they are.
-pub const GRAZING_SPEED: f64 = 1e-7;
 
 /// Whether an impact at relative `speed`, m/s, grazes, where dz'' is this `acceleration`, m/s^2.
 pub fn grazes(side: Side, speed: f64, acceleration: f64) -> bool {

@@ -53,7 +53,7 @@ impl Membrane {
         speed_change: f64,
         change: Option<&MembraneChange>,
     ) -> f64 {
-        let power = self.exponent + 1.0;
+        let power = self.exponent(peak) + 1.0;
         let by_membrane = change.map_or(0.0, |d| d.log_deflection + d.exponent * (1.0 / power - peak.ln()) / power);
         if peak > 0.0 { peak * (2.0 / power * speed_change / speed + by_membrane) } else { 0.0 }
     }
@@ -146,8 +146,9 @@ impl Membrane {
             return sum;
         }
         // The rest is excess / (1 - r^p) with p = 4 / (n + 1).
-        let power = 4.0 / (self.exponent + 1.0);
-        let power_change = -power / (self.exponent + 1.0) * change.map_or(0.0, |change| change.exponent);
+        let exponent = self.exponent(self.deflection(speed));
+        let power = 4.0 / (exponent + 1.0);
+        let power_change = -power / (exponent + 1.0) * change.map_or(0.0, |change| change.exponent);
         let ratio = restitution.powf(power);
         let ratio_change = ratio * (power * restitution_change / restitution + restitution.ln() * power_change);
         sum + (term_change(speed, speed_change) + excess * ratio_change / (1.0 - ratio)) / (1.0 - ratio)

@@ -46,7 +46,7 @@ impl Pulses {
 
     /// The pulses under way change no more.
     pub(crate) fn forget_changes(&mut self) {
-        self.under_way.iter_mut().flatten().for_each(|pulse| pulse.change = PulseChange::default());
+        self.under_way.iter_mut().flatten().for_each(|running| running.pulse.change = PulseChange::default());
     }
 }
 

@@ -258,11 +258,29 @@ impl Brute {
     }
 }
 
-/// Small steps through membranes that are pressed in, with friction: dz and its rate, and the largest depth of the contact.
-pub fn small_steps(p: &Parameters, recorded: &Recorded, until: f64, dt: f64) -> [f64; 4] {
+/// Small steps through membranes that are pressed in, with friction.
+pub fn small_steps(p: &Parameters, recorded: &Recorded, until: f64, dt: f64) -> SmallSteps {
+    let mut largest = 0.0_f64;
+    small_steps_in(p, recorded, until, dt, |_, x, _| {
+        let is_deepest = x >= largest;
+        largest = if x == 0.0 { 0.0 } else { largest.max(x) };
+        let upper = p.stiffness * x.powf(p.stiffness_exponent);
+        let lower = p.restitution * p.restitution * upper;
+        [lower, if is_deepest { upper } else { lower }]
+    })
+}
+
+/// The same through membranes of any law: the least and the largest force at `side` and the depth x, m, of a ball with this rate.
+pub fn small_steps_in(
+    p: &Parameters,
+    recorded: &Recorded,
+    until: f64,
+    dt: f64,
+    mut membrane: impl FnMut(f64, f64, f64) -> [f64; 2],
+) -> SmallSteps {
     let half = p.travel() / 2.0;
     let mut s = [p.cylinder_position, p.cylinder_velocity, p.ball_position, p.ball_velocity];
-    let mut largest = 0.0_f64;
+    let (mut was_free, mut contacts) = (true, Vec::new());
     let ratio = if p.reaction { p.ball_mass / p.cylinder_mass } else { 0.0 };
     let friction = p.friction * p.gravity * p.inclination.cos() * (1.0 + ratio);
     let mut line = recorded.line_from(0.0);
@@ -271,9 +289,11 @@ pub fn small_steps(p: &Parameters, recorded: &Recorded, until: f64, dt: f64) -> 
         let time = (k as f64 + 0.5) * dt;
         let (dz, rate) = (s[0] + 0.5 * dt * s[1] - s[2] - 0.5 * dt * s[3], s[1] - s[3]);
         let (side, x) = (dz.signum(), (dz.abs() - half).max(0.0));
-        largest = if x == 0.0 { 0.0 } else { largest.max(x) };
-        let upper = p.stiffness * x.powf(p.stiffness_exponent);
-        let lower = p.restitution * p.restitution * upper;
+        if was_free && x > 0.0 {
+            contacts.push((time, rate.abs()));
+        }
+        was_free = x == 0.0;
+        let [lower, upper] = membrane(side, x, side * rate);
         if time > line.end {
             line = recorded.line_from(time);
         }
@@ -287,9 +307,9 @@ pub fn small_steps(p: &Parameters, recorded: &Recorded, until: f64, dt: f64) -> 
         let [low, high] = [lower, upper].map(|force| force / p.ball_mass * (1.0 + ratio));
         let membrane = if x == 0.0 {
             0.0
-        } else if x >= largest && v > 0.0 {
+        } else if v > 0.0 {
             high
-        } else if x >= largest && v == 0.0 {
+        } else if v == 0.0 {
             push.clamp(low, high)
         } else {
             low
@@ -311,5 +331,14 @@ pub fn small_steps(p: &Parameters, recorded: &Recorded, until: f64, dt: f64) -> 
         s[0] += 0.5 * dt * (before[1] + s[1]);
         s[2] += 0.5 * dt * (before[3] + s[3]);
     }
-    s
+    let [z, v, b, w] = s;
+    SmallSteps { positions: [z, b, v, w], contacts }
+}
+
+/// Where small steps come.
+pub struct SmallSteps {
+    /// Positions of cylinder and ball, and their velocities.
+    pub positions: [f64; 4],
+    /// Begins of contacts, s, and relative speeds there, m/s.
+    pub contacts: Vec<(f64, f64)>,
 }

@@ -5,7 +5,9 @@ use std::sync::mpsc;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use videg_model::{ContactLaw, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Quantity, Side};
+use videg_model::{
+    ContactLaw, ExcitationKind, Harvester, MembraneLaw, ModelError, NoiseModel, Parameters, Quantity, Side,
+};
 
 #[path = "../../../tests/support/edges.rs"]
 mod edges;
@@ -75,7 +77,21 @@ pub fn kinds() -> Vec<(&'static str, Parameters)> {
         ("compliant and rubbing", Parameters { friction: 0.1, inclination: 0.1, ..compliant }),
         ("compliant and suspended", Parameters { suspension_stiffness: 20.0, suspension_damping: 0.1, ..compliant }),
         ("compliant with reaction", Parameters { reaction: true, ..compliant }),
+        (
+            "compliant and suspended with reaction",
+            Parameters { suspension_stiffness: 20.0, suspension_damping: 0.1, reaction: true, ..compliant },
+        ),
+        (
+            "compliant on viscous films",
+            Parameters { membrane_law: MembraneLaw::Gent, viscous_modulus: 3e4, relaxation_time: 1e-2, ..compliant },
+        ),
         ("compliant with feedback", Parameters { electrostatic_feedback: true, ..compliant }),
+        ("a film of Gent", Parameters { membrane_law: MembraneLaw::Gent, ..impulsive }),
+        (
+            "a film of Ogden",
+            Parameters { membrane_law: MembraneLaw::Ogden, ogden_modulus_2: -1e3, ogden_exponent_2: -1.0, ..impulsive },
+        ),
+        ("a compliant film of Gent", Parameters { membrane_law: MembraneLaw::Gent, ..compliant }),
         ("compliant with noise", Parameters { contact_law: ContactLaw::Compliant, ..held }),
     ]
 }
@@ -135,13 +151,14 @@ pub fn assert_finite(harvester: &Harvester, what: &str) {
 pub fn assert_balanced(harvester: &Harvester, parameters: &Parameters, what: &str) {
     let e = harvester.energies();
     let start = 0.5 * parameters.ball_mass * parameters.ball_velocity * parameters.ball_velocity;
-    let residual = e.ball + e.elastic + e.impact_loss + e.friction - (start + e.wall + e.electrical + e.gravity);
+    let residual =
+        e.ball + e.elastic + e.impact_loss + e.friction + e.viscous - (start + e.wall + e.electrical + e.gravity);
     let swing = 2.0 * parameters.cylinder_amplitude() * std::f64::consts::TAU * parameters.frequency;
     let held = parameters.cylinder_position * (parameters.suspension_stiffness / parameters.cylinder_mass).sqrt();
     let fastest = parameters.cylinder_velocity.abs() + swing + held.abs() + harvester.cylinder_velocity().abs();
     let of_wall = 0.5 * parameters.ball_mass * fastest * fastest;
     let moved = e.ball + e.elastic + e.impact_loss + start + e.wall.abs() + e.electrical.abs() + of_wall;
-    let moved = moved + e.friction + e.gravity.abs();
+    let moved = moved + e.friction + e.viscous + e.gravity.abs();
     let tolerance = 2e-9 + digits_of_time(harvester, parameters, fastest);
     let time = harvester.time();
     // Gravity and friction work along differences of positions, which may be large.
@@ -203,10 +220,19 @@ pub fn assert_explained(error: &ModelError, what: &str) {
         ModelError::Bounds { name, min, max, .. } => text.contains(name) && text.contains(&format!("[{min}, {max}]")),
         ModelError::Order { name, bound_name, .. } => text.contains(name) && text.contains(bound_name),
         ModelError::TooManyEvents { limit, .. } => text.contains(&limit.to_string()),
-        ModelError::TooDeep { bound, .. } => text.contains(&format!("at most {bound} m")),
+        ModelError::TooDeep { bound, .. } | ModelError::HitsLimit { bound, .. } => {
+            text.contains(&format!("at most {bound} m"))
+        }
+        ModelError::FilmLocked { energy, most, .. } => energy > most && text.contains("membrane.stretchLimit"),
         ModelError::TooStiff { name, limit, .. } => text.contains(name) && text.contains(&limit.to_string()),
+        ModelError::NeedsFilm { .. } => text.contains("allowed otherwise: 0"),
+        ModelError::TooFast { least, .. } => text.contains(&format!("at least {least:e} s")),
         ModelError::NeedsForce { name, .. } => text.contains(name) && text.contains("allowed: 0"),
-        ModelError::SuspendedReaction => text.contains("allowed: "),
+        ModelError::Locked { limit, invariant, .. } => {
+            text.contains(&limit.to_string()) && text.contains(&invariant.to_string())
+        }
+        ModelError::OgdenSign { name, exponent, .. } => text.contains(name) && text.contains(&exponent.to_string()),
+        ModelError::NoStiffness { modulus, .. } => text.contains(&modulus.to_string()) && text.contains("at least"),
         _ => false,
     };
     assert!(explained, "{what}: {text}");

@@ -80,7 +80,7 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// A parameter out of its bounds.
     pub fn start(self, point: &Point) -> Result<Harvester, ModelError> {
-        Harvester::new(&self.parameters(point), 0.0)
+        Harvester::new(self.problem.setup(&self.parameters(point)), 0.0)
     }
 
     fn parameters(self, point: &Point) -> Parameters {
@@ -126,7 +126,7 @@ impl<'a> Flow<'a> {
         let parameters = self.parameters(point);
         let time = periods * self.period(point.value);
         let along = |direction: &Direction| -> Result<(Harvester, State), ModelError> {
-            let mut harvester = Harvester::along(&parameters, 0.0, 0.0, direction)?;
+            let mut harvester = Harvester::along(self.problem.setup(&parameters), 0.0, 0.0, direction)?;
             harvester.advance(time)?;
             let change = self.changed(&harvester.sensitivities());
             Ok((harvester, change))

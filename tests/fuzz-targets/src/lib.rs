@@ -12,6 +12,7 @@ mod case_file;
 mod description;
 pub mod fmu;
 pub mod kept;
+mod membrane;
 mod raw_file;
 mod recording;
 mod sweep_file;
@@ -30,11 +31,12 @@ pub struct Target {
 }
 
 /// All targets but those of the FMUs.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     archive::TARGET,
     arguments::TARGET,
     case_file::TARGET,
     description::TARGET,
+    membrane::TARGET,
     raw_file::TARGET,
     recording::TARGET,
     sweep_file::TARGET,

@@ -63,11 +63,30 @@ pub(super) const IMPACT: &[&str] = &[
 ];
 
 /// The capacitance of a flat membrane.
-pub(super) const FILM: &[&str] =
-    &["membrane.initialRadius", "membrane.initialThickness", "membrane.prestretch", "membrane.relativePermittivity"];
+pub(super) const FILM: &[&str] = &[
+    "membrane.initialRadius",
+    "membrane.initialThickness",
+    "membrane.prestretch",
+    "membrane.relativePermittivity",
+    "membrane.law",
+    "membrane.file",
+];
 
-/// Eq. (2).
-pub(super) const FORCE_LAW: &[&str] = &["membrane.stiffness", "membrane.stiffnessExponent"];
+/// Eq. (2), and other laws.
+pub(super) const FORCE_LAW: &[&str] = &[
+    "membrane.stiffness",
+    "membrane.stiffnessExponent",
+    "membrane.shearModulus",
+    "membrane.stretchLimit",
+    "membrane.ogdenModulus1",
+    "membrane.ogdenExponent1",
+    "membrane.ogdenModulus2",
+    "membrane.ogdenExponent2",
+    "membrane.ogdenModulus3",
+    "membrane.ogdenExponent3",
+    "membrane.viscousModulus",
+    "membrane.relaxationTime",
+];
 
 /// Options of a contact.
 pub(super) const OPTIONS: &[&str] = &["contact.electrostaticFeedback"];

@@ -25,6 +25,17 @@ static EXCITATION_KIND: EnumerationType = EnumerationType {
     ],
 };
 
+static MEMBRANE_LAW: EnumerationType = EnumerationType {
+    name: "MembraneLaw",
+    description: "Force of a membrane over its deflection",
+    items: &[
+        ("power", "K x^n, Eq. (2)"),
+        ("table", "Measured: the table that membrane.file names"),
+        ("gent", "Virtual work of a film after Gent: membrane.shearModulus and membrane.stretchLimit"),
+        ("ogden", "Virtual work of a film after Ogden: membrane.ogdenModulus and membrane.ogdenExponent 1 to 3"),
+    ],
+};
+
 static NOISE_MODEL: EnumerationType = EnumerationType {
     name: "NoiseModel",
     description: "How the phase noise of Section 5.2 is read",
@@ -101,6 +112,7 @@ static CHOICES: [V; Parameters::CHOICES.len()] = [
     enumeration(&Choice::EXCITATION_KIND, &EXCITATION_KIND),
     V::boolean_parameter(REPEAT.name, REPEAT.start != 0, REPEAT.description)
         .access(|slave| slave.parameters.file_repeat, |slave, on| slave.parameters.file_repeat = on),
+    enumeration(&Choice::MEMBRANE_LAW, &MEMBRANE_LAW),
 ];
 
 /// Choices number `from` to `to`, likewise.

@@ -3,12 +3,24 @@
 //! A gap, a rate or an acceleration is a polynomial there. It goes into the search for the first fall below zero of a contact,
 //! which misses none; the place is then refined with all digits.
 
-use super::{Crossing, End, Flight, OUTSIDE};
+use super::{Crossing, End, OUTSIDE};
 use crate::motion::mount::Mount;
 use crate::motion::side::Side;
-use crate::motion::suspended::{ORDER, Series, derivative, value_and_slope};
+use crate::motion::suspended::{Series, derivative, value_and_slope};
 use crate::numerics::chebyshev;
 use crate::numerics::roots::{bracketed_root, short_root_near};
+use crate::paper::gap::gap;
+
+/// A flight on one piece: what it is besides the motion of the cylinder.
+#[derive(Debug, Clone, Copy)]
+pub struct Leg {
+    pub half_travel: f64,
+    /// dz at the begin, m, and its rate, m/s.
+    pub dz: f64,
+    pub rate: f64,
+    /// What gravity and friction add to dz'', m/s^2, by the ball's own motion.
+    pub relative: f64,
+}
 
 /// What bounds say of a piece; most are decided by them.
 enum Decision {
@@ -27,21 +39,63 @@ fn contact_at(side: Side, gap: &Series, place: f64, length: f64) -> End {
 /// Terms up to this order have control points; those above are a bound.
 const LOW: usize = 6;
 
-/// The polynomial of the terms up to order [`LOW`] lies between these points, those of Bernstein and Bezier; the others add at most
-/// the second number.
-fn control_points(terms: &Series) -> ([f64; LOW + 1], f64) {
-    /// One over the binomial coefficients of [`LOW`].
-    const WEIGHTS: [f64; LOW + 1] = [1.0, 1.0 / 6.0, 1.0 / 15.0, 1.0 / 20.0, 1.0 / 15.0, 1.0 / 6.0, 1.0];
-    let mut points: [f64; LOW + 1] = core::array::from_fn(|n| terms[n] * WEIGHTS[n]);
-    for level in 1..=LOW {
-        for k in (level..=LOW).rev() {
-            points[k] += points[k - 1];
-        }
-    }
-    (points, terms[LOW + 1..].iter().map(|term| term.abs()).sum())
+/// Sums over the terms of a series.
+struct Bounds {
+    /// The polynomial of the terms up to order [`LOW`] lies between these points, those of Bernstein and Bezier.
+    points: [f64; LOW + 1],
+    /// What the others add at the end.
+    rest: f64,
+    /// What they add to the value anywhere, and to the points' steps, at most.
+    tail: f64,
+    slope_tail: f64,
+    /// Sum of the absolute terms.
+    size: f64,
 }
 
-impl Flight {
+impl Bounds {
+    fn new(terms: &Series) -> Self {
+        /// What a term adds to each point, one point more for whole vectors: C(k, n) / C([`LOW`], n).
+        const SHARES: [[f64; LOW + 2]; LOW + 1] = shares();
+        let mut points = [0.0; LOW + 2];
+        for (term, shares) in terms.iter().zip(&SHARES) {
+            for (point, share) in points.iter_mut().zip(shares) {
+                *point += share * term;
+            }
+        }
+        let low = terms[..=LOW].iter().map(|term| term.abs()).sum::<f64>();
+        let (mut rest, mut tail, mut slope_tail) = (0.0, 0.0, 0.0);
+        for (n, term) in terms.iter().enumerate().skip(LOW + 1) {
+            rest += term;
+            tail += term.abs();
+            slope_tail += n as f64 / LOW as f64 * term.abs();
+        }
+        Self { points: core::array::from_fn(|k| points[k]), rest, tail, slope_tail, size: low + tail }
+    }
+}
+
+const fn shares() -> [[f64; LOW + 2]; LOW + 1] {
+    let mut shares = [[0.0; LOW + 2]; LOW + 1];
+    let mut k = 0;
+    while k <= LOW {
+        // C(k, n) / C(LOW, n), one after the other.
+        let (mut share, mut n) = (1.0, 0);
+        while n <= k {
+            shares[n][k] = share;
+            share *= (k - n) as f64 / (if n < LOW { LOW - n } else { 1 }) as f64;
+            n += 1;
+        }
+        k += 1;
+    }
+    shares
+}
+
+impl Leg {
+    /// How far dz may move towards `side`, m, until the ball meets the membrane.
+    #[inline]
+    fn room(&self, side: Side) -> f64 {
+        gap(self.half_travel, side.sign(), self.dz)
+    }
+
     /// The terms of dz after `tau`, s, but for dz at the start, from those of the cylinder.
     fn terms_of(&self, cylinder: &Series, tau: f64) -> Series {
         let mut terms = *cylinder;
@@ -51,7 +105,7 @@ impl Flight {
     }
 
     /// The end of the flight within `length`, s, its first piece, for which these are the terms of the `cylinder`.
-    pub fn end_in_piece_of(&self, cylinder: &Series, length: f64, slip: f64) -> Option<End> {
+    pub fn end(&self, cylinder: &Series, length: f64, slip: f64) -> Option<End> {
         let terms = self.terms_of(cylinder, length);
         match self.decision(&terms, slip) {
             Decision::Quiet => None,
@@ -62,36 +116,35 @@ impl Flight {
 
     /// What bounds say of a piece.
     fn decision(&self, terms: &Series, slip: f64) -> Decision {
-        let (points, tail) = control_points(terms);
+        let Bounds { points, rest, tail, slope_tail, size } = Bounds::new(terms);
         let steps = core::array::from_fn::<f64, LOW, _>(|k| points[k + 1] - points[k]);
-        let slope_tail: f64 = (LOW + 1..=ORDER).map(|n| n as f64 * terms[n].abs()).sum::<f64>() / LOW as f64;
         let rises = steps.iter().all(|step| *step > slope_tail);
         let falls = steps.iter().all(|step| *step < -slope_tail);
-        let is_inside = |side: Side, point: &f64| self.room(side) - side.sign() * point > tail;
-        let side = if rises { Side::Left } else { Side::Right };
         if slip != 0.0 && !(rises && slip > 0.0 || falls && slip < 0.0) {
             return Decision::Doubtful;
         }
+        let [left, right] = [Side::Left, Side::Right].map(|side| self.room(side));
         if !rises && !falls {
-            let stays = points.iter().all(|point| Side::BOTH.into_iter().all(|side| is_inside(side, point)));
+            let stays = points.iter().all(|point| left - point > tail && right + point > tail);
             return if stays { Decision::Quiet } else { Decision::Doubtful };
         }
-        let gap = self.gap(side, terms);
-        if gap[0] <= self.rounding_of(terms) {
+        let (side, room) = if rises { (Side::Left, left) } else { (Side::Right, right) };
+        if room <= self.rounding_of(size) {
             return Decision::Doubtful;
         }
-        let [end, _] = value_and_slope(&gap, 1.0);
+        let end = room - side.sign() * (points[LOW] + rest);
         if end > 0.0 {
             return Decision::Quiet;
         }
-        let guess = gap[0] / (gap[0] - end);
+        let gap = self.gap(side, terms);
+        let guess = room / (room - end);
         Decision::Contact(side, short_root_near(guess, 0.0, 1.0, |x| value_and_slope(&gap, x).into()))
     }
 
     /// The same where no bound decides.
     fn doubtful_end(&self, terms: &Series, length: f64, slip: f64) -> Option<End> {
         let turn = if slip == 0.0 { None } else { first_negative(&derivative(terms).map(|term| slip * term)) };
-        let rounding = self.rounding_of(terms);
+        let rounding = self.rounding_of(terms.iter().map(|term| term.abs()).sum());
         let contact = |side: Side| {
             let gap = self.gap(side, terms);
             let place = first_contact(&gap, rounding, OUTSIDE * self.half_travel)?;
@@ -107,14 +160,9 @@ impl Flight {
         }
     }
 
-    /// When, within `length`, s, the first piece, for which these are the terms of the `cylinder`, the acceleration takes a ball that the cylinder carries away from `support`, or to
-    /// any side, against friction.
-    pub fn departure_in_piece_of(
-        &self,
-        cylinder: &Series,
-        length: f64,
-        (support, mount): (Option<Side>, &Mount),
-    ) -> Option<f64> {
+    /// When, within `length`, s, the first piece, for which these are the terms of the `cylinder`, the acceleration takes a ball
+    /// that the cylinder carries away from `support`, or to any side, against friction.
+    pub fn departure(&self, cylinder: &Series, length: f64, (support, mount): (Option<Side>, &Mount)) -> Option<f64> {
         let acceleration = derivative(&derivative(&self.terms_of(cylinder, length)));
         let square = length * length;
         let departure = |side: Side| {
@@ -136,8 +184,9 @@ impl Flight {
         gap
     }
 
-    fn rounding_of(&self, terms: &Series) -> f64 {
-        8.0 * f64::EPSILON * (self.half_travel + self.dz.abs() + terms.iter().map(|term| term.abs()).sum::<f64>())
+    /// Rounding error, m, of a gap whose terms have absolute values of this sum.
+    fn rounding_of(&self, size: f64) -> f64 {
+        8.0 * f64::EPSILON * (self.half_travel + self.dz.abs() + size)
     }
 }
 

@@ -1,0 +1,96 @@
+//! Files that parameters name: where they are looked for, and when they are read.
+
+use std::path::{Component, Path};
+use std::sync::Arc;
+
+use videg_input::membrane::{self, Points};
+use videg_input::recording::{self, Samples};
+use videg_model::{ExcitationKind, ForceTable, Recording};
+
+/// Most bytes of the name of a file: more than a system takes.
+pub(crate) const LONGEST: usize = 4096;
+
+/// What a file may hold.
+pub(crate) trait Content: Sized {
+    /// Variable that names the file.
+    const VARIABLE: &'static str;
+
+    /// Reads the file at this path.
+    fn read(path: &Path) -> Result<Self, String>;
+}
+
+impl Content for Recording {
+    const VARIABLE: &'static str = "excitation.file";
+
+    fn read(path: &Path) -> Result<Self, String> {
+        let Samples { is_acceleration, times, values } = recording::read(path).map_err(|error| error.to_string())?;
+        let kind = if is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
+        Self::new(kind, times, values).map_err(|error| error.to_string())
+    }
+}
+
+impl Content for ForceTable {
+    const VARIABLE: &'static str = "membrane.file";
+
+    fn read(path: &Path) -> Result<Self, String> {
+        let Points { deflections, forces, capacitances } = membrane::read(path).map_err(|error| error.to_string())?;
+        Self::new(deflections, forces, capacitances).map_err(|error| error.to_string())
+    }
+}
+
+/// What a file was found to hold. Clones share it.
+#[derive(Clone)]
+pub(crate) struct Loaded<T> {
+    /// Name of the file as it was set; empty for none.
+    pub(crate) file: Arc<str>,
+    /// The content, or why there is none.
+    content: Result<Option<T>, Arc<str>>,
+}
+
+impl<T: Content> Loaded<T> {
+    /// No file.
+    pub(crate) fn nothing() -> Self {
+        Self { file: "".into(), content: Ok(None) }
+    }
+
+    /// Reads `file`, which may be in `resources`.
+    pub(crate) fn read(file: &Arc<str>, resources: Option<&Path>) -> Self {
+        let content = if file.is_empty() { Ok(None) } else { find(Path::new(&**file), resources).map(Some) };
+        let named = |reason: String| Self::named(file, reason).into();
+        Self { file: file.clone(), content: content.map_err(named) }
+    }
+
+    /// A `reason` why `file` cannot be used, with the names of file and variable.
+    pub(crate) fn named(file: &str, reason: impl core::fmt::Display) -> String {
+        format!("{} = {file:?}: {reason}", T::VARIABLE)
+    }
+
+    /// The content, if there is one.
+    pub(crate) fn content(&self) -> Result<Option<&T>, &str> {
+        self.content.as_ref().map(Option::as_ref).map_err(|reason| &**reason)
+    }
+}
+
+/// Looks for a relative name in `resources` first, so that an FMU with its files is the same wherever it runs.
+fn find<T: Content>(file: &Path, resources: Option<&Path>) -> Result<T, String> {
+    let packed = resources.filter(|folder| is_below(file) && has_files(folder)).map(|folder| folder.join(file));
+    let found = packed.as_deref().filter(|path| path.exists()).unwrap_or(file);
+    T::read(found).map_err(|error| {
+        let here = std::path::absolute(found).unwrap_or_else(|_| found.to_owned());
+        match packed.as_deref().filter(|packed| *packed != found) {
+            Some(packed) => format!("{error} (looked for as {} and {})", packed.display(), here.display()),
+            None if here == file => error,
+            None => format!("{error} ({})", here.display()),
+        }
+    })
+}
+
+/// Whether there is anything in a folder. Importers make one for FMUs without resources, too.
+fn has_files(folder: &Path) -> bool {
+    folder.read_dir().is_ok_and(|mut files| files.next().is_some())
+}
+
+/// Whether a path leads to a place below that from which it starts.
+fn is_below(path: &Path) -> bool {
+    path.components().all(|part| matches!(part, Component::Normal(_)))
+}
