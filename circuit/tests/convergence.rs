@@ -90,10 +90,14 @@ proptest! {
         }
         // Every diode leaks IS, and each of two nodes has two; that is no error.
         let leak = 4.0 * DiodeParameters::default().saturation_current * time;
+        // To go from the supply's diode to that of the load, or to the switch, a node rises by its band and the drop of both
+        // diodes, which ideal ones do not take: a charge for each contact of a capacitance of up to 31 pF.
+        let contacts = (ramps.len() / 200) as f64;
+        let swing = contacts * 31e-12 * (DiodeParameters::default().switch_band + 0.01);
         let scales = [2000.0, ideal.release_voltage(), ideal.release_voltage(), 1.0, 1.0];
         for ((a, b), (c, scale)) in sums(&exact).into_iter().zip(sums(&real)).zip(sums(&tight).into_iter().zip(scales)) {
-            prop_assert!((b - a).abs() <= 1e-4 * a + leak * scale, "{b} instead of {a} with ideal diodes");
-            prop_assert!((b - c).abs() <= 1e-6 * c, "{b} instead of {c} with a tight tolerance");
+            prop_assert!((b - a).abs() <= 1e-4 * a + (leak + swing) * scale, "{b} instead of {a} with ideal diodes");
+            prop_assert!((b - c).abs() <= 1e-6 * c.abs(), "{b} instead of {c} with a tight tolerance");
         }
         let ledger = real.ledger();
         prop_assert!(ledger.residual().abs() < 3e-9 * moved(&ledger) && ledger.diode > 0.0, "{ledger:?}");

@@ -23,10 +23,11 @@ struct Reference {
 type State = [f64; 4];
 
 impl Reference {
-    /// Which films push.
-    fn touches(&self, [dz, _, left, right]: State) -> [bool; 2] {
+    /// Which films push, and which would be slack by themselves.
+    fn phase(&self, [dz, _, left, right]: State) -> [bool; 4] {
         let half = self.film.p.travel() / 2.0;
-        [self.film.film(dz - half, left)[0] > 0.0, self.film.film(-dz - half, right)[0] > 0.0]
+        let pushes = [self.film.film(dz - half, left)[0] > 0.0, self.film.film(-dz - half, right)[0] > 0.0];
+        [pushes[0], pushes[1], self.film.is_slack(left), self.film.is_slack(right)]
     }
 
     fn slope(&self, [dz, rate, left, right]: State) -> State {
@@ -96,8 +97,9 @@ impl Reference {
                     h = 0.2 * step;
                     continue;
                 };
-                // A step that leaves a film behind would not see the rest of its force.
-                if step > 1e-9 && self.touches(halves) != self.touches(state) {
+                // A step that leaves a film behind would not see the rest of its force, and where a slack film is flat again its
+                // recovery has a kink.
+                if step > 1e-9 && self.phase(halves) != self.phase(state) {
                     h = 0.3 * step;
                     continue;
                 }
@@ -151,7 +153,7 @@ proptest! {
         times.extend((1..=8).map(|k| begin + contact * f64::from(k) / 8.0));
         times.extend((1..=4).map(|k| begin + contact + 0.5 * begin * f64::from(k)));
         let reference = Reference { film: Film { p } };
-        let [coarse, fine] = [1e-11, 1e-13].map(|tolerance| reference.run(&times, tolerance));
+        let [coarse, fine] = [1e-11, 1e-12].map(|tolerance| reference.run(&times, tolerance));
         for ((time, coarse), fine) in times.iter().zip(&coarse).zip(&fine) {
             harvester.advance(*time).unwrap();
             let rate = harvester.cylinder_velocity() - harvester.ball_velocity();
@@ -159,6 +161,7 @@ proptest! {
             let found = [harvester.relative_displacement(), rate, left, right];
             let scale = [p.travel(), speed, 1e-2, 1e-2];
             for k in 0..4 {
+                // What the reference itself leaves open.
                 let open = (coarse[k] - fine[k]).abs();
                 prop_assert!(
                     (found[k] - fine[k]).abs() < 1e-8 * scale[k] + 3.0 * open && open < 1e-8 * scale[k],

@@ -76,12 +76,22 @@ impl Film {
         [excess, slope]
     }
 
+    /// Stress of film and branch, Pa, at the logarithmic stretch `log` from the flat film.
+    fn tension(&self, log: f64, creep: f64) -> f64 {
+        self.stress(self.p.prestretch * log.exp(), 1.0) + self.stress((log - creep).exp(), self.part())
+    }
+
+    /// Whether the film would be slack where nothing presses it.
+    pub fn is_slack(&self, creep: f64) -> bool {
+        self.tension(0.0, creep) < 0.0
+    }
+
     /// Force on the ball at the depth x, N, and rate of the creep, 1/s.
     pub fn film(&self, x: f64, creep: f64) -> [f64; 2] {
         let p = &self.p;
         let part = self.part();
         let [excess, slope] = if x > 0.0 { self.area(x) } else { [0.0; 2] };
-        let tension = |log: f64| self.stress(p.prestretch * log.exp(), 1.0) + self.stress((log - creep).exp(), part);
+        let tension = |log: f64| self.tension(log, creep);
         let mut log = 0.5 * excess.ln_1p();
         let pull = tension(log);
         if pull < 0.0 {
