@@ -28,12 +28,13 @@ use crate::noise::Noise;
 use crate::parameters::Parameters;
 use crate::sensitivity::{Direction, Tangent, Tangential};
 use crate::setup::Setup;
+use crate::shared::Shared;
 
 /// The harvester: state at one time, moved forward by [`Harvester::advance`].
 #[derive(Debug, PartialEq)]
 pub struct Harvester {
-    parameters: Parameters,
-    membrane: Membrane,
+    parameters: Shared<Parameters>,
+    membrane: Shared<Membrane>,
     time: f64,
     motion: Motion,
     noise: Noise,
@@ -51,22 +52,19 @@ pub struct Harvester {
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        let Self { parameters, ref membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = *self;
-        let membrane = membrane.clone();
-        let (motion, noise, pulses) = (self.motion.clone(), self.noise.clone(), self.pulses.clone());
-        let origin = self.origin.clone();
+        let Self { time, voltages, ledger, budget, calm_until, .. } = *self;
         Self {
-            parameters,
-            membrane,
+            parameters: self.parameters.clone(),
+            membrane: self.membrane.clone(),
             time,
-            motion,
-            noise,
+            motion: self.motion.clone(),
+            noise: self.noise.clone(),
             voltages,
-            pulses,
+            pulses: self.pulses.clone(),
             ledger,
             budget,
-            tangent,
-            origin,
+            tangent: self.tangent.clone(),
+            origin: self.origin.clone(),
             calm_until,
         }
     }
@@ -81,11 +79,12 @@ impl Clone for Harvester {
             (Some(Origin::Force(origin)), Some(Origin::Force(other))) => origin.clone_from(other),
             (origin, other) => origin.clone_from(other),
         }
-        let Self { parameters, membrane, time, voltages, ledger, budget, tangent, calm_until, .. } = source;
-        (self.parameters, self.tangent) = (*parameters, *tangent);
-        self.membrane.clone_from(membrane);
-        (self.time, self.voltages, self.calm_until) = (*time, *voltages, *calm_until);
-        (self.ledger, self.budget) = (*ledger, *budget);
+        self.parameters.clone_from(&source.parameters);
+        self.membrane.clone_from(&source.membrane);
+        self.tangent.clone_from(&source.tangent);
+        let Self { time, voltages, ledger, budget, calm_until, .. } = *source;
+        (self.time, self.voltages, self.calm_until) = (time, voltages, calm_until);
+        (self.ledger, self.budget) = (ledger, budget);
     }
 }
 
@@ -154,8 +153,8 @@ impl Harvester {
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         let ledger = Ledger::new(p, membrane.rest_capacitance, Totals::default(), works);
         Ok(Self {
-            parameters: *p,
-            membrane,
+            parameters: Shared::new(*p),
+            membrane: Shared::new(membrane),
             time: start,
             motion,
             noise,

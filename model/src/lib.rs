@@ -31,6 +31,7 @@ mod parameters;
 mod recording;
 mod sensitivity;
 mod setup;
+mod shared;
 
 pub use accounting::ledger::{Energies, Totals, Works};
 pub use cases::{Case, saw_tooth_limit};

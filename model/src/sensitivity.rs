@@ -25,6 +25,7 @@ use crate::motion::pulse::PulseShape;
 use crate::motion::side::Side;
 use crate::noise::Noise;
 use crate::parameters::{ExcitationKind, Parameters};
+use crate::shared::Shared;
 
 /// Bound of the changes of the ball in SI units. Chaotic motion magnifies changes at each impact; beyond this they say
 /// nothing any more, but they stay finite.
@@ -92,7 +93,7 @@ pub struct Changes {
 }
 
 /// Changes, and along what they are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Tangent {
     /// Nobody has asked for them yet: all are zero, and impacts are spared the work.
     pub idle: bool,
@@ -103,7 +104,7 @@ pub struct Tangent {
     /// Change of what it adds to `z_M''`, m/s^2.
     pub push: f64,
     pub changes: Changes,
-    pub parameters: Option<ParameterChange>,
+    pub parameters: Option<Shared<ParameterChange>>,
 }
 
 /// How everything that a harvester shows changes, per unit of a [`Direction`]. Lists have the values left and right.
@@ -193,13 +194,13 @@ impl Tangent {
             force: direction.force,
             push,
             changes: Changes { since, displacement, rate, ..Changes::default() },
-            parameters: Some(change),
+            parameters: Some(Shared::new(change)),
         }
     }
 
     /// One of the changes of the parameters, zero if they do not change.
     pub fn of(&self, change: impl Fn(&ParameterChange) -> f64) -> f64 {
-        self.parameters.as_ref().map_or(0.0, change)
+        self.parameters.as_ref().map_or(0.0, |shared| change(shared))
     }
 
     fn half_travel(&self) -> f64 {
@@ -256,7 +257,8 @@ impl Tangential<'_> {
         let Tangent { push, changes: Changes { since, displacement, rate, .. }, .. } = *self.tangent;
         let last = self.motion.last.time;
         let (elapsed, pushed) = (time - last, time - since.max(last));
-        let by_drive = self.tangent.parameters.map_or([0.0; 2], |change| self.motion_change_by_drive(time, &change));
+        let change = self.tangent.parameters.as_ref();
+        let by_drive = change.map_or([0.0; 2], |change| self.motion_change_by_drive(time, change));
         let by_gravity = self.tangent.incline() * elapsed;
         [
             displacement + rate * elapsed + 0.5 * push * pushed * pushed + (by_drive[0] + 0.5 * by_gravity * elapsed),

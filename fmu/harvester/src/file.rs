@@ -38,6 +38,65 @@ impl Content for ForceTable {
     }
 }
 
+/// The files of a harvester.
+#[derive(Clone)]
+pub(crate) struct Files {
+    /// `excitation.file`
+    pub(crate) excitation: Arc<str>,
+    /// `membrane.file`
+    pub(crate) membrane: Arc<str>,
+    /// Folder `resources` of the unpacked FMU.
+    pub(crate) resources: Option<Arc<Path>>,
+    /// What was read from the first file, or from one that was set before.
+    pub(crate) recorded: Loaded<Recording>,
+    /// The same of the second.
+    pub(crate) measured: Loaded<ForceTable>,
+}
+
+impl Files {
+    /// No file.
+    pub(crate) fn nothing() -> Self {
+        let (recorded, measured) = (Loaded::nothing(), Loaded::nothing());
+        Self { excitation: "".into(), membrane: "".into(), resources: None, recorded, measured }
+    }
+
+    /// No file, but what these hold, lest it is read again.
+    pub(crate) fn unnamed(&self) -> Self {
+        let (recorded, measured) = (self.recorded.if_read(), self.measured.if_read());
+        Self { resources: self.resources.clone(), recorded, measured, ..Self::nothing() }
+    }
+
+    /// Whether they are those that were read last.
+    pub(crate) fn are_read(&self) -> bool {
+        self.recorded.file == self.excitation && self.measured.file == self.membrane
+    }
+
+    /// Reads them, unless they were the last ones to be read.
+    pub(crate) fn read(&mut self) {
+        if self.recorded.file != self.excitation {
+            self.read_recording();
+        }
+        if self.measured.file != self.membrane {
+            self.read_table();
+        }
+    }
+
+    /// Reads the first, even if it was read before.
+    pub(crate) fn read_recording(&mut self) {
+        self.recorded = Loaded::read(&self.excitation, self.resources.as_deref());
+    }
+
+    /// Reads the second, even if it was read before.
+    pub(crate) fn read_table(&mut self) {
+        self.measured = Loaded::read(&self.membrane, self.resources.as_deref());
+    }
+
+    /// The measured membrane, if it could be read.
+    pub(crate) fn table(&self) -> Option<&ForceTable> {
+        self.measured.content().ok().flatten()
+    }
+}
+
 /// What a file was found to hold. Clones share it.
 #[derive(Clone)]
 pub(crate) struct Loaded<T> {
@@ -51,6 +110,14 @@ impl<T: Content> Loaded<T> {
     /// No file.
     pub(crate) fn nothing() -> Self {
         Self { file: "".into(), content: Ok(None) }
+    }
+
+    /// The same, or nothing if there is no content.
+    fn if_read(&self) -> Self
+    where
+        T: Clone,
+    {
+        if self.content.is_ok() { self.clone() } else { Self::nothing() }
     }
 
     /// Reads `file`, which may be in `resources`.

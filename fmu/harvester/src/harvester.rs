@@ -1,25 +1,16 @@
 //! What the importer sets, and the model that is driven by it.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use videg_model::{ForceTable, Harvester as Model, ModelError, Parameters, Recording, Setup};
 
-use crate::file::Loaded;
+use crate::file::{Files, Loaded};
 
 /// The harvester as a slave.
 pub struct Harvester {
     pub(crate) parameters: Parameters,
-    /// `excitation.file`
-    pub(crate) file: Arc<str>,
-    /// `membrane.file`
-    pub(crate) membrane_file: Arc<str>,
-    /// Folder `resources` of the unpacked FMU.
-    pub(crate) resources: Option<Arc<Path>>,
-    /// What was read from the first file, or from one that was set before.
-    pub(crate) recorded: Loaded<Recording>,
-    /// The same of the second.
-    pub(crate) measured: Loaded<ForceTable>,
+    /// Shared by all saved states.
+    pub(crate) files: Arc<Files>,
     pub(crate) external_force: f64,
     pub(crate) external_force_rate: f64,
     pub(crate) voltages: [f64; 2],
@@ -35,20 +26,14 @@ pub struct Harvester {
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        let (file, resources, recorded) = (self.file.clone(), self.resources.clone(), self.recorded.clone());
-        let (membrane_file, measured) = (self.membrane_file.clone(), self.measured.clone());
-        Self { file, membrane_file, resources, recorded, measured, model: self.model.clone(), ..*self }
+        Self { files: self.files.clone(), model: self.model.clone(), ..*self }
     }
 
-    /// Takes no memory that is there already.
+    /// Takes no memory that is there already, and counts nothing that is shared already.
     fn clone_from(&mut self, source: &Self) {
         let Self {
             parameters,
-            ref file,
-            ref membrane_file,
-            ref resources,
-            ref recorded,
-            ref measured,
+            ref files,
             external_force,
             external_force_rate,
             voltages,
@@ -59,11 +44,9 @@ impl Clone for Harvester {
             ref model,
         } = *source;
         self.model.clone_from(model);
-        self.file.clone_from(file);
-        self.resources.clone_from(resources);
-        self.recorded.clone_from(recorded);
-        self.membrane_file.clone_from(membrane_file);
-        self.measured.clone_from(measured);
+        if !Arc::ptr_eq(&self.files, files) {
+            self.files.clone_from(files);
+        }
         (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
         (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
         (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
@@ -98,7 +81,8 @@ impl Harvester {
 
     /// The parameters with the recording and the measured membrane.
     pub(crate) fn setup(&self) -> Result<Setup<'_>, String> {
-        Ok(self.parameters.with_recording(self.recorded.content()?).with_table(self.measured.content()?))
+        let Files { recorded, measured, .. } = &*self.files;
+        Ok(self.parameters.with_recording(recorded.content()?).with_table(measured.content()?))
     }
 
     /// The model at the start, as parameters, files and inputs have it.
@@ -112,20 +96,17 @@ impl Harvester {
         };
         start().map_err(|error| match error {
             ModelError::RecordingKind { .. } | ModelError::RepeatedTooFast { .. } => {
-                Loaded::<Recording>::named(&self.file, error)
+                Loaded::<Recording>::named(&self.files.excitation, error)
             }
-            ModelError::UnusedTable => Loaded::<ForceTable>::named(&self.membrane_file, error),
+            ModelError::UnusedTable => Loaded::<ForceTable>::named(&self.files.membrane, error),
             _ => error.to_string(),
         })
     }
 
     /// Reads the files, unless they were the last ones to be read.
     pub(crate) fn read_files(&mut self) {
-        if self.recorded.file != self.file {
-            self.recorded = Loaded::read(&self.file, self.resources.as_deref());
-        }
-        if self.measured.file != self.membrane_file {
-            self.measured = Loaded::read(&self.membrane_file, self.resources.as_deref());
+        if !self.files.are_read() {
+            Arc::make_mut(&mut self.files).read();
         }
     }
 }

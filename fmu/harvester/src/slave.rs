@@ -1,6 +1,7 @@
 //! The model behind the functions of FMI.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fmu_export::{
     EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
@@ -8,7 +9,7 @@ use fmu_export::{
 };
 use videg_model::{ContactLaw, Event, Harvester as Model, Impact, Parameters, Peak, PulseShape, Side};
 
-use crate::file::Loaded;
+use crate::file::Files;
 use crate::harvester::Harvester;
 use crate::limits;
 use crate::variables::VARIABLES;
@@ -29,7 +30,8 @@ impl Harvester {
     /// were flat: a membrane is worst off when flat or at a peak, and peaks are checked as they come.
     #[inline]
     fn check_limits(&mut self, log: &Logger) {
-        if self.voltages != self.checked {
+        let [left, right] = self.checked;
+        if self.voltages[0] != left || self.voltages[1] != right {
             self.check_limits_closely(log);
         }
     }
@@ -64,11 +66,7 @@ impl Slave for Harvester {
         let parameters = Parameters::default();
         Self {
             parameters,
-            file: "".into(),
-            membrane_file: "".into(),
-            resources: None,
-            recorded: Loaded::nothing(),
-            measured: Loaded::nothing(),
+            files: Arc::new(Files::nothing()),
             external_force: 0.0,
             external_force_rate: 0.0,
             voltages: [parameters.bias_voltage; 2],
@@ -81,7 +79,7 @@ impl Slave for Harvester {
     }
 
     fn set_resources(&mut self, folder: &Path) {
-        self.resources = Some(folder.into());
+        Arc::make_mut(&mut self.files).resources = Some(folder.into());
     }
 
     fn setup_experiment(&mut self, experiment: &Experiment, _log: &Logger) -> Result<(), SlaveError> {
@@ -120,14 +118,13 @@ impl Slave for Harvester {
             return Err(self.too_long(t, h));
         }
         self.check_limits(log);
-        let time = running(&mut self.model)?.time();
+        let time = self.model().map_or(t, Model::time);
         let behind = t - time;
         if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
             return Err(elsewhere(t, time));
         }
-        let Self { parameters, measured, model, .. } = self;
+        let Self { parameters, files, model, .. } = self;
         let model = running(model)?;
-        let setup = parameters.with_table(measured.content().ok().flatten());
         let mut number = model.totals().impacts;
         let show = |event: &Event| match event {
             Event::Impact(impact) => {
@@ -136,14 +133,14 @@ impl Slave for Harvester {
                     log.event(describe(number, impact));
                 }
             }
-            Event::Peak(peak) => limits::check(setup, peak, log),
+            Event::Peak(peak) => limits::check(parameters.with_table(files.table()), peak, log),
         };
         let advanced = model
             .set_external_force(self.external_force, self.external_force_rate)
             .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
             .and_then(|()| model.advance_with(t + h, show));
         advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        if self.external_force_rate != 0.0 || self.voltage_rates != [0.0; 2] {
+        if self.external_force_rate != 0.0 || self.voltage_rates[0] != 0.0 || self.voltage_rates[1] != 0.0 {
             self.follow_rates(h);
         }
         Ok(())

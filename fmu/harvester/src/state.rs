@@ -1,5 +1,7 @@
 //! The state of the slave as bytes. The envelope around them (version, GUID, checksum) is the exporter's.
 
+use std::sync::Arc;
+
 use fmu_export::{Slave, StateError, StateReader, StateWriter};
 use videg_model::{ForceTable, Harvester as Model, ModelError, Recording, Snapshot};
 
@@ -15,10 +17,7 @@ impl Harvester {
         let force = [self.external_force, self.external_force_rate];
         let inputs: Inputs = (force, self.voltages, self.voltage_rates, self.start_time);
         // Otherwise it follows from the parameters; if they have changed since it was made, it is made anew anyway.
-        let is_present = |model: &&Model| {
-            let are_read = self.recorded.file == self.file && self.measured.file == self.membrane_file;
-            are_read && *model.parameters() == self.parameters
-        };
+        let is_present = |model: &&Model| self.files.are_read() && *model.parameters() == self.parameters;
         let model = self.model().filter(is_present);
         out.write_parameters(self)?;
         let origin = model.and_then(Model::origin).map(Model::snapshot);
@@ -27,7 +26,7 @@ impl Harvester {
 
     /// What [`Harvester::write`] wrote, for the instance of `present`.
     pub(crate) fn read_from(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
-        let mut slave = Self { resources: present.resources.clone(), ..Self::new() };
+        let mut slave = Self { files: Arc::new(present.files.unnamed()), ..Self::new() };
         from.read_parameters(&mut slave)?;
         let (inputs, placed, snapshot, origin): (Inputs, bool, Option<Snapshot>, Option<Snapshot>) = from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
@@ -39,12 +38,6 @@ impl Harvester {
         [slave.external_force, slave.external_force_rate] = force;
         (slave.voltages, slave.voltage_rates, slave.start_time) = (voltages, voltage_rates, start_time);
         slave.placed = placed;
-        if present.recorded.content().is_ok() {
-            slave.recorded = present.recorded.clone();
-        }
-        if present.measured.content().is_ok() {
-            slave.measured = present.measured.clone();
-        }
         slave.read_files();
         slave.model = match snapshot {
             Some(snapshot) => Ok(slave.restored(&snapshot).map_err(StateError::Invalid)?),
@@ -64,16 +57,16 @@ impl Harvester {
     fn restored(&mut self, snapshot: &Snapshot) -> Result<Model, String> {
         let mut restored = self.restored_with(snapshot)?;
         if matches!(restored, Err(ModelError::OtherRecording)) {
-            self.recorded = Loaded::read(&self.file, self.resources.as_deref());
+            Arc::make_mut(&mut self.files).read_recording();
             restored = self.restored_with(snapshot)?;
         }
         if matches!(restored, Err(ModelError::OtherTable)) {
-            self.measured = Loaded::read(&self.membrane_file, self.resources.as_deref());
+            Arc::make_mut(&mut self.files).read_table();
             restored = self.restored_with(snapshot)?;
         }
         restored.map_err(|error| match error {
-            ModelError::OtherRecording => Loaded::<Recording>::named(&self.file, error),
-            ModelError::OtherTable => Loaded::<ForceTable>::named(&self.membrane_file, error),
+            ModelError::OtherRecording => Loaded::<Recording>::named(&self.files.excitation, error),
+            ModelError::OtherTable => Loaded::<ForceTable>::named(&self.files.membrane, error),
             _ => error.to_string(),
         })
     }

@@ -19,10 +19,10 @@ impl Harvester {
     /// Whether a step of `h`, s, is more work than anybody waits for.
     #[inline]
     pub(crate) fn is_too_long(&self, h: f64) -> bool {
-        let Parameters { frequency, noise_hold, .. } = self.parameters;
+        let Parameters { frequency, noise_hold, file_repeat, .. } = self.parameters;
         h * frequency > MAX_PERIODS
             || self.parameters.is_noisy() && h > self.most_holds() * noise_hold
-            || self.spacing().is_some_and(|spacing| h > self.most_holds() * spacing)
+            || file_repeat && self.spacing().is_some_and(|spacing| h > self.most_holds() * spacing)
     }
 
     /// Why a step of `h`, s, from `t`, s, is not taken.
@@ -46,7 +46,7 @@ impl Harvester {
 
     /// Mean time from sample to sample, s, of a recording that goes on for ever.
     fn spacing(&self) -> Option<f64> {
-        let recording = self.recorded.content().ok().flatten().filter(|_| self.parameters.file_repeat)?;
+        let recording = self.files.recorded.content().ok().flatten().filter(|_| self.parameters.file_repeat)?;
         let times = recording.times();
         Some((times.last()? - times.first()?) / (times.len() - 1) as f64)
     }

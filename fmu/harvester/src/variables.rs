@@ -4,6 +4,8 @@
 mod initial;
 mod parameters;
 
+use std::sync::Arc;
+
 use fmu_export::{Variable, concat};
 use videg_model::{ForceTable, Recording, Side};
 
@@ -413,7 +415,7 @@ static RECORDING_FILE: [V; 1] = [V::string_parameter(
     "CSV file of a recorded excitation, added to the harmonic one: time,acceleration in s and m/s2 (excitation.kind = motion) or time,force in s and N, straight lines between the samples and 0 outside; looked for in the resources of the FMU and then from the working folder; none if empty",
 )
 .longest(LONGEST)
-.access(|slave| slave.file.to_string(), |slave, file| slave.file = file.into())];
+.access(|slave| slave.files.excitation.to_string(), |slave, file| Arc::make_mut(&mut slave.files).excitation = file.into())];
 const RECORDING_PARAMETERS: &[V] = reals(28, 30);
 const RECORDING_CHOICES: &[V] = choices(7, 8);
 
@@ -425,7 +427,7 @@ static MEMBRANE_FILE: [V; 1] = [V::string_parameter(
     "CSV file of a measured membrane (membrane.law = table): deflection,force in m and N, or deflection,force,capacitance in m, N and F, monotone cubic between the points and straight lines beyond the last; looked for in the resources of the FMU and then from the working folder",
 )
 .longest(LONGEST)
-.access(|slave| slave.membrane_file.to_string(), |slave, file| slave.membrane_file = file.into())];
+.access(|slave| slave.files.membrane.to_string(), |slave, file| Arc::make_mut(&mut slave.files).membrane = file.into())];
 const FILM_PARAMETERS: &[V] = reals(30, 38);
 
 /// The viscosity of a film, and what follows from it.

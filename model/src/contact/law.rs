@@ -213,6 +213,11 @@ impl Law<'_> {
         self.side.sign() * self.cylinder.load.suspension.acceleration(recoil.position, recoil.velocity)
     }
 
+    /// Size of its terms, whose rounding it carries, m/s^2.
+    pub(super) fn size_of_yielding(&self, recoil: &Recoil) -> f64 {
+        self.cylinder.load.suspension.acceleration(recoil.position.abs(), recoil.velocity.abs()).abs()
+    }
+
     /// Acceleration of the recoil, m/s^2, under this `force` of the contact on the ball, N, outwards.
     pub(super) fn recoil_acceleration(&self, recoil: &Recoil, force: f64) -> f64 {
         self.side.sign() * (self.yielding(recoil) - force / self.parameters.cylinder_mass)

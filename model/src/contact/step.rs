@@ -88,7 +88,10 @@ impl Step {
         let largest = |values: &Values| values.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
         let Forces { spring, maxwell, .. } = &forces;
         let rounding = law.membrane.magnified_rounding(largest(&states.x));
-        let size = law.push_size(from.time, length) + (rounding * largest(spring) + largest(maxwell)) / law.mass();
+        let yielding =
+            if given.recoils { largest(&at_nodes(|j| law.size_of_yielding(&states.recoil(j)))) } else { 0.0 };
+        let pushed = law.push_size(from.time, length) + yielding;
+        let size = pushed + (rounding * largest(spring) + largest(maxwell)) / law.mass();
         let scale = largest(&v) + FLOOR * length * size;
         let mut error = length * push.tail() / DEGREE as f64 / scale.max(f64::MIN_POSITIVE);
         if is_viscous {

@@ -178,7 +178,7 @@ impl Harvester {
 
     /// This harvester if it had begun `distance` farther along `direction`.
     fn begun(&self, start: f64, force: f64, direction: &Direction, distance: f64) -> Option<Self> {
-        let mut moved = self.parameters;
+        let mut moved = *self.parameters;
         for quantity in Parameters::TABLE {
             let change = (quantity.get)(&direction.parameters);
             (quantity.set)(&mut moved, (quantity.get)(&self.parameters) + distance * change);

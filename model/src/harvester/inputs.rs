@@ -20,6 +20,16 @@ impl Harvester {
     /// A force or rate that is not finite, or beyond 1e18 N or N/s.
     #[inline]
     pub fn set_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
+        // No force, as before, and changes that have nothing but the time in them: so it is in most steps of a caller that sets
+        // its inputs anew.
+        if self.tangent.fresh && force == 0.0 && rate == 0.0 && !self.motion.cylinder.drive.pushes() {
+            self.tangent.changes.since = self.time;
+            return Ok(());
+        }
+        self.change_external_force(force, rate)
+    }
+
+    fn change_external_force(&mut self, force: f64, rate: f64) -> Result<(), ModelError> {
         check_force([force, rate])?;
         if self.has_closed_changes() && !self.tangent.fresh {
             self.tangent = Tangent { fresh: true, ..Tangent::of_force(self.time, &self.parameters) };
@@ -52,19 +62,13 @@ impl Harvester {
     }
 
     /// Whether this external force over M, m/s^2, and its rate, m/s^3, act at present.
-    #[inline]
     fn is_pushed_by(&self, external: [f64; 2]) -> bool {
         let drive = self.motion.drive_at(self.time);
         external == [drive.external, drive.external_rate]
     }
 
-    #[inline]
     pub(super) fn push(&mut self, force: f64, rate: f64) {
         let drive = self.motion.cylinder.drive;
-        // Nothing pushes, as before: two quotients less for each step of a caller that sets its inputs anew.
-        if [force, rate, drive.external, drive.external_rate] == [0.0; 4] {
-            return;
-        }
         let [external, external_rate] = [force, rate].map(|value| value / self.parameters.cylinder_mass);
         if !self.is_pushed_by([external, external_rate]) {
             self.restart(self.time, Drive { external, external_rate, ..drive });
@@ -80,7 +84,7 @@ impl Harvester {
     #[inline]
     pub fn set_voltages(&mut self, voltages: [f64; 2], rates: [f64; 2]) -> Result<(), ModelError> {
         let [left, right] = &self.voltages;
-        if rates == [0.0; 2] && left.stays_at(voltages[0]) && right.stays_at(voltages[1]) {
+        if rates[0] == 0.0 && rates[1] == 0.0 && left.stays_at(voltages[0]) && right.stays_at(voltages[1]) {
             return Ok(());
         }
         self.change_voltages(voltages, rates)

@@ -227,7 +227,7 @@ impl Harvester {
         let (changes, time) = (self.tangential(), self.time);
         let ([position, velocity], [ball_position, ball_velocity]) =
             (changes.cylinder_change(time), changes.ball_change(time));
-        let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
+        let shape = self.tangent.parameters.as_ref().map(|change| change.shape).unwrap_or_default();
         let deflection = Side::BOTH.map(|side| self.pulses.change_at(side, time, shape));
         let of_membranes = Side::BOTH.map(|side| {
             let value = self.deflection(side).value;

@@ -108,7 +108,7 @@ impl Harvester {
 
     /// Change of [`Harvester::next_knot`].
     pub(super) fn next_knot_change(&self, next_impact_change: f64) -> f64 {
-        let shape = self.tangent.parameters.map(|change| change.shape).unwrap_or_default();
+        let shape = self.tangent.parameters.as_ref().map(|change| change.shape).unwrap_or_default();
         let pulses = self.pulses.next_knots(self.time);
         let pulses = pulses.map(|knot| (knot.time, knot.change(&self.pulses.shape, shape)));
         let next_impact = self.next_impact().map(|time| (time, next_impact_change));

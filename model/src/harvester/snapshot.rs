@@ -21,6 +21,7 @@ use crate::parameters::{ContactLaw, Parameters};
 use crate::recording::{Recording, Segment};
 use crate::sensitivity::{Changes, Tangent};
 use crate::setup::Setup;
+use crate::shared::Shared;
 
 /// Everything that a [`Harvester`] carries from one step to the next, besides its parameters, its recording and the table of its
 /// membranes.
@@ -193,8 +194,8 @@ impl Harvester {
         let running = |list: &Vec<Pulse>| list.iter().map(|pulse| Running::new(&membrane, *pulse)).collect();
         let under_way = snapshot.pulses.each_ref().map(running);
         Ok(Self {
-            parameters: *p,
-            membrane,
+            parameters: Shared::new(*p),
+            membrane: Shared::new(membrane),
             time: snapshot.time,
             motion,
             noise,

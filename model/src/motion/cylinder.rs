@@ -35,6 +35,12 @@ impl Drive {
         Self { amplitude, frequency: p.frequency, phase, external, external_rate, recorded: Segment::NONE }
     }
 
+    /// Whether there is an external force.
+    #[inline]
+    pub fn pushes(&self) -> bool {
+        self.external != 0.0 || self.external_rate != 0.0
+    }
+
     /// 2 pi `f_0`, rad/s.
     pub fn omega(&self) -> f64 {
         TAU * self.frequency
