@@ -21,6 +21,10 @@ readonly FMI_CRATE=tests/fmi-crate/Cargo.toml
 # Setup has installed all tools, so that no test may pass over what it needs.
 export VIDEG_ALL_TOOLS=1
 
+# Random tests draw the same parameters on every machine, so that a change is judged by what it changes; the stage soak and
+# PROPTEST_RNG_SEED draw others.
+export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
+
 # What the stage slow is made of.
 readonly SLOW_STAGES=(unit-slow scale conformance browser book)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
@@ -51,7 +55,8 @@ CI runs this one, too:
 Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build
-  soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md
+  soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md; random tests of
+               model and circuit with parameters that no run has drawn before
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
   fuzz         each fuzz target for 20 s, from inputs that the stage unit replays anyway; needs a nightly compiler
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
@@ -319,6 +324,8 @@ stage_coverage() {
 
 stage_soak() {
     run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --include-ignored --nocapture --test-threads 1
+    PROPTEST_RNG_SEED=$(date +%s) && echo "PROPTEST_RNG_SEED=$PROPTEST_RNG_SEED"
+    run cargo test --release -p videg-model -p videg-circuit
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------
