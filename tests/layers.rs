@@ -10,18 +10,19 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 11] = [
+const PACKAGES: [(&str, &[&str]); 12] = [
     ("model", &[]),
     ("circuit", &[]),
     ("input", &[]),
+    ("data", &["input", "model"]),
     ("system", &[]),
     ("report", &["system"]),
     ("fmu/abi", &[]),
     ("fmu/export", &["fmu/abi"]),
     ("fmu/import", &["fmu/abi", "input", "system"]),
-    ("fmu/harvester", &["fmu/export", "input", "model"]),
+    ("fmu/harvester", &["data", "fmu/export", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
-    (".", &["circuit", "fmu/import", "input", "model", "report", "system"]),
+    (".", &["circuit", "data", "fmu/import", "input", "model", "report", "system"]),
 ];
 
 /// Dependencies that serve the command line, and have no place in a shared library.

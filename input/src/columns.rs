@@ -50,8 +50,8 @@ pub enum Order {
     Rising,
     /// Likewise, from 0.
     RisingFromZero,
-    /// None is below the one before, and all are above 0.
-    PositiveNotFalling,
+    /// None is below the one before.
+    NotFalling,
 }
 
 /// The content of a file.
@@ -61,6 +61,29 @@ pub struct Columns {
     pub heading: usize,
     /// The columns.
     pub values: Vec<Vec<f64>>,
+    /// On which lines its rows are.
+    pub lines: Lines,
+}
+
+/// On which lines the rows of a table are.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lines {
+    /// Rows before which there are others lines than rows, with their lines.
+    jumps: Vec<(usize, u64)>,
+}
+
+impl Lines {
+    /// The line of a row; rows are counted from 0, lines from 1.
+    pub fn of(&self, row: usize) -> u64 {
+        let jump = self.jumps[..self.jumps.partition_point(|(first, _)| *first <= row)].last();
+        jump.map_or(0, |(first, line)| line + (row - first) as u64)
+    }
+
+    fn add(&mut self, row: usize, line: u64) {
+        if self.jumps.is_empty() || self.of(row) != line {
+            self.jumps.push((row, line));
+        }
+    }
 }
 
 /// Why a file is no such table. The line is counted from 1.
@@ -99,51 +122,52 @@ pub fn read<const N: usize>(path: &Path, form: &Form<N>) -> Result<Columns, Colu
 /// A line that is not UTF-8, too long, no row of finite numbers in their order; another heading; too few or too many rows; too
 /// many bytes.
 pub fn parse<const N: usize>(text: impl BufRead, form: &Form<N>) -> Result<Columns, ColumnsError> {
-    let mut lines = Lines { text: text.take(LARGEST), number: 0, line: Vec::new() };
+    let mut text = Text { bytes: text.take(LARGEST), number: 0, line: Vec::new() };
     let heading = loop {
-        let Some(line) = lines.next()? else { return Err(ColumnsError::NoHeading { allowed: form.allowed() }) };
+        let Some(line) = text.next()? else { return Err(ColumnsError::NoHeading { allowed: form.allowed() }) };
         if !line.starts_with('#') {
-            break form.heading(line).map_err(|reason| lines.refuse(reason))?;
+            break form.heading(line).map_err(|reason| text.refuse(reason))?;
         }
     };
     let columns = form.headings[heading];
     let mut values = vec![Vec::new(); columns.len()];
-    let mut empty = None;
-    while let Some(line) = lines.next()? {
+    let (mut lines, mut empty) = (Lines::default(), None);
+    while let Some(line) = text.next()? {
         if line.starts_with('#') {
             continue;
         }
         if line.is_empty() {
-            empty.get_or_insert(lines.number);
+            empty.get_or_insert(text.number);
             continue;
         }
         if let Some(number) = empty {
             return Err(ColumnsError::Line { line: number, reason: "an empty line before the last row".to_owned() });
         }
-        add_row(columns, line, &mut values).map_err(|reason| lines.refuse(reason))?;
+        add_row(columns, line, &mut values).map_err(|reason| text.refuse(reason))?;
+        lines.add(values[0].len() - 1, text.number);
         if values[0].len() > form.rows[1] {
-            return Err(lines.refuse(format!("more than {} rows", form.rows[1])));
+            return Err(text.refuse(format!("more than {} rows", form.rows[1])));
         }
     }
     let [rows, least] = [values[0].len(), form.rows[0]];
-    if rows < least { Err(ColumnsError::TooFew { rows, least }) } else { Ok(Columns { heading, values }) }
+    if rows < least { Err(ColumnsError::TooFew { rows, least }) } else { Ok(Columns { heading, values, lines }) }
 }
 
-/// Lines of a text, one at a time.
-struct Lines<R> {
-    text: io::Take<R>,
+/// A text, of which one line is read at a time.
+struct Text<R> {
+    bytes: io::Take<R>,
     number: u64,
     line: Vec<u8>,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> Text<R> {
     /// The next line without its end, and without blanks around it.
     fn next(&mut self) -> Result<Option<&str>, ColumnsError> {
         self.line.clear();
         self.number += 1;
         // The end of the line may have two bytes.
-        let read = (&mut self.text).take(LONGEST_LINE as u64 + 2).read_until(b'\n', &mut self.line)?;
-        if self.text.limit() == 0 {
+        let read = (&mut self.bytes).take(LONGEST_LINE as u64 + 2).read_until(b'\n', &mut self.line)?;
+        if self.bytes.limit() == 0 {
             return Err(self.refuse(format!("more than {LARGEST} bytes up to here")));
         }
         if read == 0 {
@@ -226,11 +250,8 @@ impl Column {
             (Order::Rising | Order::RisingFromZero, Some(before)) if value <= *before => {
                 Err(format!("{name} = {value} {unit} is not above that of the row before, {before} {unit}"))
             }
-            (Order::PositiveNotFalling, Some(before)) if value < *before => {
+            (Order::NotFalling, Some(before)) if value < *before => {
                 Err(format!("{name} = {value} {unit} is below that of the row before, {before} {unit}"))
-            }
-            (Order::PositiveNotFalling, None) if value <= 0.0 => {
-                Err(format!("{name} = {value} {unit} must be above 0 {unit}"))
             }
             (Order::RisingFromZero, None) if value != 0.0 => {
                 Err(format!("{name} = {value} {unit}: the first row must be that of 0 {unit}"))
@@ -261,13 +282,19 @@ mod tests {
     #[test]
     fn spellings_of_other_programs_are_read() {
         let plain = parsed(b"time,force\n0,1\n0.5,-2e-3\n").unwrap();
-        assert_eq!(plain, Columns { heading: 1, values: vec![vec![0.0, 0.5], vec![1.0, -2e-3]] });
+        assert_eq!((plain.heading, &*plain.values), (1, &[vec![0.0, 0.5], vec![1.0, -2e-3]][..]));
+        assert_eq!([0, 1].map(|row| plain.lines.of(row)), [2, 3]);
         for text in [
             "\u{feff}time,force\r\n0,1\r\n0.5,-2e-3\r\n",
             "# of a lorry\ntime , force\n\t0, 1\n# here it brakes\n+0.5,-0.002",
             "time,force\n0,1\n0.5,-2e-3\n\n \t\n# end\n\n",
         ] {
-            assert_eq!(parsed(text.as_bytes()).as_ref(), Ok(&plain), "{text:?}");
+            let found = parsed(text.as_bytes()).unwrap();
+            assert_eq!((found.heading, &found.values), (1, &plain.values), "{text:?}");
+            for row in 0..2 {
+                let of_row = text.lines().nth(usize::try_from(found.lines.of(row)).unwrap() - 1).unwrap();
+                assert!(of_row.contains(["0", "0.5"][row]) && of_row.contains(','), "{of_row}");
+            }
         }
     }
 

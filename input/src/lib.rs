@@ -2,8 +2,6 @@
 //! package, so it needs nothing but the standard library.
 
 pub mod columns;
-pub mod membrane;
-pub mod recording;
 mod regular;
 
 pub use regular::{open_once, open_regular, read, read_text};

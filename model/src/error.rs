@@ -1,5 +1,7 @@
 //! What the model refuses, with the thing, its value and its bound in each message.
 
+use crate::points::PointFault;
+
 /// Error of the model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
@@ -88,36 +90,15 @@ pub enum ModelError {
         /// Largest number allowed.
         max: usize,
     },
-    /// A sample that is NaN or too large.
-    #[error(
-        "sample {index} of the recording (from 0): {name} = {value} {unit} is outside [-{bound:e}, {bound:e}] {unit}"
-    )]
-    Sample {
-        /// Number of the sample, from 0.
+    /// A point of a recording, or of a measured membrane, that is none.
+    #[error("point {index} (from 0) of the {what}: {fault}")]
+    Point {
+        /// Number of the point, from 0.
         index: usize,
-        /// `time` or `value`.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// Largest size allowed.
-        bound: f64,
-    },
-    /// A sample that does not come after the one before.
-    #[error(
-        "sample {index} of the recording (from 0): time = {time} s must be at least {spacing:e} s after that of the sample \
-         before, {before} s"
-    )]
-    SampleOrder {
-        /// Number of the sample, from 0.
-        index: usize,
-        /// Its time, s.
-        time: f64,
-        /// Time of the one before, s.
-        before: f64,
-        /// Least difference allowed, s.
-        spacing: f64,
+        /// What it is a point of.
+        what: &'static str,
+        /// Why it is none.
+        fault: PointFault,
     },
     /// A recording of what is not prescribed.
     #[error(
@@ -159,43 +140,6 @@ pub enum ModelError {
         min: usize,
         /// Largest number allowed.
         max: usize,
-    },
-    /// A value of a table that is NaN or outside its bounds.
-    #[error(
-        "point {index} (from 0) of the membrane's table: {name} = {value} {unit} is outside [{min:e}, {max:e}] {unit}"
-    )]
-    TablePoint {
-        /// Number of the point, from 0.
-        index: usize,
-        /// `deflection`, `force` or `capacitance`.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// Smallest value allowed.
-        min: f64,
-        /// Largest value allowed.
-        max: f64,
-    },
-    /// A value of a table that does not rise from the one before.
-    #[error(
-        "point {index} (from 0) of the membrane's table: {name} = {value} {unit} {}, {before} {unit}",
-        if *.rise > 0.0 { "must exceed that of the point before" } else { "must not be less than that of the point before" }
-    )]
-    TableOrder {
-        /// Number of the point, from 0.
-        index: usize,
-        /// `deflection`, `force` or `capacitance`.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// That of the point before.
-        before: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// Least difference allowed.
-        rise: f64,
     },
     /// No table where one is asked for.
     #[error(

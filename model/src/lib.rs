@@ -28,6 +28,7 @@ mod noise;
 mod numerics;
 mod paper;
 mod parameters;
+mod points;
 mod recording;
 mod sensitivity;
 mod setup;
@@ -48,6 +49,7 @@ pub use paper::impact::GRAZING_SPEED;
 pub use parameters::{
     Choice, ContactLaw, ExcitationKind, MembraneLaw, NoiseModel, OutsideGap, Parameters, Quantity, VACUUM_PERMITTIVITY,
 };
+pub use points::{PointFault, PointQuantity};
 pub use recording::Recording;
 pub use sensitivity::{Changes, Direction, Sensitivities};
 pub use setup::Setup;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::error::ModelError;
 use crate::fingerprint::fingerprint;
 use crate::parameters::{ExcitationKind, Parameters};
+use crate::points::PointQuantity;
 
 /// Most samples of a recording.
 const MAX_SAMPLES: usize = 1_000_000;
@@ -52,20 +53,11 @@ impl Recording {
         if !(2..=MAX_SAMPLES).contains(&times.len()) {
             return Err(ModelError::SampleCount { count: times.len(), min: 2, max: MAX_SAMPLES });
         }
-        let unit = if kind == ExcitationKind::Force { "N" } else { "m/s2" };
-        for (index, (&time, &value)) in times.iter().zip(&values).enumerate() {
-            for (name, value, unit, bound) in [("time", time, "s", MAX_TIME), ("value", value, unit, MAX_VALUE)] {
-                if value.is_nan() || value.abs() > bound {
-                    return Err(ModelError::Sample { index, name, value, unit, bound });
-                }
-            }
-        }
-        for (index, pair) in times.windows(2).enumerate() {
-            if pair[1] - pair[0] < MIN_SPACING {
-                let [before, time] = [pair[0], pair[1]];
-                return Err(ModelError::SampleOrder { index: index + 1, time, before, spacing: MIN_SPACING });
-            }
-        }
+        let (name, unit) = if kind == ExcitationKind::Force { ("force", "N") } else { ("acceleration", "m/s2") };
+        let time = PointQuantity { name: "time", unit: "s", min: -MAX_TIME, max: MAX_TIME, rise: MIN_SPACING };
+        time.check("recording", &times)?;
+        let value = PointQuantity { name, unit, min: -MAX_VALUE, max: MAX_VALUE, rise: f64::NEG_INFINITY };
+        value.check("recording", &values)?;
         let fingerprint = fingerprint(kind == ExcitationKind::Motion, times.iter().chain(&values));
         Ok(Self(Arc::new(Samples { kind, times, values, fingerprint })))
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fmu_import::Fmu;
-use videg_model::{ExcitationKind, Recording, Setup};
+use videg_model::{ExcitationKind, Setup};
 
 use super::spectrum::amplitudes;
 use super::{CircuitRequest, CosimError, HarvesterFmu};
@@ -45,9 +45,7 @@ impl Excitation {
         if file.is_empty() {
             return Ok(Some(Self::sampled(&Setup::from(&parameters), file, scenario.until)));
         }
-        let Ok(samples) = videg_input::recording::read(Path::new(&file)) else { return Ok(None) };
-        let kind = if samples.is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
-        let Ok(recording) = Recording::new(kind, samples.times, samples.values) else { return Ok(None) };
+        let Ok(recording) = videg_data::recording::read(Path::new(&file)) else { return Ok(None) };
         Ok(Some(Self::sampled(&parameters.with_recording(Some(&recording)), file, scenario.until)))
     }
 
@@ -98,6 +96,7 @@ impl Excitation {
 mod tests {
     use super::*;
     use videg_model::Parameters;
+    use videg_model::Recording;
 
     #[test]
     fn the_spectrum_of_the_paper_has_one_line_of_its_force() {

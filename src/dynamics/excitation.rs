@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use videg_input::membrane::{self, Points};
-use videg_input::recording::{self, Samples};
-use videg_model::{ExcitationKind, ForceTable, Parameters, Recording, Setup};
+use videg_data::{DataError, membrane, recording};
+use videg_model::{ForceTable, Parameters, Recording, Setup};
 
 use super::DynamicsError;
 use crate::scenario::Setting;
@@ -36,8 +35,8 @@ impl Files {
             setting.map(Setting::value_for_fmu).filter(|file| !file.is_empty())
         };
         let recording =
-            named(RECORDING).map(|file| read_recording(Path::new(&*file)).map_err(refused(RECORDING, &file)));
-        let table = named(MEMBRANE).map(|file| read_table(Path::new(&*file)).map_err(refused(MEMBRANE, &file)));
+            named(RECORDING).map(|file| recording::read(Path::new(&*file)).map_err(refused(RECORDING, &file)));
+        let table = named(MEMBRANE).map(|file| membrane::read(Path::new(&*file)).map_err(refused(MEMBRANE, &file)));
         let is_other = |setting: &&Setting| setting.name != RECORDING && setting.name != MEMBRANE;
         let files = Self { recording: recording.transpose()?, table: table.transpose()? };
         Ok((files, settings.iter().filter(is_other).cloned().collect()))
@@ -49,20 +48,9 @@ impl Files {
     }
 }
 
-fn refused(name: &'static str, file: &str) -> impl FnOnce(String) -> DynamicsError {
+fn refused(name: &'static str, file: &str) -> impl FnOnce(DataError) -> DynamicsError {
     let file = file.to_owned();
-    move |reason| DynamicsError::File { name, file, reason }
-}
-
-fn read_recording(path: &Path) -> Result<Recording, String> {
-    let Samples { is_acceleration, times, values } = recording::read(path).map_err(|error| error.to_string())?;
-    let kind = if is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
-    Recording::new(kind, times, values).map_err(|error| error.to_string())
-}
-
-fn read_table(path: &Path) -> Result<ForceTable, String> {
-    let Points { deflections, forces, capacitances } = membrane::read(path).map_err(|error| error.to_string())?;
-    ForceTable::new(deflections, forces, capacitances).map_err(|error| error.to_string())
+    move |reason| DynamicsError::File { name, file, reason: reason.to_string() }
 }
 
 /// Time, s, after which the excitation repeats, from 0 on: a period of the harmonic one, or a recording.

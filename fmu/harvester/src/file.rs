@@ -3,9 +3,8 @@
 use std::path::{Component, Path};
 use std::sync::Arc;
 
-use videg_input::membrane::{self, Points};
-use videg_input::recording::{self, Samples};
-use videg_model::{ExcitationKind, ForceTable, Recording};
+use videg_data::{DataError, membrane, recording};
+use videg_model::{ForceTable, Recording};
 
 /// Most bytes of the name of a file: more than a system takes.
 pub(crate) const LONGEST: usize = 4096;
@@ -16,25 +15,22 @@ pub(crate) trait Content: Sized {
     const VARIABLE: &'static str;
 
     /// Reads the file at this path.
-    fn read(path: &Path) -> Result<Self, String>;
+    fn read(path: &Path) -> Result<Self, DataError>;
 }
 
 impl Content for Recording {
     const VARIABLE: &'static str = "excitation.file";
 
-    fn read(path: &Path) -> Result<Self, String> {
-        let Samples { is_acceleration, times, values } = recording::read(path).map_err(|error| error.to_string())?;
-        let kind = if is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
-        Self::new(kind, times, values).map_err(|error| error.to_string())
+    fn read(path: &Path) -> Result<Self, DataError> {
+        recording::read(path)
     }
 }
 
 impl Content for ForceTable {
     const VARIABLE: &'static str = "membrane.file";
 
-    fn read(path: &Path) -> Result<Self, String> {
-        let Points { deflections, forces, capacitances } = membrane::read(path).map_err(|error| error.to_string())?;
-        Self::new(deflections, forces, capacitances).map_err(|error| error.to_string())
+    fn read(path: &Path) -> Result<Self, DataError> {
+        membrane::read(path)
     }
 }
 
@@ -146,7 +142,7 @@ fn find<T: Content>(file: &Path, resources: Option<&Path>) -> Result<T, String> 
         let here = std::path::absolute(found).unwrap_or_else(|_| found.to_owned());
         match packed.as_deref().filter(|packed| *packed != found) {
             Some(packed) => format!("{error} (looked for as {} and {})", packed.display(), here.display()),
-            None if here == file => error,
+            None if here == file => error.to_string(),
             None => format!("{error} ({})", here.display()),
         }
     })

@@ -6,6 +6,10 @@ use std::sync::Arc;
 use super::pchip::{Cubic, Pchip};
 use crate::error::ModelError;
 use crate::fingerprint::fingerprint;
+use crate::points::PointQuantity;
+
+/// In messages.
+const WHAT: &str = "membrane's table";
 
 /// Least and most points of a table.
 const POINTS: [usize; 2] = [3, 1_000_000];
@@ -56,15 +60,17 @@ impl ForceTable {
         if !(min..=max).contains(&count) {
             return Err(ModelError::TableCount { count, min, max });
         }
-        check(("deflection", "m"), &deflections, [0.0, MAX_DEFLECTION], MIN_SPACING)?;
-        check(("force", "N"), &forces, [0.0, MAX_FORCE], MIN_RISE)?;
-        if let Some(capacitances) = &capacitances {
-            check(("capacitance", "F"), capacitances, CAPACITANCES, 0.0)?;
+        // The first point is that of the flat membrane.
+        for (name, unit, values, max, rise) in [
+            ("deflection", "m", &deflections, MAX_DEFLECTION, MIN_SPACING),
+            ("force", "N", &forces, MAX_FORCE, MIN_RISE),
+        ] {
+            PointQuantity { name, unit, min: 0.0, max: 0.0, rise }.check(WHAT, &values[..1])?;
+            PointQuantity { name, unit, min: 0.0, max, rise }.check(WHAT, values)?;
         }
-        for (name, unit, value) in [("deflection", "m", deflections[0]), ("force", "N", forces[0])] {
-            if value != 0.0 {
-                return Err(ModelError::TablePoint { index: 0, name, value, unit, min: 0.0, max: 0.0 });
-            }
+        if let Some(capacitances) = &capacitances {
+            let [min, max] = CAPACITANCES;
+            PointQuantity { name: "capacitance", unit: "F", min, max, rise: 0.0 }.check(WHAT, capacitances)?;
         }
         let numbers = deflections.iter().chain(&forces).chain(capacitances.iter().flatten());
         let fingerprint = fingerprint(capacitances.is_some(), numbers);
@@ -186,23 +192,6 @@ impl fmt::Debug for ForceTable {
     }
 }
 
-/// That a column is within its bounds, and that each value exceeds the one before by `rise` at least.
-fn check(
-    (name, unit): (&'static str, &'static str),
-    list: &[f64],
-    [min, max]: [f64; 2],
-    rise: f64,
-) -> Result<(), ModelError> {
-    // NaN is within no bounds.
-    if let Some((index, &value)) = list.iter().enumerate().find(|(_, value)| !(min..=max).contains(*value)) {
-        return Err(ModelError::TablePoint { index, name, value, unit, min, max });
-    }
-    match list.windows(2).position(|pair| pair[1] - pair[0] < rise) {
-        None => Ok(()),
-        Some(k) => Err(ModelError::TableOrder { index: k + 1, name, value: list[k + 1], before: list[k], unit, rise }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -264,7 +253,7 @@ mod tests {
             (error(&x, &[0.0, 0.1, f64::NAN], None), "point 2 (from 0) of the membrane's table: force = NaN N"),
             (
                 error(&x, &f, Some(&[1e-11, 2e-11, 1.9e-11])),
-                "point 2 (from 0) of the membrane's table: capacitance = 0.000000000019 F",
+                "point 2 (from 0) of the membrane's table: capacitance = 1.9e-11 F",
             ),
             (error(&x, &f, Some(&[0.0, 2e-11, 2e-11])), "point 0 (from 0) of the membrane's table: capacitance = 0 F"),
         ] {

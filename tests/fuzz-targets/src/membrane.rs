@@ -2,23 +2,24 @@
 
 use std::fmt::Write as _;
 
-use videg_input::membrane::{self, Points};
-use videg_model::{Case, ForceTable, Harvester, MembraneLaw, ModelError, Parameters, Side};
+use videg_data::membrane;
+use videg_input::columns;
+use videg_model::{Case, Harvester, MembraneLaw, ModelError, Parameters, Side};
 
 use crate::Target;
 
 pub(crate) const TARGET: Target = Target { name: "membrane", check, seeds };
 
 fn check(bytes: &[u8]) -> bool {
-    let Ok(points) = membrane::parse(bytes) else { return false };
-    let Points { deflections, forces, capacitances } = &points;
-    let mut text = format!("deflection,force{}\n", if capacitances.is_some() { ",capacitance" } else { "" });
-    for (k, (deflection, force)) in deflections.iter().zip(forces).enumerate() {
-        let capacitance = capacitances.as_ref().map_or(String::new(), |list| format!(",{:?}", list[k]));
-        writeln!(text, "{deflection:?},{force:?}{capacitance}").unwrap();
+    let Ok(read) = columns::parse(bytes, &membrane::FORM) else { return false };
+    let names: Vec<_> = membrane::FORM.headings[read.heading].iter().map(|column| column.name).collect();
+    let mut text = names.join(",") + "\n";
+    for row in 0..read.values[0].len() {
+        let cells: Vec<_> = read.values.iter().map(|column| format!("{:?}", column[row])).collect();
+        writeln!(text, "{}", cells.join(",")).unwrap();
     }
-    assert_eq!(membrane::parse(text.as_bytes()).unwrap(), points);
-    let Ok(table) = ForceTable::new(points.deflections, points.forces, points.capacitances) else { return false };
+    assert_eq!(columns::parse(text.as_bytes(), &membrane::FORM).unwrap().values, read.values);
+    let Ok(table) = membrane::parse(bytes) else { return false };
     let fig14 = Case::find("fig14").map_or_else(Parameters::default, |case| (case.parameters)());
     let parameters = Parameters { membrane_law: MembraneLaw::Table, ..fig14 };
     // Only a table that is too deep for the film is refused.

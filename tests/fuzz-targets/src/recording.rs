@@ -2,23 +2,21 @@
 
 use std::fmt::Write as _;
 
-use videg_input::recording::{self, Samples};
-use videg_model::{ExcitationKind, Harvester, Parameters, Recording};
+use videg_data::recording;
+use videg_model::{ExcitationKind, Harvester, Parameters};
 
 use crate::Target;
 
 pub(crate) const TARGET: Target = Target { name: "recording", check, seeds };
 
 fn check(bytes: &[u8]) -> bool {
-    let Ok(samples) = recording::parse(bytes) else { return false };
-    let Samples { is_acceleration, times, values } = &samples;
-    let mut text = format!("time,{}\n", if *is_acceleration { "acceleration" } else { "force" });
-    for (time, value) in times.iter().zip(values) {
+    let Ok(recording) = recording::parse(bytes) else { return false };
+    let kind = recording.kind();
+    let mut text = format!("time,{}\n", if kind == ExcitationKind::Motion { "acceleration" } else { "force" });
+    for (time, value) in recording.times().iter().zip(recording.values()) {
         writeln!(text, "{time:?},{value:?}").unwrap();
     }
-    assert_eq!(recording::parse(text.as_bytes()).unwrap(), samples);
-    let kind = if *is_acceleration { ExcitationKind::Motion } else { ExcitationKind::Force };
-    let Ok(recording) = Recording::new(kind, samples.times, samples.values) else { return false };
+    assert_eq!(recording::parse(text.as_bytes()).unwrap(), recording);
     let parameters = Parameters { excitation_kind: kind, ..Parameters::default() };
     // A strong force may have more impacts than can be resolved, which is an error.
     if let Ok(mut harvester) = Harvester::new(parameters.with_recording(Some(&recording)), 0.0) {

@@ -3,49 +3,40 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use crate::columns::{self, Column, Columns, ColumnsError, Form, Order};
+use videg_input::columns::{self, Column, Columns, Form, Order};
+use videg_model::ForceTable;
+
+use crate::DataError;
 
 const DEFLECTION: Column = Column { name: "deflection", unit: "m", order: Order::RisingFromZero };
 const FORCE: Column = Column { name: "force", unit: "N", order: Order::RisingFromZero };
-const CAPACITANCE: Column = Column { name: "capacitance", unit: "F", order: Order::PositiveNotFalling };
+const CAPACITANCE: Column = Column { name: "capacitance", unit: "F", order: Order::NotFalling };
 
 /// Headings, and how many points a membrane has.
-const FORM: Form<2> =
+pub const FORM: Form<2> =
     Form { headings: [&[DEFLECTION, FORCE], &[DEFLECTION, FORCE, CAPACITANCE]], rows: [3, 1_000_000] };
-
-/// The points of a measured membrane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Points {
-    /// m; increasing from 0.
-    pub deflections: Vec<f64>,
-    /// N; increasing from 0.
-    pub forces: Vec<f64>,
-    /// F, if they were measured; not falling.
-    pub capacitances: Option<Vec<f64>>,
-}
 
 /// Reads the membrane at `path`.
 ///
 /// # Errors
-/// As [`columns::read`].
-pub fn read(path: &Path) -> Result<Points, ColumnsError> {
-    columns::read(path, &FORM).map(Points::from)
+/// As [`columns::read`] and [`ForceTable::new`].
+pub fn read(path: &Path) -> Result<ForceTable, DataError> {
+    table(columns::read(path, &FORM)?)
 }
 
 /// Reads a membrane.
 ///
 /// # Errors
-/// As [`columns::parse`].
-pub fn parse(text: impl BufRead) -> Result<Points, ColumnsError> {
-    columns::parse(text, &FORM).map(Points::from)
+/// As [`columns::parse`] and [`ForceTable::new`].
+pub fn parse(text: impl BufRead) -> Result<ForceTable, DataError> {
+    table(columns::parse(text, &FORM)?)
 }
 
-impl From<Columns> for Points {
-    fn from(Columns { values, .. }: Columns) -> Self {
-        let mut columns = values.into_iter();
-        let mut next = || columns.next().unwrap_or_default();
-        Self { deflections: next(), forces: next(), capacitances: columns.next() }
-    }
+fn table(Columns { values, lines, .. }: Columns) -> Result<ForceTable, DataError> {
+    let mut columns = values.into_iter();
+    let mut next = || columns.next().unwrap_or_default();
+    let (deflections, forces) = (next(), next());
+    ForceTable::new(deflections, forces, columns.next()).map_err(|error| DataError::new(&lines, error))
 }
 
 #[cfg(test)]
@@ -68,7 +59,6 @@ mod tests {
                 "deflection,force\n0,0\n1,2\n2,2\n",
                 "line 4: force = 2 N is not above that of the row before, 2 N".into(),
             ),
-            ("deflection,force,capacitance\n0,0,0\n", "line 2: capacitance = 0 F must be above 0 F".into()),
             (
                 "deflection,force,capacitance\n0,0,2\n1,1,1\n",
                 "line 3: capacitance = 1 F is below that of the row before, 2 F".into(),
@@ -78,8 +68,19 @@ mod tests {
             assert_eq!(parse(text.as_bytes()).map_err(|error| error.to_string()), Err(said), "{text}");
         }
         let text = "deflection,force,capacitance\n0,0,1e-11\n1e-3,0.1,1e-11\n2e-3,0.3,2e-11\n";
-        let points = parse(text.as_bytes()).unwrap();
-        assert_eq!(points.forces, [0.0, 0.1, 0.3]);
-        assert_eq!(points.capacitances.as_deref(), Some(&[1e-11, 1e-11, 2e-11][..]));
+        assert_eq!(parse(text.as_bytes()).unwrap().deflections(), [0.0, 1e-3, 2e-3]);
+        for (text, said) in [
+            ("deflection,force\n0,0\n# once more\n1,2\n2,1e301\n", "line 5: force = 1e301 N is outside [0, 1e9] N"),
+            (
+                "deflection,force\n0,0\n1e-3,1e-16\n1,1\n",
+                "line 3: force = 1e-16 N must exceed that of the point before, 0 N, by 1e-15 N",
+            ),
+            (
+                "deflection,force,capacitance\n0,0,0\n1,1,1\n2,2,2\n",
+                "line 2: capacitance = 0 F is outside [1e-18, 1] F",
+            ),
+        ] {
+            assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), said);
+        }
     }
 }
