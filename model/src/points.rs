@@ -2,8 +2,6 @@
 
 use core::fmt;
 
-use crate::error::ModelError;
-
 /// A quantity that is given at points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointQuantity {
@@ -66,17 +64,16 @@ impl fmt::Display for Short {
 }
 
 impl PointQuantity {
-    /// That this quantity has such values at the points of `what`.
-    pub(crate) fn check(self, what: &'static str, values: &[f64]) -> Result<(), ModelError> {
-        let refuse = |index, fault| Err(ModelError::Point { index, what, fault });
+    /// That this quantity may have such values at the points; else the number of the first that is none, from 0.
+    pub(crate) fn check(self, values: &[f64]) -> Result<(), (usize, PointFault)> {
         let mut before = f64::NEG_INFINITY;
         for (index, &value) in values.iter().enumerate() {
             // NaN is within no bounds.
             if !(self.min..=self.max).contains(&value) {
-                return refuse(index, PointFault::Outside(self, value));
+                return Err((index, PointFault::Outside(self, value)));
             }
             if value - before < self.rise {
-                return refuse(index, PointFault::Order(self, [value, before]));
+                return Err((index, PointFault::Order(self, [value, before])));
             }
             before = value;
         }

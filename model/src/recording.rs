@@ -54,10 +54,11 @@ impl Recording {
             return Err(ModelError::SampleCount { count: times.len(), min: 2, max: MAX_SAMPLES });
         }
         let (name, unit) = if kind == ExcitationKind::Force { ("force", "N") } else { ("acceleration", "m/s2") };
+        let point = |(index, fault)| ModelError::Point { index, what: "recording", fault };
         let time = PointQuantity { name: "time", unit: "s", min: -MAX_TIME, max: MAX_TIME, rise: MIN_SPACING };
-        time.check("recording", &times)?;
+        time.check(&times).map_err(point)?;
         let value = PointQuantity { name, unit, min: -MAX_VALUE, max: MAX_VALUE, rise: f64::NEG_INFINITY };
-        value.check("recording", &values)?;
+        value.check(&values).map_err(point)?;
         let fingerprint = fingerprint(kind == ExcitationKind::Motion, times.iter().chain(&values));
         Ok(Self(Arc::new(Samples { kind, times, values, fingerprint })))
     }

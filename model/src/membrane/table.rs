@@ -8,9 +8,6 @@ use crate::error::ModelError;
 use crate::fingerprint::fingerprint;
 use crate::points::PointQuantity;
 
-/// In messages.
-const WHAT: &str = "membrane's table";
-
 /// Least and most points of a table.
 const POINTS: [usize; 2] = [3, 1_000_000];
 
@@ -60,17 +57,18 @@ impl ForceTable {
         if !(min..=max).contains(&count) {
             return Err(ModelError::TableCount { count, min, max });
         }
+        let point = |(index, fault)| ModelError::Point { index, what: "membrane's table", fault };
         // The first point is that of the flat membrane.
         for (name, unit, values, max, rise) in [
             ("deflection", "m", &deflections, MAX_DEFLECTION, MIN_SPACING),
             ("force", "N", &forces, MAX_FORCE, MIN_RISE),
         ] {
-            PointQuantity { name, unit, min: 0.0, max: 0.0, rise }.check(WHAT, &values[..1])?;
-            PointQuantity { name, unit, min: 0.0, max, rise }.check(WHAT, values)?;
+            PointQuantity { name, unit, min: 0.0, max: 0.0, rise }.check(&values[..1]).map_err(point)?;
+            PointQuantity { name, unit, min: 0.0, max, rise }.check(values).map_err(point)?;
         }
         if let Some(capacitances) = &capacitances {
             let [min, max] = CAPACITANCES;
-            PointQuantity { name: "capacitance", unit: "F", min, max, rise: 0.0 }.check(WHAT, capacitances)?;
+            PointQuantity { name: "capacitance", unit: "F", min, max, rise: 0.0 }.check(capacitances).map_err(point)?;
         }
         let numbers = deflections.iter().chain(&forces).chain(capacitances.iter().flatten());
         let fingerprint = fingerprint(capacitances.is_some(), numbers);
