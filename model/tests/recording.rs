@@ -252,15 +252,15 @@ fn a_recording_that_is_none_or_not_the_one_is_refused_with_its_value_and_bound()
     assert_eq!(text(&[0.0, 1.0], &[1.0]), "a recording has 2 times and 1 values: each sample needs both");
     assert_eq!(
         text(&[0.0, 1.0, 0.5], &[0.0; 3]),
-        "sample 2 of the recording (from 0): time = 0.5 s must be at least 1e-12 s after that of the sample before, 1 s"
+        "point 2 (from 0) of the recording: time = 0.5 s must exceed that of the point before, 1 s, by 1e-12 s"
     );
     assert_eq!(
         text(&[0.0, 1.0], &[0.0, f64::NAN]),
-        "sample 1 of the recording (from 0): value = NaN N is outside [-1e12, 1e12] N"
+        "point 1 (from 0) of the recording: force = NaN N is outside [-1e12, 1e12] N"
     );
     assert_eq!(
         text(&[f64::NEG_INFINITY, 1.0], &[0.0, 2.0]),
-        "sample 0 of the recording (from 0): time = -inf s is outside [-1e9, 1e9] s"
+        "point 0 (from 0) of the recording: time = -inf s is outside [-1e9, 1e9] s"
     );
     let fine = force(&[0.0, 1e-7, 2e-7], &[1.0, 2.0, 1.0]).unwrap();
     let p = Parameters::default();

@@ -7,6 +7,7 @@ use super::ledger::Ledger;
 use crate::membrane::Membrane;
 use crate::motion::pulse::{Pulse, PulseChange, Pulses};
 use crate::motion::side::Side;
+use crate::shared::Shared;
 
 /// Enough for the work of several impacts to overlap.
 const CAPACITY: usize = 16;
@@ -30,7 +31,7 @@ impl Batch {
     }
 
     /// Adds the gains, Eqs. (10) to (13), and starts the pulses.
-    pub fn settle(&mut self, membrane: &Membrane, pulses: &mut Pulses, ledger: &mut Ledger) {
+    pub fn settle(&mut self, membrane: &Shared<Membrane>, pulses: &mut Pulses, ledger: &mut Ledger) {
         let impacts = &self.list[..self.len];
         let (mut peaks, mut excesses) = ([0.0; CAPACITY], [0.0; CAPACITY]);
         for (peak, (_, _, speed)) in peaks.iter_mut().zip(impacts) {

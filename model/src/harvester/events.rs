@@ -147,7 +147,7 @@ impl Harvester {
         let before = wall.velocity;
         self.ledger.count_impact(speed);
         let changes = if self.tangent.idle {
-            // A pulse that takes its own way is worked out once.
+            // A pulse that takes its own way is worked out once, if at all.
             if batch.push(time, side, speed) || !self.membrane.is_power() {
                 batch.settle(&self.membrane, &mut self.pulses, &mut self.ledger);
             }

@@ -188,14 +188,14 @@ impl Harvester {
         let tangent = snapshot
             .changes
             .map_or_else(Tangent::none, |changes| Tangent { changes, ..Tangent::of_force(changes.since, p) });
-        let membrane = Membrane::new(*setup);
+        let membrane = Shared::new(Membrane::new(*setup));
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);
         let ledger = Ledger::new(p, membrane.rest_capacitance, snapshot.totals, snapshot.works);
         let running = |list: &Vec<Pulse>| list.iter().map(|pulse| Running::new(&membrane, *pulse)).collect();
         let under_way = snapshot.pulses.each_ref().map(running);
         Ok(Self {
             parameters: Shared::new(*p),
-            membrane: Shared::new(membrane),
+            membrane,
             time: snapshot.time,
             motion,
             noise,

@@ -9,6 +9,7 @@ use core::f64::consts::FRAC_PI_2;
 use super::Membrane;
 use crate::numerics::quadrature::{gauss_4, gauss_8};
 use crate::numerics::roots::short_root_near;
+use crate::shared::Shared;
 
 /// Error of a piece, in units of the whole time.
 const TOLERANCE: f64 = 1e-13;
@@ -23,7 +24,7 @@ const SMALLEST: f64 = 1e-60;
 /// The way of a membrane to one largest deflection.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Course {
-    membrane: Membrane,
+    membrane: Shared<Membrane>,
     /// delta, m.
     peak: f64,
     /// Speed at the begin, m/s.
@@ -34,7 +35,7 @@ pub(crate) struct Course {
 
 impl Course {
     /// The way of `membrane` to the deflection `peak`, m.
-    pub(crate) fn new(membrane: &Membrane, peak: f64) -> Self {
+    pub(crate) fn new(membrane: &Shared<Membrane>, peak: f64) -> Self {
         let peak = peak.clamp(SMALLEST, membrane.deepest());
         let speed = (2.0 * membrane.work(peak) / membrane.mass).sqrt();
         let mut course = Self { membrane: membrane.clone(), peak, speed, pieces: vec![[0.0; 2]] };

@@ -5,13 +5,14 @@
 //! stretched by 1/r, so that the membrane is left with the velocity that Eq. (11) gives the ball. For f = K x^n all pulses
 //! have one shape; under another law of the membrane each has its own.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::membrane::Membrane;
 use crate::membrane::course::Course;
 use crate::motion::side::Side;
 use crate::numerics::roots::convex_root;
 use crate::numerics::series::hypergeometric;
+use crate::shared::Shared;
 
 /// Changes of a pulse per unit of what is moved, to first order.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -149,21 +150,48 @@ pub(crate) struct Knot<'a> {
     pub(crate) is_end: bool,
 }
 
-/// A pulse under way, and the way that it takes if its law of the membrane has no shape that all pulses share.
-#[derive(Debug, Clone, PartialEq)]
+/// A pulse under way.
+#[derive(Debug, Clone)]
 pub(crate) struct Running {
     pub(crate) pulse: Pulse,
-    course: Option<Arc<Course>>,
+    own: Option<Own>,
+}
+
+/// The way of a pulse whose law of the membrane has no shape that all pulses share: worked out when somebody asks for it.
+#[derive(Debug, Clone)]
+struct Own {
+    membrane: Shared<Membrane>,
+    course: OnceLock<Arc<Course>>,
+}
+
+impl PartialEq for Running {
+    /// The way follows from the pulse.
+    fn eq(&self, other: &Self) -> bool {
+        self.pulse == other.pulse
+    }
 }
 
 impl Running {
-    pub(crate) fn new(membrane: &Membrane, pulse: Pulse) -> Self {
-        let course = (!membrane.is_power()).then(|| Arc::new(Course::new(membrane, pulse.peak)));
-        Self { pulse, course }
+    pub(crate) fn new(membrane: &Shared<Membrane>, pulse: Pulse) -> Self {
+        let own = (!membrane.is_power()).then(|| Own { membrane: membrane.clone(), course: OnceLock::new() });
+        Self { pulse, own }
+    }
+
+    fn course(&self) -> Option<&Course> {
+        let Own { membrane, course } = self.own.as_ref()?;
+        Some(course.get_or_init(|| Arc::new(Course::new(membrane, self.pulse.peak))))
     }
 
     fn loading_time(&self, shape: &PulseShape) -> f64 {
-        self.course.as_ref().map_or_else(|| shape.loading_time(&self.pulse), |course| course.time())
+        self.course().map_or_else(|| shape.loading_time(&self.pulse), Course::time)
+    }
+
+    /// Whether the membrane is flat again at `time`, s.
+    fn has_ended(&self, shape: &PulseShape, time: f64) -> bool {
+        let Pulse { start, speed, peak, .. } = self.pulse;
+        // A force that rises takes most of the speed at the end of the way: a constant one of the same work takes longer.
+        let rises = self.own.as_ref().is_some_and(|own| own.membrane.table().is_some());
+        (rises && (time - start) * speed > 2.0 * peak * (1.0 + shape.stretch)) || self.end_time(shape) <= time
     }
 
     /// Time of the largest deflection, s.
@@ -177,7 +205,7 @@ impl Running {
     }
 
     fn at(&self, shape: &PulseShape, time: f64) -> Deflection {
-        match &self.course {
+        match self.course() {
             None => shape.at(&self.pulse, time),
             Some(course) => shape.follow(&self.pulse, course.time(), time, |fraction| course.at(fraction)),
         }
@@ -208,10 +236,10 @@ impl Pulses {
     pub(crate) const CAPACITY: usize = 256;
 
     /// Adds the pulse of a new impact at `side`, and forgets those that have ended.
-    pub(crate) fn push(&mut self, membrane: &Membrane, side: Side, pulse: Pulse) {
+    pub(crate) fn push(&mut self, membrane: &Shared<Membrane>, side: Side, pulse: Pulse) {
         let Self { shape, under_way } = self;
         let list = &mut under_way[side.index()];
-        list.retain(|old| old.end_time(shape) > pulse.start);
+        list.retain(|old| !old.has_ended(shape, pulse.start));
         if list.len() >= Self::CAPACITY {
             let ends = list.iter().map(|pulse| pulse.end_time(shape)).enumerate();
             if let Some((first, _)) = ends.min_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -314,7 +342,7 @@ mod tests {
     fn the_larger_of_two_overlapping_pulses_wins() {
         let shape = PulseShape::new(2.6, 0.5);
         let mut pulses = Pulses { shape, under_way: Default::default() };
-        let membrane = Membrane::new(&crate::Parameters::default());
+        let membrane = Shared::new(Membrane::new(&crate::Parameters::default()));
         let both = [pulse(0.0, 1.0, 0.004), pulse(0.001, 0.1, 0.001)];
         for pulse in both {
             pulses.push(&membrane, Side::Left, pulse);
