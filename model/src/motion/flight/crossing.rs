@@ -59,9 +59,12 @@ impl Series {
     #[inline]
     fn root_of_parabola(&self) -> Option<f64> {
         let Self([c0, c1, c2, ..]) = *self;
-        let root = (c1 * c1 - 4.0 * c0 * c2).sqrt();
-        let step = 2.0 * c0 / (root - c1);
-        (step > 0.0).then_some(step)
+        let discriminant = c1 * c1 - 4.0 * c0 * c2;
+        let sum = discriminant.max(0.0).sqrt() - c1;
+        let is_ahead = discriminant >= 0.0 && sum > 0.0;
+        // A host may trap divisions by zero, also those whose result is not used.
+        let step = 2.0 * c0 / if is_ahead { sum } else { 1.0 };
+        (is_ahead && step > 0.0).then_some(step)
     }
 
     /// About the root that Halley's method finds from `start` on.
