@@ -11,6 +11,7 @@ mod intervals;
 pub mod mount;
 mod pieces;
 pub mod pulse;
+mod rest;
 mod search;
 pub mod side;
 pub mod suspended;
@@ -23,8 +24,9 @@ pub use self::events::{Prediction, Search};
 use self::cylinder::{CylinderMotion, CylinderState, Drive};
 use self::flight::Flight;
 use self::mount::{Load, Mount};
+pub use self::rest::Resting;
 use self::side::Side;
-use crate::contact::{Contact, Creep, Recoil};
+use crate::contact::{Contact, Recoil};
 use crate::paper::impact;
 use crate::parameters::{OutsideGap, Parameters};
 use crate::recording::{Playback, Segment};
@@ -49,13 +51,18 @@ pub struct Motion {
     pub search: Search,
     /// The recording that excites the cylinder, of which a segment is in the drive.
     pub playback: Option<Playback>,
-    /// Creep of the membranes where a ball last left them, if they are viscous.
-    pub creeps: [Creep; 2],
+    /// Membranes that are viscous since a ball last left them.
+    pub resting_films: [Resting; 2],
 }
 
 impl Clone for Motion {
     fn clone(&self) -> Self {
-        Self { ball: self.ball.clone(), playback: self.playback.clone(), ..*self }
+        Self {
+            ball: self.ball.clone(),
+            playback: self.playback.clone(),
+            resting_films: self.resting_films.clone(),
+            ..*self
+        }
     }
 
     fn clone_from(&mut self, source: &Self) {
@@ -72,13 +79,14 @@ impl Clone for Motion {
             flight,
             search,
             ref playback,
-            creeps,
+            ref resting_films,
         } = *source;
         self.ball.clone_from(ball);
         self.playback.clone_from(playback);
         (self.half_travel, self.restitution, self.recoil_share) = (half_travel, restitution, recoil_share);
         (self.accuracy, self.mount, self.cylinder, self.last) = (accuracy, mount, cylinder, last);
-        (self.slip, self.flight, self.search, self.creeps) = (slip, flight, search, creeps);
+        self.resting_films.clone_from(resting_films);
+        (self.slip, self.flight, self.search) = (slip, flight, search);
     }
 }
 
@@ -100,7 +108,7 @@ impl Motion {
         let here = cylinder.at(relative.time);
         let flight = Flight::new(&cylinder, &here, motion, half_travel, mount.relative(slip));
         let (restitution, recoil_share, accuracy) = (p.restitution, p.recoil_share(), Accuracy::Exact);
-        let (search, playback, creeps) = (Search::new(), None, [Creep::default(); 2]);
+        let (search, playback, resting_films) = (Search::new(), None, Default::default());
         Self {
             half_travel,
             restitution,
@@ -114,7 +122,7 @@ impl Motion {
             flight,
             search,
             playback,
-            creeps,
+            resting_films,
         }
     }
 

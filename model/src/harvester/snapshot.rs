@@ -107,7 +107,7 @@ impl Harvester {
             segment: motion.cylinder.drive.recorded.number,
             pulses: self.pulses.lists(),
             contact: motion.ball.contact().map(|contact| contact.state),
-            creeps: motion.creeps,
+            creeps: motion.resting_films.each_ref().map(|film| film.creep),
             voltages: self.voltages,
             totals: ledger.totals,
             works: ledger.works,
@@ -184,7 +184,8 @@ impl Harvester {
         let relative = Start { velocity: rate, ..snapshot.relative };
         let mut motion = Motion::new(p, snapshot.cylinder, drive, snapshot.ball, (ball, snapshot.slip), relative);
         motion.cylinder.damped = snapshot.damped;
-        (motion.search, motion.playback, motion.creeps) = (Search::none(), playback, snapshot.creeps);
+        (motion.search, motion.playback) = (Search::none(), playback);
+        motion.resting_films = snapshot.creeps.map(Into::into);
         let tangent = snapshot
             .changes
             .map_or_else(Tangent::none, |changes| Tangent { changes, ..Tangent::of_force(changes.since, p) });

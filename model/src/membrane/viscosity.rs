@@ -11,7 +11,7 @@
 use super::Membrane;
 use super::film::Film;
 use super::material::Material;
-use crate::numerics::chebyshev::{DEGREE, GRID, Values};
+use crate::numerics::chebyshev::{DEGREE, GRID, Series, Values};
 use crate::numerics::roots::bracketed_root;
 use crate::parameters::Parameters;
 
@@ -86,25 +86,32 @@ impl Viscosity {
         }
     }
 
-    /// u, `elapsed`, s, after it was `creep`, of a film that nothing presses.
+    /// How u falls from `creep` on, of a film that nothing presses.
     ///
     /// ln(u) falls nearly as a straight line: its rate is integrated on Chebyshev nodes, and constant where u is small.
-    pub(crate) fn relaxed(&self, creep: f64, elapsed: f64) -> f64 {
+    pub(crate) fn recovery(&self, creep: f64) -> Recovery {
         /// Error of a step, relative to u.
         const TOLERANCE: f64 = 1e-13;
         const MAX_ROUNDS: usize = 16;
+        /// Steps take some tens; a state that nobody could have come to takes no longer.
+        const MAX_TRIES: usize = 10_000;
+        /// Longer than any run, s.
+        const FOREVER: f64 = 1e10;
         let rate = |log: f64| {
             let creep = log.exp().max(SMALL);
             self.mobility * self.branch.stress(self.slack(creep) - creep) / creep
         };
         if creep <= 0.0 {
-            return 0.0;
+            return Recovery { steps: Vec::new(), end: 0.0, log: f64::NEG_INFINITY, rate: 0.0 };
         }
-        let (mut log, mut rest) = (creep.ln(), elapsed);
+        let (mut steps, mut log, mut time) = (Vec::new(), creep.ln(), 0.0);
         let mut length = 0.3 / rate(log).abs().max(f64::MIN_POSITIVE);
         let shortest = 1e-6 * length;
-        while rest > 0.0 && log > SMALL.ln() {
-            let step = length.min(rest);
+        for _ in 0..MAX_TRIES {
+            if time >= FOREVER || log <= SMALL.ln() {
+                break;
+            }
+            let step = length;
             let mut logs: Values = [log; DEGREE + 1];
             let mut rates = logs.map(rate);
             let mut change = f64::INFINITY;
@@ -122,13 +129,36 @@ impl Viscosity {
             let series = GRID.fit(&rates);
             let error = change.max(step * series.tail() / DEGREE as f64);
             if error <= TOLERANCE || step <= shortest {
-                log += series.integral(0.5 * step, 0.0).value(1.0);
-                rest -= step;
+                let logs = series.integral(0.5 * step, log);
+                (log, time) = (logs.value(1.0), time + step);
+                steps.push((time, step, logs));
             }
             let factor = 0.9 * (TOLERANCE / error.max(f64::MIN_POSITIVE)).powf(1.0 / DEGREE as f64);
             length = (step * factor.clamp(0.2, 4.0)).max(shortest);
         }
-        if rest > 0.0 { (log + rest * rate(log)).exp() } else { log.exp() }
+        Recovery { steps, end: time, log, rate: rate(log) }
+    }
+}
+
+/// The creep of a film that nothing presses, over time.
+#[derive(Debug)]
+pub(crate) struct Recovery {
+    /// End and length of each step, s, and ln(u) in it.
+    steps: Vec<(f64, f64, Series)>,
+    /// End of the last step, s, ln(u) there and its rate from there on, 1/s.
+    end: f64,
+    log: f64,
+    rate: f64,
+}
+
+impl Recovery {
+    /// u, `elapsed`, s, after the begin.
+    pub(crate) fn at(&self, elapsed: f64) -> f64 {
+        let log = match self.steps.get(self.steps.partition_point(|(end, ..)| *end < elapsed)) {
+            Some((end, length, logs)) => logs.value((1.0 - 2.0 * (end - elapsed) / length).clamp(-1.0, 1.0)),
+            None => self.log + (elapsed - self.end) * self.rate,
+        };
+        log.exp()
     }
 }
 

@@ -82,8 +82,7 @@ impl Motion {
 
     /// The same of a film that no ball presses.
     fn relaxed_at(&self, viscosity: &Viscosity, side: Side, time: f64) -> f64 {
-        let Creep { since, value } = self.creeps[side.index()];
-        viscosity.relaxed(value, time - since)
+        self.resting_films[side.index()].creep_at(viscosity, time)
     }
 
     /// Energy, J, that a viscous film at `side` has stored, and the energy, J, that it has lost since a ball last pressed it, at `time`,
@@ -93,7 +92,7 @@ impl Motion {
         let Some(viscosity) = membrane.viscosity.as_ref().filter(|_| !is_pressed) else { return [0.0; 2] };
         let stored = |creep: f64| membrane.strained(viscosity, 0.0, creep).stored;
         let now = stored(self.relaxed_at(viscosity, side, time));
-        [now, stored(self.creeps[side.index()].value) - now]
+        [now, stored(self.resting_films[side.index()].creep.value) - now]
     }
 
     /// A contact begins at `time`, s, at relative `speed`, m/s.
@@ -192,7 +191,7 @@ impl Motion {
         let Ball::InContact(contact) = core::mem::replace(&mut self.ball, Ball::Free) else { return };
         let side = contact.state.side;
         let (sign, Point { v: rate, creep, .. }) = (side.sign(), contact.at(time));
-        self.creeps[side.index()] = Creep { since: time, value: creep.max(0.0) };
+        self.resting_films[side.index()] = Creep { since: time, value: creep.max(0.0) }.into();
         ledger.end_contact(rate.abs());
         ledger.works.loss += self.law(forces, side).loss(contact.largest_at(time));
         ledger.works.contact_time += time - contact.state.since;
