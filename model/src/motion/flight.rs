@@ -201,11 +201,22 @@ impl Flight {
 
     /// Rounding error of a gap near `tau`, m.
     pub fn rounding(&self, tau: f64) -> f64 {
+        let [polynomial, harmonic] = self.sizes_of_change(tau);
+        8.0 * f64::EPSILON * (self.half_travel + (self.dz.abs() + polynomial) + harmonic)
+    }
+
+    /// The same of the change of dz since the start.
+    fn rounding_of_change(&self, tau: f64) -> f64 {
+        let [polynomial, harmonic] = self.sizes_of_change(tau);
+        8.0 * f64::EPSILON * (polynomial + harmonic)
+    }
+
+    /// Sizes of the polynomial and the harmonic part of the change of dz from the start to near `tau`, m.
+    fn sizes_of_change(&self, tau: f64) -> [f64; 2] {
         let ([c2, c3], phi) = (self.external.map(f64::abs), self.omega() * tau);
         // The harmonic part of the acceleration is at most swing omega^2, that of the rate 2 swing omega.
         let harmonic = self.swing * (0.5 * phi * phi).min(2.0 * phi);
-        let polynomial = self.dz.abs() + tau * (self.rate.abs() + tau * (c2 + tau * c3));
-        8.0 * f64::EPSILON * (self.half_travel + polynomial + harmonic)
+        [tau * (self.rate.abs() + tau * (c2 + tau * c3)), harmonic]
     }
 
     /// First window, at or after `window`, in which a contact is possible; none if there will never be one.
@@ -281,7 +292,8 @@ impl Flight {
     /// the ball has just set out.
     #[inline]
     fn end_in_piece(&self, from: &Knot, to: &Knot, slip: f64) -> Option<End> {
-        if slip * (to.value - from.value) < -self.rounding(to.tau) {
+        // Not by that of dz itself, however far the ball is: what is left out here is as much of the relative velocity as it took.
+        if slip * (to.value - from.value) < -self.rounding_of_change(to.tau) {
             return Some(End::Turn { elapsed: from.tau });
         }
         self.contact_in_piece(from, to).map(End::Contact)
