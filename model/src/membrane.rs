@@ -39,7 +39,7 @@ pub struct Membrane {
 }
 
 impl Membrane {
-    /// Membrane of a validated `setup`, or of parameters alone.
+    /// Membrane of a validated `setup`, or of parameters alone; where `membrane.law = table` has no table, that of Eq. (2).
     pub fn new<'a>(setup: impl Into<Setup<'a>>) -> Self {
         let setup = setup.into();
         let parameters = setup.parameters;
