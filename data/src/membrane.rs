@@ -14,7 +14,7 @@ const CAPACITANCE: Column = Column { name: "capacitance", unit: "F", order: Orde
 
 /// Headings, and how many points a membrane has.
 pub const FORM: Form<2> =
-    Form { headings: [&[DEFLECTION, FORCE], &[DEFLECTION, FORCE, CAPACITANCE]], rows: [3, 1_000_000] };
+    Form { headings: [&[DEFLECTION, FORCE], &[DEFLECTION, FORCE, CAPACITANCE]], rows: ForceTable::POINTS };
 
 /// Reads the membrane at `path`.
 ///

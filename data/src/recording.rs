@@ -16,7 +16,7 @@ pub const FORM: Form<2> = Form {
         &[TIME, Column { name: "acceleration", unit: "m/s2", order: Order::Any }],
         &[TIME, Column { name: "force", unit: "N", order: Order::Any }],
     ],
-    rows: [2, 1_000_000],
+    rows: Recording::SAMPLES,
 };
 
 /// Reads the recording at `path`.

@@ -12,9 +12,6 @@ use crate::fingerprint::fingerprint;
 use crate::parameters::{ExcitationKind, Parameters};
 use crate::points::PointQuantity;
 
-/// Most samples of a recording.
-const MAX_SAMPLES: usize = 1_000_000;
-
 /// Largest size of a sample, N or m/s^2: times the largest scale it is as large as the largest external force.
 const MAX_VALUE: f64 = 1e12;
 
@@ -41,6 +38,9 @@ struct Samples {
 }
 
 impl Recording {
+    /// Least and most samples of a recording.
+    pub const SAMPLES: [usize; 2] = [2, 1_000_000];
+
     /// The recording of a force, N, or of the acceleration of the cylinder, m/s^2, with these `values` at these `times`, s.
     ///
     /// # Errors
@@ -50,8 +50,9 @@ impl Recording {
         if times.len() != values.len() {
             return Err(ModelError::SamplePairs { times: times.len(), values: values.len() });
         }
-        if !(2..=MAX_SAMPLES).contains(&times.len()) {
-            return Err(ModelError::SampleCount { count: times.len(), min: 2, max: MAX_SAMPLES });
+        let [min, max] = Self::SAMPLES;
+        if !(min..=max).contains(&times.len()) {
+            return Err(ModelError::SampleCount { count: times.len(), min, max });
         }
         let (name, unit) = if kind == ExcitationKind::Force { ("force", "N") } else { ("acceleration", "m/s2") };
         let point = |(index, fault)| ModelError::Point { index, what: "recording", fault };

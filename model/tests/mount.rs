@@ -10,7 +10,8 @@ mod mounts;
 
 use brute::{Brute, Recorded, small_steps};
 use mounts::{
-    any_mount, close_books, compliant, follow_brute_force, follow_small_steps, meet_predictions, positions, sensitivity,
+    any_mount, close_books, compliant, follow_brute_force, follow_small_steps, meet_predictions, positions,
+    sensitivity, straight_and_split,
 };
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_4;
@@ -46,18 +47,7 @@ proptest! {
         let p = if is_compliant { compliant(p) } else { p };
         let noise_model = if wiener { NoiseModel::Wiener } else { NoiseModel::Held };
         let p = Parameters { phase_noise: noise, noise_hold: 1e-2, noise_model, ..p };
-        let mut straight = Harvester::new(&p, 0.0).unwrap();
-        straight.advance(2.0).unwrap();
-        let mut split = Harvester::new(&p, 0.0).unwrap();
-        let mut cuts = cuts;
-        cuts.sort_by(f64::total_cmp);
-        for cut in cuts {
-            split.advance(cut).unwrap();
-            if cut > 1.0 {
-                split = Harvester::restore(&p, &split.snapshot()).unwrap();
-            }
-        }
-        split.advance(2.0).unwrap();
+        let [straight, split] = straight_and_split(&p, cuts);
         prop_assert_eq!(straight, split);
     }
 

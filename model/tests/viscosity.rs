@@ -11,7 +11,7 @@ mod mounts;
 
 use brute::{Recorded, small_steps_in};
 use film::{Film, any_film};
-use mounts::{any_mount, close_books, follow_small_steps, sensitivity};
+use mounts::{any_mount, close_books, follow_small_steps, sensitivity, straight_and_split};
 use proptest::prelude::*;
 use videg_model::{ContactLaw, ExcitationKind, Harvester, MembraneLaw, ModelError, Parameters, Side};
 
@@ -207,18 +207,7 @@ proptest! {
 
     #[test]
     fn splitting_a_run_changes_no_bit(p in any_mounted_film(), cuts in prop::collection::vec(0.0..2.0, 0..40)) {
-        let mut straight = Harvester::new(&p, 0.0).unwrap();
-        straight.advance(2.0).unwrap();
-        let mut split = Harvester::new(&p, 0.0).unwrap();
-        let mut cuts = cuts;
-        cuts.sort_by(f64::total_cmp);
-        for cut in cuts {
-            split.advance(cut).unwrap();
-            if cut > 1.0 {
-                split = Harvester::restore(&p, &split.snapshot()).unwrap();
-            }
-        }
-        split.advance(2.0).unwrap();
+        let [straight, split] = straight_and_split(&p, cuts);
         prop_assert_eq!(straight.snapshot(), split.snapshot());
         prop_assert_eq!(straight.energies(), split.energies());
         prop_assert_eq!(straight.next_knot(), split.next_knot());

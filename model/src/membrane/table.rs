@@ -8,9 +8,6 @@ use crate::error::ModelError;
 use crate::fingerprint::fingerprint;
 use crate::points::PointQuantity;
 
-/// Least and most points of a table.
-const POINTS: [usize; 2] = [3, 1_000_000];
-
 /// Largest deflection, m, and force, N, of a table, and the range of its capacitances, F.
 const MAX_DEFLECTION: f64 = 100.0;
 const MAX_FORCE: f64 = 1e9;
@@ -41,6 +38,9 @@ struct Points {
 }
 
 impl ForceTable {
+    /// Least and most points of a table.
+    pub const POINTS: [usize; 2] = [3, 1_000_000];
+
     /// The membrane with these `forces`, N, and, if they were measured, `capacitances`, F, at these `deflections`, m.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl ForceTable {
     /// 1e9 N, a capacitance below 1e-18 F or beyond 1 F; NaN. Points are counted from 0.
     pub fn new(deflections: Vec<f64>, forces: Vec<f64>, capacitances: Option<Vec<f64>>) -> Result<Self, ModelError> {
         let count = deflections.len();
-        let [min, max] = POINTS;
+        let [min, max] = Self::POINTS;
         let lengths = [Some(forces.len()), capacitances.as_ref().map(Vec::len)];
         if let Some(other) = lengths.into_iter().flatten().find(|length| *length != count) {
             return Err(ModelError::TablePairs { deflections: count, others: other });

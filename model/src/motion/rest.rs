@@ -6,11 +6,24 @@ use crate::contact::Creep;
 use crate::membrane::viscosity::{Recovery, Viscosity};
 
 /// A film since a ball last left it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Resting {
     pub creep: Creep,
     /// Worked out when somebody asks for it.
     recovery: OnceLock<Arc<Recovery>>,
+}
+
+impl Clone for Resting {
+    fn clone(&self) -> Self {
+        Self { creep: self.creep, recovery: self.recovery.clone() }
+    }
+
+    /// Keeps what it has worked out where the creep is the same, as at each step that a master tries.
+    fn clone_from(&mut self, source: &Self) {
+        if self != source {
+            *self = source.clone();
+        }
+    }
 }
 
 impl PartialEq for Resting {

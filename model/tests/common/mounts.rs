@@ -76,6 +76,22 @@ pub fn sensitivity_of(p: Parameters, make: &dyn Fn(Parameters) -> Harvester, nud
     })
 }
 
+/// A run of 2 s in one go, and in parts that end at the `cuts`, saved and restored at those after 1 s.
+pub fn straight_and_split(p: &Parameters, mut cuts: Vec<f64>) -> [Harvester; 2] {
+    let mut straight = Harvester::new(p, 0.0).unwrap();
+    straight.advance(2.0).unwrap();
+    let mut split = Harvester::new(p, 0.0).unwrap();
+    cuts.sort_by(f64::total_cmp);
+    for cut in cuts {
+        split.advance(cut).unwrap();
+        if cut > 1.0 {
+            split = Harvester::restore(p, &split.snapshot()).unwrap();
+        }
+    }
+    split.advance(2.0).unwrap();
+    [straight, split]
+}
+
 /// Compares the motion with that by brute force, impact by impact, while `sensitivity` at a time, s, is below 1e-5: the distance, m,
 /// of two runs that began close to each other.
 pub fn follow_brute_force(
