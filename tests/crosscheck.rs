@@ -196,7 +196,8 @@ fn a_capacitor_of_the_wrong_form_fails() {
     let folder = tempfile::tempdir().unwrap();
     // Only in the tests of the capacitor: the circuits get stuck with it.
     let commands = "if grep -q 'check of the time-varying capacitor' harvesting.cir; then\n\
-        sed -i -e '/^Cfix/d' -e \"s/Q='(V(cl)-[^)]*)\\*1e-12\\*V(de)'/C='V(cl)*1e-12'/\" harvesting.cir\nfi";
+        sed -i -e '/^Cvidegleft p/d' -e \"s/Q='(V(videg_cl)-[^)]*)\\*1e-12\\*V(p,n)'/C='V(videg_cl)*1e-12'/\" \\
+        harvesting.cir\nfi";
     let wrong = altered_ngspice(folder.path(), &program, commands);
     let arguments = ["crosscheck", "--json", "--until", "0.3"];
     let found = json(&videg(folder.path(), &arguments, &[("VIDEG_NGSPICE", &wrong)]), 1);

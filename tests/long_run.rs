@@ -112,7 +112,7 @@ fn assert_streamed(fmu: &Fmu, scenario: &Scenario) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("timeseries.csv");
     let harvester = HarvesterFmu::new(fmu, scenario, &scenario.settings).unwrap();
-    let (mut memory, mut recorder) = (MemoryAt::of(scenario.until), CsvRecorder::create(&path, false).unwrap());
+    let (mut memory, mut recorder) = (MemoryAt::of(scenario.until), CsvRecorder::create(&path, None).unwrap());
     let master = Master::new(harvester, Vec::new(), scenario, Coupling::default()).unwrap();
     master.run(&mut [&mut memory, &mut recorder]).unwrap();
     recorder.finish().unwrap();

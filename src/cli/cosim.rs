@@ -1,9 +1,10 @@
 //! `videg cosim`: the harvester FMU coupled with a harvesting circuit.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
+use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::isolation::IsolationOptions;
@@ -13,8 +14,9 @@ use super::run_output::{self, RunOutput, file_list, heading, mechanics};
 use super::{Exit, cosim_report, excitation, output, packaging, picture, time_series};
 use crate::cosim::{
     CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance,
-    LabelledCircuit, Method, Options, Results,
+    LabelledCircuit, Method, NetlistCircuit, Options, Powers, Results,
 };
+use crate::ngspice::UserNetlist;
 use crate::scenario::Scenario;
 use videg_system::atomic_file;
 
@@ -32,6 +34,8 @@ pub struct Arguments {
     /// Solver of the circuit
     #[arg(long, value_enum, default_value_t = Backend::Embedded)]
     circuit: Backend,
+    #[command(flatten)]
+    netlist: NetlistOptions,
     /// Signals that harvester and circuit exchange for a communication step
     #[arg(long, value_enum, default_value_t)]
     master: Method,
@@ -41,6 +45,28 @@ pub struct Arguments {
     adaptive: Option<f64>,
     #[command(flatten)]
     isolation: IsolationOptions,
+}
+
+/// A circuit of the user in ngspice.
+#[derive(Args)]
+struct NetlistOptions {
+    /// Netlist of your own circuit, run by ngspice in step with the harvester; the membranes are in it as subcircuits with
+    /// two nodes, `deg_left` and `deg_right`
+    #[arg(long, value_name = "FILE.cir", conflicts_with = "circuit")]
+    netlist: Option<PathBuf>,
+    /// Elements of the netlist whose energy is a gain, with commas between them [default: all resistors, capacitors and
+    /// inductors]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "netlist")]
+    gain: Vec<String>,
+    /// Elements of the netlist whose energy is a cost [default: all sources]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "netlist")]
+    cost: Vec<String>,
+    /// Nodes of the netlist, or i(source), whose waveforms are written and drawn
+    #[arg(long, value_name = "NODES", value_delimiter = ',', requires = "netlist")]
+    probe: Vec<String>,
+    /// Trust the netlist: execute its commands, include files from anywhere, allow models that read files
+    #[arg(long, requires = "netlist")]
+    trust: bool,
 }
 
 /// What solves the circuit.
@@ -60,7 +86,11 @@ struct Output<'a> {
     run: RunOutput<'a>,
     circuit: &'a str,
     #[serde(flatten)]
+    powers: Option<Powers>,
+    #[serde(flatten)]
     summary: &'a CircuitSummary,
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    elements: IndexMap<&'a str, f64>,
     coupling: CouplingSummary,
     #[serde(skip_serializing_if = "Option::is_none")]
     balance: Option<EnergyBalance>,
@@ -75,14 +105,21 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     coupling.check()?;
     let harvester = arguments.isolation.open_own("VibroImpactHarvester")?;
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
-    let (circuit, program);
-    let solver = match arguments.circuit {
-        Backend::Embedded => CircuitSolver::Embedded,
-        Backend::Ngspice => {
+    let (circuit, program, netlist);
+    let own = &arguments.netlist;
+    let solver = match (&own.netlist, arguments.circuit) {
+        (Some(path), _) => {
+            program = packaging::program()?;
+            netlist = UserNetlist::read(path, own.trust)?;
+            let (gain, cost, probes) = (&own.gain, &own.cost, &own.probe);
+            CircuitSolver::Netlist(&program, NetlistCircuit { netlist: &netlist, gain, cost, probes })
+        }
+        (None, Backend::Embedded) => CircuitSolver::Embedded,
+        (None, Backend::Ngspice) => {
             program = packaging::program()?;
             CircuitSolver::Ngspice(&program)
         }
-        Backend::Fmu => {
+        (None, Backend::Fmu) => {
             circuit = arguments.isolation.open_own("HarvestingCircuit")?;
             CircuitSolver::Fmu(&circuit)
         }
@@ -92,8 +129,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let warning = coupling.tolerance.is_none().then(|| time_series::warning(&scenario, true)).flatten();
     output::warn(warning.as_slice());
     let csv = folder.join("timeseries.csv");
-    let results = record(cosimulation, &scenario, &csv)?;
-    let svg = picture::cosim(&results.trace, &scenario)?.svg;
+    let results = record(cosimulation, &scenario, &csv, &own.probe)?;
+    let svg = picture::cosim(&results.trace, &scenario, own.netlist.is_some().then_some(own.probe.as_slice()))?.svg;
     let report = cosim_report::report(&scenario, &results, svg.clone());
     let html = videg_report::render_html(&excitation::described(report, &harvester, &scenario)?)?;
     let files = run_output::write(&folder, &[csv], &svg, &html)?;
@@ -101,7 +138,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let output = Output {
         run: RunOutput::new(&scenario, results.mechanics, &results.warnings, &files),
         circuit: &first.label,
+        powers: results.powers,
         summary: &first.summary,
+        elements: results.elements.iter().map(|element| (element.name.as_str(), element.energy)).collect(),
         coupling: results.coupling,
         balance: results.balance,
         comparison,
@@ -109,8 +148,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let text = [
         heading("cosim", &scenario),
         mechanics(&scenario, &results.mechanics).text(),
-        cosim_report::energies(&results).narrow(", "),
-        cosim_report::EXPLANATION.join("\n"),
+        cosim_report::tables(&results),
         cosim_report::coupling_lines(&results),
         file_list(&files),
     ];
@@ -119,8 +157,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 }
 
 /// Runs `cosimulation` and writes its time series to `csv`. The time series of a run that fails stays under another name.
-fn record(cosimulation: Cosimulation<'_>, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
-    let mut recorder = CsvRecorder::create(csv, true)?;
+fn record(
+    cosimulation: Cosimulation<'_>,
+    scenario: &Scenario,
+    csv: &Path,
+    probes: &[String],
+) -> anyhow::Result<Results> {
+    let mut recorder = CsvRecorder::create(csv, Some(probes))?;
     match cosimulation.run(&mut recorder, &TimeBar::new(&scenario.name)) {
         Ok(results) => {
             recorder.finish()?;

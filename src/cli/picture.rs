@@ -2,6 +2,7 @@
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
 use crate::scenario::Scenario;
+use videg_circuit::Ledger;
 use videg_report::{Drawing, Figure, Panel, ReportError, Series, Style, render_svg};
 
 /// Points of one curve: time and value.
@@ -98,20 +99,38 @@ pub fn title(scenario: &Scenario) -> String {
     format!("{}: {}", scenario.name, scenario.description)
 }
 
-/// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit.
-pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError> {
+/// A curve of the energies of the first circuit: name, value in J, and whether it is dashed, so that both show where two
+/// coincide.
+type EnergyCurve = (&'static str, fn(&Ledger) -> f64, Style);
+
+const ENERGIES: [EnergyCurve; 4] = [
+    ("supply", |ledger| ledger.supply, Style::Line),
+    ("Zener", |ledger| ledger.zener, Style::Dashed),
+    ("load", |ledger| ledger.load, Style::Line),
+    ("converted", Ledger::converted, Style::Dashed),
+];
+/// Of a netlist of the user.
+const NETLIST_ENERGIES: [EnergyCurve; 4] = [
+    ("cost", |ledger| ledger.supply, Style::Line),
+    ("other elements", |ledger| ledger.diode, Style::Dashed),
+    ("gain", |ledger| ledger.load, Style::Line),
+    ("net = gain - cost + stored", |ledger| ledger.surplus() + ledger.stored, Style::Dashed),
+];
+
+/// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit; of a netlist also
+/// the waveforms called `probes`.
+pub fn cosim(trace: &Trace, scenario: &Scenario, probes: Option<&[String]>) -> Result<Drawing, ReportError> {
     let mechanics = Mechanics::new(trace);
-    let circuit = |value: fn(&crate::cosim::CircuitSample) -> f64| {
-        move |point: &TracePoint| point.circuits.first().map_or(f64::NAN, value)
+    let voltage = |side: usize| {
+        points(&trace.detail, move |point| point.circuits.first().map_or(f64::NAN, |c| 1e-3 * c.voltage[side]))
     };
-    let left = points(&trace.detail, circuit(|c| 1e-3 * c.voltage[0]));
-    let right = points(&trace.detail, circuit(|c| 1e-3 * c.voltage[1]));
-    let energy = |value: fn(&crate::cosim::CircuitSample) -> f64| points(&trace.overview, circuit(value));
-    let supply = energy(|c| 1e3 * c.ledger.supply);
-    let zener = energy(|c| 1e3 * c.ledger.zener);
-    let load = energy(|c| 1e3 * c.ledger.load);
-    let converted = energy(|c| 1e3 * c.ledger.converted());
+    let [left, right] = [voltage(0), voltage(1)];
+    let curves = if probes.is_some() { NETLIST_ENERGIES } else { ENERGIES };
+    let energies = curves.map(|(_, value, _)| {
+        points(&trace.overview, |point| point.circuits.first().map_or(f64::NAN, |c| 1e3 * value(&c.ledger)))
+    });
     let eq13 = points(&trace.overview, |point| 1e3 * point.harvester.energy_eq13());
+    let probes = Probes::new(trace, probes.unwrap_or_default());
     // On a shared node the two voltages are one.
     let shared = left == right;
     let mut voltages = Panel::new("(c)", "time (s)", "voltage (kV)").height(120.0);
@@ -120,20 +139,63 @@ pub fn cosim(trace: &Trace, scenario: &Scenario) -> Result<Drawing, ReportError>
     } else {
         voltages.series(Series::points("left membrane", &left)).series(Series::points("right membrane", &right))
     };
-    // Two curves may coincide: the upper one is dashed, so that both show.
-    let energies = Panel::new("(d)", "time (s)", "energy (mJ)")
-        .height(150.0)
-        .series(Series::points("supply", &supply).color(0))
-        .series(Series::points("Zener", &zener).style(Style::Dashed).color(1))
-        .series(Series::points("load", &load).color(2))
-        .series(Series::points("converted", &converted).style(Style::Dashed).color(3))
-        .series(Series::points("W, Eq. (13)", &eq13).color(6));
     let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
-    let figure = figure.panel(voltages).panel(energies).caption(
+    let probed = probes.panels();
+    if !probed.is_empty() {
+        voltages = voltages.share_x_with_next();
+    }
+    let letter = ["(d)", "(e)", "(f)"][probed.len().min(2)];
+    let figure = probed.into_iter().fold(figure.panel(voltages), Figure::panel);
+    let mut panel = Panel::new(letter, "time (s)", "energy (mJ)").height(150.0);
+    for (color, ((name, _, style), energy)) in curves.into_iter().zip(&energies).enumerate() {
+        panel = panel.series(Series::points(name, energy).style(style).color(color));
+    }
+    let figure = figure.panel(panel.series(Series::points("W, Eq. (13)", &eq13).color(6))).caption(
         "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
          and the energies since its start. Lines join capacitances and voltages at communication points.",
     );
     Drawing::new(&figure)
+}
+
+/// The waveforms of a netlist that were asked for.
+struct Probes {
+    curves: Vec<(String, Points)>,
+}
+
+impl Probes {
+    fn new(trace: &Trace, names: &[String]) -> Self {
+        let curve = |(index, name): (usize, &String)| {
+            let scale = if is_current(name) { 1e6 } else { 1.0 };
+            let value = |point: &TracePoint| scale * point.probes.get(index).copied().unwrap_or(f64::NAN);
+            (name.clone(), points(&trace.detail, value))
+        };
+        Self { curves: names.iter().enumerate().map(curve).collect() }
+    }
+
+    /// A panel for the voltages and one for the currents, if there are any.
+    fn panels(&self) -> Vec<Panel<'_>> {
+        let kinds: Vec<_> = [(false, "voltage (V)"), (true, "current (uA)")]
+            .into_iter()
+            .map(|(current, label)| {
+                (label, self.curves.iter().filter(move |(name, _)| is_current(name) == current).collect::<Vec<_>>())
+            })
+            .filter(|(_, curves)| !curves.is_empty())
+            .collect();
+        let count = kinds.len();
+        let mut panels = Vec::new();
+        for (index, (label, curves)) in kinds.into_iter().enumerate() {
+            let mut panel = Panel::new(["(d)", "(e)"][index], "", label).height(120.0);
+            for (name, points) in curves {
+                panel = panel.series(Series::points(name.as_str(), points));
+            }
+            panels.push(if index + 1 < count { panel.share_x_with_next() } else { panel });
+        }
+        panels
+    }
+}
+
+fn is_current(probe: &str) -> bool {
+    probe.to_ascii_lowercase().starts_with("i(")
 }
 
 /// Relative displacement, C(t) and velocities (in detail) and the gains (whole run).

@@ -151,7 +151,7 @@ impl Reproduction<'_> {
         let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let cosimulation = Cosimulation::new(&Options::new(fmu, &scenario))?;
-        let mut recorder = CsvRecorder::create(&csv, true)?;
+        let mut recorder = CsvRecorder::create(&csv, Some(&[]))?;
         let results = match cosimulation.run(&mut recorder, &()) {
             Ok(results) => results,
             Err(error) => {
@@ -160,7 +160,7 @@ impl Reproduction<'_> {
             }
         };
         recorder.finish()?;
-        let drawing = picture::cosim(&results.trace, &scenario)?;
+        let drawing = picture::cosim(&results.trace, &scenario, None)?;
         output::write(&svg, &drawing.svg)?;
         self.warnings.extend(results.warnings.iter().cloned());
         self.chapters.push(Chapter::audit(AUDIT, &results, drawing, vec![csv, svg]));

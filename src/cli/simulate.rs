@@ -65,7 +65,7 @@ const CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) velociti
 fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
     let simulation = Simulation::new(&Options { harvester: fmu, scenario })?;
     output::warn(time_series::warning(scenario, false).as_slice());
-    let mut recorder = CsvRecorder::create(csv, false)?;
+    let mut recorder = CsvRecorder::create(csv, None)?;
     let results = simulation.run(&mut recorder, &TimeBar::new(&scenario.name))?;
     recorder.finish()?;
     Ok(results)

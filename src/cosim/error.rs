@@ -21,6 +21,10 @@ pub enum CosimError {
         "--adaptive takes circuits that can go back to an earlier state; \"{label}\" cannot (ngspice never can; allowed: embedded, fmu)"
     )]
     NoRollback { label: String },
+    #[error("{option} {name}: {reason}")]
+    Element { option: String, name: String, reason: String },
+    #[error("{names}: with --netlist the netlist has the values of the circuit")]
+    CircuitSettings { names: String },
     #[error("{instance}: no earlier state is saved to go back to")]
     NothingSaved { instance: String },
     #[error("--adaptive {tolerance}: {bound}")]

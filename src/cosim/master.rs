@@ -4,8 +4,8 @@ use super::adaptive::StepControl;
 use super::coupling::Books;
 use super::signal::{Curve, Line};
 use super::{
-    Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, EnergyBalance, Gains, HarvesterFmu,
-    HarvesterSample, MechanicsSummary, Method, Schedule,
+    Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, ElementEnergy, EnergyBalance, Gains,
+    HarvesterFmu, HarvesterSample, MechanicsSummary, Method, Powers, Schedule,
 };
 use crate::scenario::Scenario;
 
@@ -18,6 +18,8 @@ pub struct Row<'a> {
     pub harvester: &'a HarvesterSample,
     /// The circuits, in their order.
     pub circuits: &'a [CircuitSample],
+    /// Waveforms of the first circuit that were asked for.
+    pub probes: &'a [f64],
 }
 
 /// Watches a run.
@@ -39,6 +41,10 @@ pub struct Outcome {
     pub mechanics: MechanicsSummary,
     /// The circuits at the end, in their order.
     pub circuits: Vec<CircuitSample>,
+    /// Elements of the first circuit with their energies, if it has a ledger of them.
+    pub elements: Vec<ElementEnergy>,
+    /// Powers of the first circuit over the averaging window.
+    pub powers: Option<Powers>,
     /// The coupling of the harvester with the first circuit.
     pub coupling: CouplingSummary,
     /// The energy balance of harvester and first circuit, with electrostatic feedback.
@@ -66,6 +72,7 @@ struct Point {
     capacitance_rate: [f64; 2],
     impacts: i32,
     circuits: Vec<CircuitSample>,
+    probes: Vec<f64>,
     /// Energy that the mechanics gave so far, J, if the harvester sums it up.
     electrical_work: Option<f64>,
     /// Last C(t) that the circuits were given, F.
@@ -107,15 +114,20 @@ impl Master {
         let window = self.scenario.window;
         let mut point = self.start()?;
         let energies_at_start = self.harvester.energies()?;
-        let mut gains = [None; 2];
+        let (mut gains, mut ledgers) = ([None; 2], [None; 2]);
         loop {
             let harvester = &point.harvester;
-            let row = Row { time: point.time, harvester, circuits: &point.circuits };
+            let row = Row { time: point.time, harvester, circuits: &point.circuits, probes: &point.probes };
             observers.iter_mut().try_for_each(|observer| observer.observe(&row))?;
             for (gain, edge) in gains.iter_mut().zip(window) {
                 if gain.is_none() && point.time >= edge {
                     let (voltage, energy) = (harvester.voltage_gain(), harvester.energy_eq13());
                     *gain = Some(Gains { voltage, energy, impacts: point.impacts });
+                }
+            }
+            for (ledger, edge) in ledgers.iter_mut().zip(window) {
+                if ledger.is_none() && point.time >= edge {
+                    *ledger = point.circuits.first().map(|circuit| circuit.ledger);
                 }
             }
             if point.time >= self.scenario.until {
@@ -142,8 +154,11 @@ impl Master {
         let balance = energies
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
-        let warnings = self.harvester.warnings();
-        Ok(Outcome { mechanics, circuits: point.circuits, coupling, balance, warnings })
+        let powers = ledgers[0].zip(ledgers[1]).map(|(before, after)| Powers::over(window, &before, &after));
+        let elements = self.circuits.first_mut().map_or_else(|| Ok(Vec::new()), |circuit| circuit.elements())?;
+        let mut warnings = self.harvester.warnings();
+        warnings.extend(self.circuits.iter().flat_map(|circuit| circuit.notes().iter().cloned()));
+        Ok(Outcome { mechanics, circuits: point.circuits, elements, powers, coupling, balance, warnings })
     }
 
     fn start(&self) -> Result<Point, CosimError> {
@@ -161,6 +176,7 @@ impl Master {
             capacitance_rate: self.harvester.capacitance_rate()?,
             impacts: self.harvester.counts()?[0],
             circuits: self.circuits.iter().map(|circuit| circuit.sample()).collect::<Result<_, _>>()?,
+            probes: self.circuits.first().map_or_else(Vec::new, |circuit| circuit.probes().1.to_vec()),
             electrical_work: self.harvester.electrical_work()?,
             given,
             voltage,

@@ -37,7 +37,7 @@ pub use excitation::Excitation;
 pub use harvester::{HarvesterFmu, HarvesterSample};
 pub(crate) use instance::{read, references};
 pub use master::{Master, Observer, Outcome, Row};
-pub use ngspice::NgspiceCircuit;
+pub use ngspice::{ElementEnergy, NetlistCircuit, NgspiceCircuit};
 pub(crate) use ratios::{CapacitanceRatios, best_release_voltage};
 pub(crate) use record::TimeProgress;
 pub use record::{CsvRecorder, ImpactLog, MembraneImpact, Trace, TracePoint};
@@ -45,4 +45,4 @@ pub use run::{CircuitSolver, Cosimulation, LabelledCircuit, Options, Results, ru
 pub(crate) use schedule::Schedule;
 pub(crate) use settings::{CircuitRequest, label, voltage_warning};
 pub(crate) use summary::{Averages, Gains};
-pub use summary::{Charges, CircuitSummary, Energies, MechanicsSummary};
+pub use summary::{Charges, CircuitSummary, Energies, MechanicsSummary, Powers};

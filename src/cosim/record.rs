@@ -19,15 +19,17 @@ pub struct CsvRecorder {
 }
 
 impl CsvRecorder {
-    /// Begins the file that will be at `path`; with `circuit`, the columns of the first circuit are in it, too.
-    pub fn create(path: &Path, circuit: bool) -> Result<Self, CosimError> {
+    /// Begins the file that will be at `path`; with a `circuit`, the columns of the first circuit are in it, too, and the
+    /// waveforms called so.
+    pub fn create(path: &Path, circuit: Option<&[String]>) -> Result<Self, CosimError> {
         let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
         let file = AtomicFile::create(path).map_err(fail)?;
         let mut writer = csv::Writer::from_writer(BufWriter::new(file));
         let names = ["time"].into_iter().chain(HarvesterSample::names().iter().copied());
-        let circuit_names = CircuitSample::NAMES.into_iter().take(if circuit { usize::MAX } else { 0 });
-        writer.write_record(names.chain(circuit_names)).map_err(|error| fail(error.into()))?;
-        Ok(Self { path: path.to_owned(), writer, circuit, row: Vec::new() })
+        let circuit_names =
+            circuit.map(|probes| CircuitSample::NAMES.into_iter().chain(probes.iter().map(String::as_str)));
+        writer.write_record(names.chain(circuit_names.into_iter().flatten())).map_err(|error| fail(error.into()))?;
+        Ok(Self { path: path.to_owned(), writer, circuit: circuit.is_some(), row: Vec::new() })
     }
 
     /// Writes the rest, and gives the file its name.
@@ -61,6 +63,7 @@ impl Observer for CsvRecorder {
             && let Some(circuit) = row.circuits.first()
         {
             self.row.extend_from_slice(&circuit.columns());
+            self.row.extend_from_slice(row.probes);
         }
         let written = self.writer.serialize(&self.row);
         written.map_err(|error| CosimError::Write { path: self.path.clone(), cause: error.into() })
@@ -117,12 +120,15 @@ pub struct TracePoint {
     pub harvester: HarvesterSample,
     /// The circuits.
     pub circuits: Vec<CircuitSample>,
+    /// The waveforms that were asked for.
+    pub probes: Vec<f64>,
 }
 
 impl TracePoint {
     /// The point of `row`.
     pub fn of(row: &Row<'_>) -> Self {
-        Self { time: row.time, harvester: *row.harvester, circuits: row.circuits.to_vec() }
+        let (circuits, probes) = (row.circuits.to_vec(), row.probes.to_vec());
+        Self { time: row.time, harvester: *row.harvester, circuits, probes }
     }
 }
 

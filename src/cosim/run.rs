@@ -9,8 +9,9 @@ use videg_circuit::{Release, Settings, Topology};
 use super::ratios::{CapacitanceRatios, best_release_voltage};
 use super::settings::{CircuitRequest, label, voltage_warning};
 use super::{
-    CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, EmbeddedCircuit, EnergyBalance, FmuCircuit,
-    HarvesterFmu, Master, MechanicsSummary, NgspiceCircuit, Observer, Outcome, TimeProgress, Trace,
+    CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, ElementEnergy, EmbeddedCircuit, EnergyBalance,
+    FmuCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit, Observer, Outcome, Powers,
+    TimeProgress, Trace,
 };
 use crate::ngspice::{self, Elements};
 use crate::progress::Progress;
@@ -38,6 +39,8 @@ pub enum CircuitSolver<'a> {
     Ngspice(&'a Path),
     /// The FMU `HarvestingCircuit`.
     Fmu(&'a Fmu),
+    /// A netlist of the user in ngspice; the program as for [`CircuitSolver::Ngspice`].
+    Netlist(&'a Path, NetlistCircuit<'a>),
 }
 
 impl<'a> Options<'a> {
@@ -64,11 +67,15 @@ pub struct Results {
     pub mechanics: MechanicsSummary,
     /// The circuit asked for, then those to compare it with.
     pub circuits: Vec<LabelledCircuit>,
+    /// The elements of a netlist with the energies that they took.
+    pub elements: Vec<ElementEnergy>,
+    /// Mean powers of the circuit asked for over the averaging window.
+    pub powers: Option<Powers>,
     /// The coupling of the harvester with the circuit asked for.
     pub coupling: CouplingSummary,
     /// The energy balance, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
-    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C.
+    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C; 0 for a netlist.
     pub cycle_charge: f64,
     /// Warnings about the validity of the numbers.
     pub warnings: Vec<String>,
@@ -88,7 +95,9 @@ pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Results, Co
 pub struct Cosimulation<'a> {
     master: Master,
     scenario: &'a Scenario,
-    circuits: [Settings; 4],
+    labels: Vec<String>,
+    /// The circuit asked for, unless it is a netlist.
+    asked: Option<Settings>,
     bias_voltage: f64,
 }
 
@@ -100,30 +109,44 @@ impl<'a> Cosimulation<'a> {
         let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
         let bias_voltage = harvester.bias_voltage();
         let ratios = CapacitanceRatios::of(fmu, scenario, &mechanical)?;
-        let asked = request.resolve(bias_voltage, ratios.best);
-        let circuits = compared(&asked, ratios.best);
         let capacitance = harvester.sample()?.capacitance();
-        let slaves = slaves(solver, &circuits, scenario.until, ratios.largest, capacitance);
-        let slaves = slaves.map_err(|error| request.located(error, &asked))?;
-        Ok(Self { master: Master::new(harvester, slaves, scenario, coupling)?, scenario, circuits, bias_voltage })
+        let (slaves, asked) = if let CircuitSolver::Netlist(program, user) = solver {
+            if let Some(names) = request.names() {
+                return Err(CosimError::CircuitSettings { names });
+            }
+            let run = ngspice::Run::new(scenario.until, ratios.largest);
+            let circuit = NgspiceCircuit::of_user(program, &user, capacitance, bias_voltage, &run)?;
+            (vec![Box::new(circuit) as Box<dyn CircuitSlave>], None)
+        } else {
+            let asked = request.resolve(bias_voltage, ratios.best);
+            let circuits = compared(&asked, ratios.best);
+            let slaves = slaves(solver, &circuits, scenario.until, ratios.largest, capacitance);
+            (slaves.map_err(|error| request.located(error, &asked))?, Some(asked))
+        };
+        let labels = slaves.iter().map(|slave| slave.label().to_owned()).collect();
+        let master = Master::new(harvester, slaves, scenario, coupling)?;
+        Ok(Self { master, scenario, labels, asked, bias_voltage })
     }
 
     /// Runs to the end and shows each communication point to `recorder`.
     pub fn run(self, recorder: &mut dyn Observer, progress: &dyn Progress) -> Result<Results, CosimError> {
-        let Self { master, scenario, circuits, bias_voltage } = self;
+        let Self { master, scenario, labels, asked, bias_voltage } = self;
         let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));
         let outcome = master.run(&mut [recorder, &mut trace, &mut time])?;
-        let Outcome { mechanics, circuits: samples, coupling, balance, mut warnings } = outcome;
-        warnings.extend(voltage_warning(&circuits[0], bias_voltage));
+        let Outcome { mechanics, circuits: samples, elements, powers, coupling, balance, mut warnings } = outcome;
+        warnings.extend(asked.and_then(|asked| voltage_warning(&asked, bias_voltage)));
         warnings.extend(coupling.warning());
-        let labelled = circuits.iter().zip(&samples).map(|(settings, sample)| LabelledCircuit {
-            label: label(settings),
+        let labelled = labels.into_iter().zip(&samples).map(|(label, sample)| LabelledCircuit {
+            label,
             summary: CircuitSummary::new(sample, mechanics.energy_eq13),
         });
-        // W of Eq. (13) is 1/2 U_b^2 dC, with the bias voltage of the harvester.
-        let cycle_charge = 2.0 * mechanics.energy_eq13 / bias_voltage.powi(2) * circuits[0].circuit.supply_voltage;
         let circuits = labelled.collect();
-        Ok(Results { mechanics, circuits, coupling, balance, cycle_charge, warnings, trace })
+        // W of Eq. (13) is 1/2 U_b^2 dC, with the bias voltage of the harvester.
+        let impact_charge = 2.0 * mechanics.energy_eq13 / bias_voltage.powi(2);
+        let cycle_charge = asked.map_or(0.0, |asked| impact_charge * asked.circuit.supply_voltage);
+        // Those of our own netlists are no names of the user.
+        let elements = if asked.is_some() { Vec::new() } else { elements };
+        Ok(Results { mechanics, circuits, elements, powers, coupling, balance, cycle_charge, warnings, trace })
     }
 }
 

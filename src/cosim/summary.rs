@@ -1,6 +1,7 @@
 //! Results of a run. Field names are the keys of `--json`; units are SI.
 
 use serde::Serialize;
+use videg_circuit::Ledger;
 
 use super::CircuitSample;
 use crate::ngspice::Waveforms;
@@ -56,6 +57,27 @@ impl Averages {
             power: (after.energy - before.energy) / (to - from),
             impacts: after.impacts - before.impacts,
         }
+    }
+}
+
+/// Mean powers of a circuit over the averaging window, W.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Powers {
+    /// What a user gains: load - supply + the change of what the membranes store.
+    pub net_power: f64,
+    /// Into the load.
+    pub load_power: f64,
+    /// From the supply.
+    pub supply_power: f64,
+}
+
+impl Powers {
+    /// The powers over `window`, s, from the ledgers at its edges.
+    pub(super) fn over([from, to]: [f64; 2], before: &Ledger, after: &Ledger) -> Self {
+        let load = (after.load - before.load) / (to - from);
+        let supply = (after.supply - before.supply) / (to - from);
+        let stored = (after.stored - before.stored) / (to - from);
+        Self { net_power: load - supply + stored, load_power: load, supply_power: supply }
     }
 }
 

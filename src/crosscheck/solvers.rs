@@ -6,7 +6,7 @@ use videg_circuit::Settings;
 
 use super::solver::Solver;
 use super::stop::{Repeat, Stop};
-use crate::cosim::{CircuitSlave as _, NgspiceCircuit};
+use crate::cosim::{CircuitSample, CircuitSlave as _, NgspiceCircuit};
 use crate::ngspice::{CapacitanceTable, Elements, Ngspice, NgspiceError, Run, SolverRun, Waveforms};
 use crate::progress::Progress;
 use crate::threads::{self, Task};
@@ -103,8 +103,18 @@ impl Solvers<'_> {
         run: &Run,
         progress: &dyn Fn(f64),
     ) -> Result<SolverRun, NgspiceError> {
-        let mut circuit = NgspiceCircuit::new(Solver::Live.name(), self.program, elements, table.initial(), run)?;
         let mut found = SolverRun::default();
+        let circuit = NgspiceCircuit::new(Solver::Live.name(), self.program, elements, table.initial(), run);
+        let mut circuit = match circuit.map_err(NgspiceError::from) {
+            Ok(circuit) => circuit,
+            Err(error) if error.is_stop() => {
+                let voltage = [elements.circuit().supply_voltage; 2];
+                found.waveforms.push(0.0, CircuitSample { voltage, ..CircuitSample::default() });
+                found.stop = Some(error);
+                return Ok(found);
+            }
+            Err(error) => return Err(error),
+        };
         found.waveforms.push(0.0, circuit.sample()?);
         for ((time, start), (next, end)) in table.rows().zip(table.rows().skip(1)) {
             match circuit.step(time, next - time, start, end).map_err(NgspiceError::from) {

@@ -42,18 +42,39 @@ impl Elements {
     /// Vectors that ngspice saves, after the time. `TrapezoidalLedger` takes them in this order.
     pub(crate) fn vectors(&self) -> &'static [&'static str] {
         let all: &[&str] = match self.circuit.topology {
-            Topology::SharedNode => &["v(cl)", "v(cr)", "v(de)", "i(vs)", "i(vr)", "v(out)"],
+            Topology::SharedNode => &["v(videg_cl)", "v(videg_cr)", "v(de)", "i(vs)", "i(vr)", "v(out)"],
             Topology::Isolated => {
-                &["v(cl)", "v(cr)", "v(left)", "v(right)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)", "v(out)"]
+                &["v(videg_cl)", "v(videg_cr)", "v(left)", "v(right)", "i(vsl)", "i(vsr)", "i(vrl)", "i(vrr)", "v(out)"]
             }
         };
         // A load behind a switch is no node.
         &all[..all.len() - usize::from(self.circuit.release == Release::Switch)]
     }
 
+    /// What an element of the netlists is for, by its name in ngspice; none for sources that only show a current.
+    pub(crate) fn role(name: &str) -> Option<Role> {
+        let begins = |word: &str| name.starts_with(word);
+        if begins("vin") {
+            Some(Role::Supply)
+        } else if begins("rload") || begins("vstorage") || begins("bswitch") {
+            Some(Role::Load)
+        } else if begins("dzener") || begins("dblock") {
+            Some(Role::Zener)
+        } else if begins("dcharge") || begins("dstorage") {
+            Some(Role::Diode)
+        } else {
+            begins("bleak").then_some(Role::Leakage)
+        }
+    }
+
+    /// The circuit that these elements are.
+    pub(crate) fn circuit(&self) -> &Parameters {
+        &self.circuit
+    }
+
     /// `R`, ohm, as ngspice gets it. The embedded solver bounds the conductance of a switch likewise, see its
     /// `SWITCH_CONDUCTANCE`.
-    pub(super) fn resistance(&self) -> f64 {
+    pub(crate) fn resistance(&self) -> f64 {
         const LEAST_SWITCHED: f64 = 1e3;
         let load = self.circuit.load_resistance;
         if self.circuit.release == Release::Switch { load.max(LEAST_SWITCHED) } else { load }
@@ -129,6 +150,26 @@ impl Elements {
             .number("half_band", 0.5 * diode.switch_band)
             .number("quarter_band", 0.25 * diode.switch_band)
     }
+}
+
+/// What an element of a circuit is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Energy from it is a cost.
+    Supply,
+    /// Energy into it is a gain.
+    Load,
+    /// Release elements that burn their voltage.
+    Zener,
+    /// Diodes, and whatever else.
+    Diode,
+    /// Leakage of the films.
+    Leakage,
+}
+
+impl Role {
+    /// All roles.
+    pub const ALL: [Self; 5] = [Self::Supply, Self::Load, Self::Zener, Self::Diode, Self::Leakage];
 }
 
 /// Voltages at the beginning of a run, V.

@@ -20,6 +20,7 @@
 //!   program that has loaded ngspice. Only numbers can be put into a template, so that no text of a user ever gets into a
 //!   netlist;
 //! - [`Ngspice`] finds the program and runs it; [`RawReader`] reads the result, which is summed up point by point;
+//! - [`UserNetlist`] is a circuit of the user;
 //! - [`live`] runs ngspice's shared library step by step, as the partner of a co-simulation;
 //! - [`CapacitorTest`] compares ngspice's own capacitor with closed forms;
 //! - [`Waveforms`] is the result of either solver.
@@ -30,22 +31,25 @@ mod elements;
 mod error;
 mod ledger;
 pub mod live;
+mod netlist_cards;
 mod raw;
 mod result;
 mod run;
 mod runner;
 mod template;
+mod user_netlist;
 mod waveforms;
 
 pub use capacitance::CapacitanceTable;
 pub(crate) use capacitance::PICO;
 pub use capacitor::{CapacitorTest, Deviation};
-pub use elements::Elements;
+pub use elements::{Elements, Role};
 pub use error::{Complaints, NgspiceError};
-pub(crate) use ledger::TrapezoidalLedger;
+pub use netlist_cards::NetlistError;
 pub use raw::{RawError, RawReader};
 pub(crate) use run::CapacitanceSource;
 pub use run::Run;
 pub use runner::{Ngspice, SolverRun};
 pub(crate) use template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
+pub use user_netlist::UserNetlist;
 pub use waveforms::Waveforms;

@@ -83,10 +83,8 @@ impl Run {
             .number("gmin", self.minimum_conductance)
             .number("initial_left", left)
             .number("initial_right", right)
-            .number("initial_total", left + right)
             .number("initial_left_pf", left / PICO)
             .number("initial_right_pf", right / PICO)
-            .number("initial_total_pf", (left + right) / PICO)
             .words("saved", saved)
             .words("table_file", &[TABLE_FILE])
             .words("raw_file", &[RAW_FILE]);
@@ -94,7 +92,8 @@ impl Run {
             CapacitanceSource::Table => (template!("capacitance_table.cir"), template!("run_batch.cir")),
             CapacitanceSource::External => (template!("capacitance_external.cir"), template!("run_live.cir")),
         };
-        let (capacitance, run) = (values.render(capacitance)?, values.render(run)?);
+        let capacitance = [capacitance, template!("membranes.cir")].concat();
+        let (capacitance, run) = (values.render(&capacitance)?, values.render(run)?);
         Ok(values.part("capacitance", &capacitance).part("run", &run))
     }
 }

@@ -55,7 +55,7 @@ fn a_failure_and_success_without_a_result_carry_the_lines_of_ngspice() {
 
 #[test]
 fn half_a_result_is_a_failure_that_says_how_far_it_got() {
-    let header = "Flags: real\\nNo. Variables: 7\\nNo. Points: 1\\nVariables:\\n0 time t\\n1 v(cl) v\\n2 v(cr) v\\n\
+    let header = "Flags: real\\nNo. Variables: 7\\nNo. Points: 1\\nVariables:\\n0 time t\\n1 v(videg_cl) v\\n2 v(videg_cr) v\\n\
                   3 v(de) v\\n4 v(out) v\\n5 i(vs) i\\n6 i(vr) i\\nBinary:\\n";
     let script = format!("printf '{header}' > harvesting.raw; head -c 56 /dev/zero >> harvesting.raw");
     let error = message(&script);

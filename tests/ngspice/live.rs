@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use videg::cosim::{CircuitSample, CircuitSlave, NgspiceCircuit};
-use videg::ngspice::live::{Job, LiveError, Ramp, WORKER_VERB, Worker};
+use videg::ngspice::live::{Job, LiveError, Ramp, WORKER_VERB, Wanted, Worker};
 use videg::ngspice::{Elements, Run};
 use videg_circuit::Settings;
 
@@ -66,8 +66,29 @@ fn more_communication_points_on_the_same_ramps_do_not_cost_accuracy() {
 }
 
 fn job() -> Job {
-    let netlist = ["* test", "Vc c 0 external", "Rc c 0 1", ".end"].map(str::to_owned).to_vec();
-    Job { netlist, sources: vec!["vc".to_owned()], vectors: vec!["v(c)".to_owned()], longest_step: 1e-4, stop: 10.0 }
+    let netlist = [
+        "* test",
+        "Vc c 0 external",
+        "Rc c 0 1",
+        ".subckt deg_left p n",
+        "Cvidegleft p n 1p",
+        "Cvidegleft_change p n Q='0*V(p,n)'",
+        ".ends",
+        "Xl c 0 deg_left",
+        ".ic v(c)=1",
+        ".options method=gear",
+        ".end",
+    ];
+    Job {
+        netlist: netlist.map(str::to_owned).to_vec(),
+        sources: vec!["vc".to_owned()],
+        commands: Vec::new(),
+        longest_step: 1e-6,
+        stop: 10.0,
+        from_initial_conditions: true,
+        is_trapezoidal: false,
+        memory: None,
+    }
 }
 
 fn ramp() -> Ramp {
@@ -77,18 +98,24 @@ fn ramp() -> Ramp {
 #[test]
 fn a_worker_follows_its_ramps_exactly() {
     let mut worker = Worker::start(Path::new(PROGRAM), &job(), Duration::from_secs(60)).unwrap();
-    let mut points = Vec::new();
-    worker.step(&ramp(), |time, values| points.push((time, values[0]))).unwrap();
-    worker
-        .step(&Ramp { from: 1e-3, to: 2e-3, start: vec![2.0], end: vec![2.0] }, |time, values| {
-            points.push((time, values[0]));
-        })
-        .unwrap();
-    assert_eq!(points.last(), Some(&(2e-3, 2.0)));
-    for (time, value) in points {
-        assert!((value - (1.0 + 1e3 * time).min(2.0)).abs() < 1e-9, "{time} {value}");
+    let circuit = worker.circuit().unwrap();
+    let resistor = circuit.elements.iter().position(|element| element.name == "rc").unwrap();
+    let wanted = Wanted { groups: vec![vec![resistor]], probes: vec!["c".to_owned()], start: vec![1.0] };
+    let begin = worker.begin(wanted).unwrap();
+    assert_eq!((begin.probes.as_slice(), begin.membranes.voltage), (&[1.0][..], [1.0, 0.0]));
+    let held = Ramp { from: 1e-3, to: 2e-3, start: vec![2.0], end: vec![2.0] };
+    // The integral of V^2 over the ramp, then 4 V^2 for 1 ms, on 1 Ohm; within the error of steps of 1 us.
+    for (ramp, voltage, energy) in [(ramp(), 2.0, 7e-3 / 3.0), (held, 2.0, 7e-3 / 3.0 + 4e-3)] {
+        let state = worker.step(ramp).unwrap();
+        assert_eq!(state.probes, [voltage]);
+        assert!((state.groups[0].energy / energy - 1.0).abs() < 1e-3, "{} {energy}", state.groups[0].energy);
     }
+    assert_eq!(worker.energies().unwrap().len(), circuit.elements.len());
 }
+
+/// Answers of a worker up to the first step.
+const LOADED: &str = r#"read job; echo '{"circuit":{"elements":[],"nodes":[],"unread":[]}}'; read wanted
+    echo '{"reached":{"membranes":{"voltage":[0,0],"stored":0,"mechanical":0},"groups":[],"probes":[]}}'; read ramp"#;
 
 /// A program that behaves as `script` says.
 fn fake(folder: &Path, script: &str) -> PathBuf {
@@ -103,16 +130,23 @@ fn fake(folder: &Path, script: &str) -> PathBuf {
 fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
     let folder = tempfile::tempdir().unwrap();
     for (script, expected) in [
-        ("echo oh no >&2; exit 7", "ended between 0 s and 0.001 s (exit status: 7): oh no"),
-        ("kill -SEGV $$", "ended between 0 s and 0.001 s (signal: 11 (SIGSEGV)"),
-        ("sleep 1000", "did not get from 0 s to 0.001 s within 1 s"),
-        ("while sleep 0.3; do echo '{\"points\":[]}'; done", "did not get from 0 s to 0.001 s within 1 s"),
-        ("cat >/dev/null & echo '{\"points\":[1'; wait", "ended between 0 s and 0.001 s"),
+        ("echo oh no >&2; exit 7", "ended about the netlist (exit status: 7): oh no"),
+        ("kill -SEGV $$", "ended about the netlist (signal: 11 (SIGSEGV)"),
+        ("sleep 1000", "no answer of ngspice about the netlist within 1 s"),
+        ("cat >/dev/null & echo '{\"energies\":[1'; wait", "ended about the netlist"),
         ("read job; echo '{\"failure\":\"no circuit\"}'", "no circuit"),
+        (&format!("{LOADED}; exit 3"), "ended between 0 s and 0.001 s (exit status: 3)"),
+        (&format!("{LOADED}; sleep 1000"), "no answer of ngspice between 0 s and 0.001 s within 1 s"),
+        (&format!("{LOADED}; echo '{{\"energies\":[]}}'; sleep 1000"), "ended between 0 s and 0.001 s"),
     ] {
         let program = fake(folder.path(), script);
         let mut worker = Worker::start(&program, &job(), Duration::from_secs(1)).unwrap();
-        let error: LiveError = worker.step(&ramp(), |_, _| {}).unwrap_err();
+        let mut run = || -> Result<(), LiveError> {
+            worker.circuit()?;
+            worker.begin(Wanted::default())?;
+            worker.step(ramp()).map(drop)
+        };
+        let error = run().unwrap_err();
         assert!(error.to_string().contains(expected), "{script}: {error}");
     }
     let missing = Worker::start(Path::new("/nowhere/videg"), &job(), Duration::from_secs(1)).err().unwrap();
@@ -127,14 +161,15 @@ fn a_circuit_that_ngspice_cannot_read_is_an_error_in_its_own_words() {
         let mut job = job();
         job.netlist.insert(2, line.to_owned());
         let mut worker = Worker::start(Path::new(PROGRAM), &job, Duration::from_secs(60)).unwrap();
-        let error = worker.step(&ramp(), |_, _| {}).unwrap_err().to_string();
-        assert!(error.starts_with("the transient analysis ended early; ngspice said: "), "{error}");
+        let error = worker.circuit().unwrap_err().to_string();
+        assert!(error.starts_with("ngspice does not take the netlist; ngspice said: "), "{error}");
         assert!(error.contains(expected), "{error}");
     }
-    let unknown = Job { vectors: vec!["v(nowhere)".to_owned()], ..job() };
-    let mut worker = Worker::start(Path::new(PROGRAM), &unknown, Duration::from_secs(60)).unwrap();
-    let error = worker.step(&ramp(), |_, _| {}).unwrap_err().to_string();
-    assert!(error.starts_with("the circuit has no vector v(nowhere)"), "{error}");
+    let mut worker = Worker::start(Path::new(PROGRAM), &job(), Duration::from_secs(60)).unwrap();
+    worker.circuit().unwrap();
+    worker.begin(Wanted { probes: vec!["nowhere".to_owned()], start: vec![1.0], ..Wanted::default() }).unwrap();
+    let error = worker.step(ramp()).unwrap_err().to_string();
+    assert!(error.starts_with("the circuit has no vector nowhere"), "{error}");
 }
 
 fn cosim(folder: &Path, library: Option<&str>) -> std::process::Output {
@@ -159,13 +194,11 @@ fn cosim_couples_ngspice_and_writes_what_it_writes_for_any_circuit() {
 }
 
 #[test]
-fn without_the_library_cosim_says_how_to_get_it_and_keeps_what_it_has() {
+fn without_the_library_cosim_says_how_to_get_it_before_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let output = cosim(folder.path(), Some("/nowhere/libngspice.so.0"));
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(error.contains("cannot load the shared library of ngspice (/nowhere/libngspice.so.0)"), "{error}");
     assert!(error.contains("apt install libngspice0"), "{error}");
-    assert!(error.contains("timeseries.csv.part"), "{error}");
-    assert!(folder.path().join("timeseries.csv.part").is_file());
 }

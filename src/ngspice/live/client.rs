@@ -4,11 +4,11 @@ use std::io::{self, BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use thiserror::Error;
 
-use super::protocol::{Job, Ramp, Reply, receive, send};
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, receive, send};
 use videg_system::output::{KeptOutput, Part};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
@@ -29,11 +29,11 @@ pub enum LiveError {
     #[error("{0}")]
     Failure(String),
     /// The worker died.
-    #[error("the process of ngspice ended between {from} s and {to} s ({how}){said}")]
-    Died { from: f64, to: f64, how: String, said: String },
+    #[error("the process of ngspice ended {when} ({how}){said}")]
+    Died { when: String, how: String, said: String },
     /// The worker does not answer.
-    #[error("ngspice did not get from {from} s to {to} s within {} s", limit.as_secs_f64())]
-    TimeLimit { from: f64, to: f64, limit: Duration },
+    #[error("no answer of ngspice {when} within {} s", limit.as_secs_f64())]
+    TimeLimit { when: String, limit: Duration },
 }
 
 /// A running worker.
@@ -43,13 +43,13 @@ pub struct Worker {
     replies: Receiver<io::Result<Option<Reply>>>,
     stderr: KeptOutput,
     limit: Duration,
-    vectors: usize,
+    time: f64,
     /// Working folder and home of the worker: no start-up file of ngspice lies there.
     _folder: TemporaryFolder,
 }
 
 impl Worker {
-    /// Starts `program` as a worker for `job`. Each communication step may take `limit` of real time.
+    /// Starts `program` as a worker for `job`. Each reply may take `limit` of real time.
     ///
     /// # Errors
     /// If the program cannot be started.
@@ -71,45 +71,78 @@ impl Worker {
         let replies = read_replies(child.stdout.take().ok_or_else(missing)?).map_err(fail)?;
         let stderr =
             KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
-        let vectors = job.vectors.len();
-        let mut worker = Self { group, requests, replies, stderr, limit, vectors, _folder: folder };
+        let mut worker = Self { group, requests, replies, stderr, limit, time: 0.0, _folder: folder };
         // A worker that is gone already is found out by the first step.
         let _ = send(&mut worker.requests, job);
         Ok(worker)
     }
 
-    /// Runs ngspice over a communication step; `point` gets the time, s, and the job's vectors at each time point that it
-    /// accepts on the way.
+    /// The circuit, as soon as ngspice has read it.
     ///
     /// # Errors
-    /// If ngspice gives up, dies or takes too long.
-    pub fn step(&mut self, ramp: &Ramp, mut point: impl FnMut(f64, &[f64])) -> Result<(), LiveError> {
-        let (from, to) = (ramp.from, ramp.to);
-        // A worker that has died says why in its last reply, so that is read even if the request does not get through.
-        let _ = send(&mut self.requests, ramp);
-        let begun = Instant::now();
-        loop {
-            // The limit is for the step: a worker that creeps sends points now and then.
-            match self.replies.recv_timeout(self.limit.saturating_sub(begun.elapsed())) {
-                Ok(Ok(Some(Reply::Points(values)))) => {
-                    for row in values.chunks_exact(1 + self.vectors) {
-                        point(row[0], &row[1..]);
-                    }
-                }
-                Ok(Ok(Some(Reply::Reached))) => return Ok(()),
-                Ok(Ok(Some(Reply::Failure(text)))) => return Err(LiveError::Failure(text)),
-                Err(RecvTimeoutError::Timeout) => return Err(LiveError::TimeLimit { from, to, limit: self.limit }),
-                _ => return Err(self.died(from, to)),
-            }
+    /// If ngspice does not take the netlist, dies or takes too long; the same for all that follow.
+    pub fn circuit(&mut self) -> Result<Circuit, LiveError> {
+        match self.receive(0.0)? {
+            Reply::Circuit(circuit) => Ok(circuit),
+            _ => Err(self.died(0.0)),
         }
     }
 
-    fn died(&mut self, from: f64, to: f64) -> LiveError {
+    /// Says what is wanted of each communication point, and begins; the state at 0 s.
+    pub fn begin(&mut self, wanted: Wanted) -> Result<State, LiveError> {
+        self.state(&Request::Wanted(wanted), 0.0)
+    }
+
+    /// Runs ngspice over a communication step.
+    pub fn step(&mut self, ramp: Ramp) -> Result<State, LiveError> {
+        let to = ramp.to;
+        let state = self.state(&Request::Ramp(ramp), to)?;
+        self.time = to;
+        Ok(state)
+    }
+
+    /// Energies that the elements took so far, J.
+    pub fn energies(&mut self) -> Result<Vec<f64>, LiveError> {
+        let time = self.time;
+        match self.ask(&Request::Energies, time)? {
+            Reply::Energies(energies) => Ok(energies),
+            _ => Err(self.died(time)),
+        }
+    }
+
+    fn state(&mut self, request: &Request, to: f64) -> Result<State, LiveError> {
+        match self.ask(request, to)? {
+            Reply::Reached(state) => Ok(state),
+            _ => Err(self.died(to)),
+        }
+    }
+
+    fn ask(&mut self, request: &Request, to: f64) -> Result<Reply, LiveError> {
+        // A worker that has died says why in its last reply, so that is read even if the request does not get through.
+        let _ = send(&mut self.requests, request);
+        self.receive(to)
+    }
+
+    /// The next reply, on the way to the time `to`, s.
+    fn receive(&mut self, to: f64) -> Result<Reply, LiveError> {
+        match self.replies.recv_timeout(self.limit) {
+            Ok(Ok(Some(Reply::Failure(text)))) => Err(LiveError::Failure(text)),
+            Ok(Ok(Some(reply))) => Ok(reply),
+            Err(RecvTimeoutError::Timeout) => Err(LiveError::TimeLimit { when: self.when(to), limit: self.limit }),
+            _ => Err(self.died(to)),
+        }
+    }
+
+    fn died(&mut self, to: f64) -> LiveError {
         // It has closed its stdout, but may still be about to end.
         let how = self.group.end().map_or_else(|cause| cause.to_string(), |status| status.to_string());
         let said = self.stderr.text();
         let said = said.trim().lines().fold(String::new(), |all, line| all + ": " + line);
-        LiveError::Died { from, to, how, said }
+        LiveError::Died { when: self.when(to), how, said }
+    }
+
+    fn when(&self, to: f64) -> String {
+        if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() }
     }
 }
 

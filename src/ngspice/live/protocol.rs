@@ -4,8 +4,11 @@ use std::io::{self, BufRead, Read as _, Write};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-/// Longest line that is read, bytes: a netlist takes some kilobytes.
-const LONGEST_LINE: u64 = 1 << 20;
+use super::ledger::{Group, Membranes};
+use super::network::Account;
+
+/// Longest line that is read, bytes: a netlist may take [`crate::ngspice::UserNetlist::LARGEST`].
+const LONGEST_LINE: u64 = 1 << 22;
 
 /// First line to the worker: the circuit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -14,15 +17,55 @@ pub struct Job {
     pub netlist: Vec<String>,
     /// Names of the external sources, in the order of [`Ramp::start`].
     pub sources: Vec<String>,
-    /// The vectors that each time point holds after the time, in their order, as a netlist names them: `v(node)`, `i(source)`.
-    pub vectors: Vec<String>,
+    /// Commands before the analysis.
+    pub commands: Vec<String>,
     /// Longest time step that ngspice may take, s.
     pub longest_step: f64,
     /// End of the transient analysis, s: beyond the last communication point.
     pub stop: f64,
+    /// Begins with the voltages of `.ic`, 0 for other nodes; otherwise with the operating point.
+    pub from_initial_conditions: bool,
+    /// ngspice integrates by the trapezoidal rule, otherwise by Gear's method of order 2.
+    pub is_trapezoidal: bool,
+    /// Memory that the worker may take, bytes.
+    pub memory: Option<u64>,
 }
 
-/// Each further line to the worker: go on until a communication point.
+/// What the worker tells of the circuit.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Circuit {
+    /// The elements.
+    pub elements: Vec<Account>,
+    /// Names of the nodes.
+    pub nodes: Vec<String>,
+    /// Elements of which ngspice does not tell all currents.
+    pub unread: Vec<usize>,
+}
+
+/// What the master wants to know at each communication point.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Wanted {
+    /// Groups of elements, by their place in [`Circuit::elements`].
+    pub groups: Vec<Vec<usize>>,
+    /// Vectors: nodes and `source#branch`.
+    pub probes: Vec<String>,
+    /// Values of the external sources at 0 s, V.
+    pub start: Vec<f64>,
+}
+
+/// Each further line to the worker.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Request {
+    /// What is wanted: begin. The second line.
+    Wanted(Wanted),
+    /// Go on until a communication point.
+    Ramp(Ramp),
+    /// The energies of all elements so far.
+    Energies,
+}
+
+/// A step to a communication point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ramp {
     /// Where it begins: the communication point reached last, s.
@@ -44,14 +87,27 @@ impl Ramp {
     }
 }
 
+/// The circuit at a communication point.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct State {
+    /// The membranes.
+    pub membranes: Membranes,
+    /// The groups.
+    pub groups: Vec<Group>,
+    /// The probes, V or A.
+    pub probes: Vec<f64>,
+}
+
 /// Each line from the worker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reply {
-    /// Time points that ngspice has accepted, one after the other: the time, s, then the vectors of the job.
-    Points(Vec<f64>),
-    /// The communication point asked for is reached; the last time point sent is there.
-    Reached,
+    /// The circuit is loaded.
+    Circuit(Circuit),
+    /// The communication point asked for is reached.
+    Reached(State),
+    /// Energies that the elements took so far, J.
+    Energies(Vec<f64>),
     /// It cannot go on, and why.
     Failure(String),
 }
@@ -82,18 +138,18 @@ mod tests {
     fn numbers_arrive_with_all_their_bits() {
         let values: Vec<f64> = vec![0.1 + 0.2, 1e-300, -5e-324, f64::MAX, f64::EPSILON];
         let mut bytes = Vec::new();
-        send(&mut bytes, &Reply::Points(values.clone())).unwrap();
-        assert_eq!(receive::<Reply>(&mut bytes.as_slice()).unwrap(), Some(Reply::Points(values)));
+        send(&mut bytes, &Reply::Energies(values.clone())).unwrap();
+        assert_eq!(receive::<Reply>(&mut bytes.as_slice()).unwrap(), Some(Reply::Energies(values)));
     }
 
     #[test]
     fn the_end_of_the_stream_is_no_message_and_garbage_or_an_endless_line_an_error() {
         assert_eq!(receive::<Reply>(&mut &b""[..]).unwrap(), None);
-        let endless = vec![b'['; 3 << 20];
-        for garbage in [&b"\n"[..], b"{}\n", b"{\"points\":[null]}\n", b"{\"points\":[1", &endless] {
+        let endless = vec![b'['; 12 << 20];
+        for garbage in [&b"\n"[..], b"{}\n", b"{\"energies\":[null]}\n", b"{\"energies\":[1", &endless] {
             let mut reader = garbage;
             assert!(receive::<Reply>(&mut reader).is_err());
-            assert!(garbage.len() < 100 || reader.len() >= 2 << 20, "it was read to its end");
+            assert!(garbage.len() < 100 || reader.len() >= 8 << 20, "it was read to its end");
         }
     }
 

@@ -6,18 +6,23 @@
 //! they restart the integration at order one.
 
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::io::{self, BufReader, Write};
 use std::iter;
 
-use super::library::{Callbacks, LibraryError, Ngspice, VectorValues};
-use super::protocol::{Job, Ramp, Reply, receive, send};
+use super::ledger::ElementLedger;
+use super::library::{Callbacks, LibraryError, Ngspice, VectorValue, VectorValues};
+use super::listing;
+use super::network::Network;
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, receive, send};
 
 /// Lines of ngspice that are kept for the message of a failure.
 const KEPT_LINES: usize = 12;
-/// Numbers of accepted time points that are kept before they are sent on.
-const MOST_KEPT: usize = 4096;
+/// Most elements of a circuit: the ledger is summed up at each time point.
+const MOST_ELEMENTS: usize = 5000;
+/// Most lines of a listing that are read: elements and models.
+const MOST_LINES: usize = 4 * MOST_ELEMENTS;
 /// Longest line that is kept, characters.
 const LONGEST_LINE: usize = 300;
 /// Time that differs by less than this part of a time step is the same.
@@ -31,33 +36,69 @@ struct Session<W> {
     replies: W,
     job: Job,
     ramp: Ramp,
-    /// Position of each vector of the job in what ngspice sends; empty before the first time point.
+    wanted: Wanted,
+    /// From the listing of the circuit on.
+    ledger: Option<ElementLedger>,
+    /// Voltages of nodes at 0 s, V, where they are given.
+    initial: BTreeMap<String, f64>,
+    /// Position in what ngspice sends of the time, each vector of the ledger and each probe; empty before the first time point.
     positions: Vec<usize>,
-    /// Accepted time points that have not been sent yet: time and vectors, point by point.
-    points: Vec<f64>,
+    /// Their values at the last time point.
+    values: Vec<f64>,
+    /// The lines of a listing that is being printed.
+    listing: Option<Vec<String>>,
     lines: VecDeque<String>,
 }
 
-/// Serves one job: reads it and the ramps from stdin, answers on `replies`, and returns when stdin ends or the job has
+/// Serves one job: reads it and the requests from stdin, answers on `replies`, and returns when stdin ends or the job has
 /// failed.
 pub fn serve<W: Write>(mut replies: W) -> io::Result<()> {
     let mut requests = BufReader::new(io::stdin());
     let Some(job) = receive::<Job>(&mut requests)? else { return Ok(()) };
-    let Some(ramp) = receive::<Ramp>(&mut requests)? else { return Ok(()) };
+    if let Some(bytes) = job.memory {
+        limit_memory(bytes)?;
+    }
     let library = match Ngspice::load() {
         Ok(library) => library,
         Err(error) => return send(&mut replies, &Reply::Failure(error.to_string())),
     };
-    let (positions, points, lines) = (Vec::new(), Vec::new(), VecDeque::new());
-    let session = RefCell::new(Session { requests, replies, job, ramp, positions, points, lines });
-    let outcome = analyse(&library, &session);
+    let session = RefCell::new(Session {
+        requests,
+        replies,
+        job,
+        ramp: Ramp { from: 0.0, to: 0.0, start: Vec::new(), end: Vec::new() },
+        wanted: Wanted::default(),
+        ledger: None,
+        initial: BTreeMap::new(),
+        positions: Vec::new(),
+        values: Vec::new(),
+        listing: None,
+        lines: VecDeque::new(),
+    });
+    let outcome = load(&library, &session).and_then(|()| {
+        let begun = session.borrow_mut().begin().map_err(|error| error.to_string())?;
+        if begun { analyse(&library, &session) } else { std::process::exit(0) }
+    });
     // ngspice returns only when it cannot go on: the end of the requests ends the process.
     let mut session = session.borrow_mut();
-    let reason = outcome.err().map_or_else(|| "the transient analysis ended early".to_owned(), |e| e.to_string());
+    let reason = outcome.err().unwrap_or_else(|| "the transient analysis ended early".to_owned());
     session.fail(&reason)
 }
 
-fn analyse<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<(), LibraryError> {
+/// A circuit that swells without end costs no more than this process.
+fn limit_memory(bytes: u64) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use rustix::process::{Resource, Rlimit, setrlimit};
+        setrlimit(Resource::As, Rlimit { current: Some(bytes), maximum: Some(bytes) })?;
+    }
+    #[cfg(not(unix))]
+    let _ = bytes;
+    Ok(())
+}
+
+/// Loads the circuit and has its elements listed.
+fn load<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<(), String> {
     let callbacks = Callbacks {
         text: on_text::<W>,
         exit: on_exit::<W>,
@@ -66,19 +107,77 @@ fn analyse<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result
         voltage: on_voltage::<W>,
         sync: on_sync::<W>,
     };
-    // SAFETY: the callbacks take a session of this type, which outlives the library's calls below.
+    // SAFETY: the callbacks take a session of this type, which outlives the library's calls.
     unsafe { library.initialize(callbacks, std::ptr::from_ref(session).cast_mut().cast()) };
-    let (netlist, analysis) = {
-        let job = &session.borrow().job;
-        (job.netlist.clone(), format!("tran {0:e} {1:e} 0 {0:e} uic", job.longest_step, job.stop))
-    };
-    library.circuit(&netlist)?;
-    // Time points go to the callback; kept, they would fill the memory.
-    library.command("save none")?;
-    library.command(&analysis)
+    let said = |error: LibraryError| error.to_string();
+    let netlist = session.borrow().job.netlist.clone();
+    library.circuit(&netlist).map_err(said)?;
+    session.borrow_mut().listing = Some(Vec::new());
+    library.command("listing expand").map_err(said)?;
+    let lines = session.borrow_mut().listing.take().unwrap_or_default();
+    let circuit = listing::Circuit::read(lines.iter().map(String::as_str));
+    let count = circuit.elements.len();
+    if count == 0 {
+        return Err("ngspice does not take the netlist".to_owned());
+    }
+    if count > MOST_ELEMENTS || lines.len() > MOST_LINES {
+        return Err(format!("the circuit has {count} elements; at most {MOST_ELEMENTS}"));
+    }
+    let network = Network::new(&circuit)?;
+    let mut session = session.borrow_mut();
+    if session.job.from_initial_conditions {
+        session.initial = circuit.initial;
+    }
+    let voltage = |node: &str| session.initial.get(node).copied().unwrap_or_default();
+    let ledger = ElementLedger::new(network, session.job.is_trapezoidal, voltage);
+    session.ledger = Some(ledger);
+    Ok(())
+}
+
+fn analyse<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<(), String> {
+    let commands = session.borrow().commands();
+    commands.iter().try_for_each(|command| library.command(command)).map_err(|error| error.to_string())
 }
 
 impl<W: Write> Session<W> {
+    /// The commands from the circuit to the end.
+    fn commands(&self) -> Vec<String> {
+        let Job { longest_step, stop, from_initial_conditions, commands, .. } = &self.job;
+        let parameters =
+            self.vectors().filter(|name| name.starts_with('@')).fold(String::new(), |all, name| all + " " + name);
+        let start = if *from_initial_conditions { " uic" } else { "" };
+        let mut all = commands.clone();
+        // Time points go to the callback; kept, they would fill the memory. Parameters of elements must be named.
+        all.push(format!("save none{parameters}"));
+        all.push(format!("tran {longest_step:e} {stop:e} 0 {longest_step:e}{start}"));
+        all
+    }
+
+    /// The vectors that ngspice has to send, after the time.
+    fn vectors(&self) -> impl Iterator<Item = &str> {
+        let ledger = self.ledger.iter().flat_map(|ledger| &ledger.network().vectors);
+        ledger.chain(&self.wanted.probes).map(String::as_str)
+    }
+
+    /// Tells of the circuit and takes what is wanted; whether anything is.
+    fn begin(&mut self) -> io::Result<bool> {
+        let circuit = self.ledger.as_ref().map(|ledger| {
+            let network = ledger.network();
+            Circuit {
+                elements: network.accounts.clone(),
+                nodes: network.nodes.iter().map(|&node| network.vectors[node].clone()).collect(),
+                unread: network.unread().collect(),
+            }
+        });
+        if let Some(circuit) = circuit {
+            send(&mut self.replies, &Reply::Circuit(circuit))?;
+        }
+        let Some(Request::Wanted(wanted)) = receive(&mut self.requests)? else { return Ok(false) };
+        self.ramp = Ramp { from: 0.0, to: 0.0, start: wanted.start.clone(), end: wanted.start.clone() };
+        self.wanted = wanted;
+        Ok(true)
+    }
+
     /// Reports that it cannot go on, with the last words of ngspice.
     fn fail(&mut self, reason: &str) -> io::Result<()> {
         let said = self.lines.iter().map(String::as_str).collect::<Vec<_>>().join(" | ");
@@ -88,6 +187,11 @@ impl<W: Write> Session<W> {
 
     fn keep(&mut self, line: &str) {
         let line = line.trim_start_matches("stdout ").trim_start_matches("stderr ").trim();
+        if let Some(listing) = &mut self.listing {
+            return if listing.len() <= MOST_LINES {
+                listing.push(line.to_owned());
+            };
+        }
         if line.is_empty() {
             return;
         }
@@ -106,13 +210,10 @@ impl<W: Write> Session<W> {
         // SAFETY: ngspice sends `count` pointers to vectors.
         let vectors = unsafe { std::slice::from_raw_parts(all.values, count) };
         if self.positions.is_empty() {
-            for wanted in iter::once("time").chain(self.job.vectors.iter().map(String::as_str)) {
-                let name = internal_name(wanted);
-                // SAFETY: the vectors are those that ngspice sends.
-                let position = vectors.iter().position(|&vector| unsafe { is_named(vector, &name) });
-                self.positions.push(position.ok_or_else(|| format!("the circuit has no vector {wanted}"))?);
-            }
+            // SAFETY: the vectors are those that ngspice sends.
+            self.positions = unsafe { self.locate(vectors) }?;
         }
+        self.values.clear();
         for &position in &self.positions {
             let vector = vectors.get(position).ok_or("ngspice sent fewer vectors than before")?;
             // SAFETY: ngspice sends valid pointers.
@@ -120,34 +221,77 @@ impl<W: Write> Session<W> {
             if !value.is_finite() {
                 return Err(format!("a vector is {value} after {} s", self.ramp.from));
             }
-            self.points.push(value);
+            self.values.push(value);
         }
-        if self.points.len() >= MOST_KEPT { self.send_points().map_err(|cause| cause.to_string()) } else { Ok(()) }
+        if let (Some(ledger), [time, values @ ..]) = (&mut self.ledger, self.values.as_slice()) {
+            ledger.add(*time, values);
+        }
+        Ok(())
     }
 
-    fn send_points(&mut self) -> io::Result<()> {
-        send(&mut self.replies, &Reply::Points(std::mem::take(&mut self.points)))
+    /// Finds the vectors in what ngspice sends.
+    ///
+    /// # Safety
+    /// `vectors` are what ngspice sends.
+    unsafe fn locate(&self, vectors: &[*const VectorValue]) -> Result<Vec<usize>, String> {
+        // SAFETY: ngspice sends zero-terminated names.
+        let name =
+            |&vector: &*const VectorValue| unsafe { CStr::from_ptr((*vector).name) }.to_string_lossy().to_lowercase();
+        let found: HashMap<_, _> =
+            vectors.iter().enumerate().map(|(position, vector)| (name(vector), position)).collect();
+        let place = |wanted: &str| {
+            // A node whose name begins with a digit is called V(1).
+            let place = found.get(wanted).or_else(|| found.get(&format!("v({wanted})")));
+            place.copied().ok_or_else(|| format!("the circuit has no vector {wanted}"))
+        };
+        iter::once("time").chain(self.vectors()).map(place).collect()
     }
 
-    /// At the communication point: answers and waits for the next ramp; whether there is one.
+    /// The circuit at the last time point.
+    fn state(&self) -> State {
+        let Some(ledger) = &self.ledger else { return State::default() };
+        let count = self.wanted.probes.len();
+        // ngspice does not tell the first time point of a run with initial conditions.
+        let initial = |probe: &String| self.initial.get(probe).copied().unwrap_or_default();
+        let probes = match self.values.len().checked_sub(count) {
+            Some(first) if !self.values.is_empty() => self.values[first..].to_vec(),
+            _ => self.wanted.probes.iter().map(initial).collect(),
+        };
+        let groups = self.wanted.groups.iter().map(|group| ledger.group(group)).collect();
+        State { membranes: ledger.membranes(), groups, probes }
+    }
+
+    /// Answers requests up to the next ramp; whether there is one.
     fn next_ramp(&mut self) -> io::Result<bool> {
-        self.send_points()?;
-        send(&mut self.replies, &Reply::Reached)?;
-        match receive::<Ramp>(&mut self.requests)? {
-            Some(ramp) => self.ramp = ramp,
-            None => return Ok(false),
+        loop {
+            match receive::<Request>(&mut self.requests)? {
+                Some(Request::Energies) => {
+                    let energies = self.ledger.as_ref().map_or_else(Vec::new, |ledger| ledger.energies().to_vec());
+                    send(&mut self.replies, &Reply::Energies(energies))?;
+                }
+                Some(Request::Ramp(ramp)) => {
+                    self.ramp = ramp;
+                    return Ok(true);
+                }
+                Some(Request::Wanted(_)) | None => return Ok(false),
+            }
         }
-        Ok(true)
     }
 
     /// The step that ngspice may take at `time` when it wants `step`, s. None ends the process.
     fn clip(&mut self, time: f64, step: f64) -> io::Result<Option<f64>> {
         while self.ramp.to - time <= SAME_TIME * self.job.longest_step {
+            let state = self.state();
+            send(&mut self.replies, &Reply::Reached(state))?;
             if !self.next_ramp()? {
                 return Ok(None);
             }
         }
         let left = self.ramp.to - time;
+        // A corner of a source at the communication point may be a rounding error before it.
+        if (left - step).abs() <= SAME_TIME * self.job.longest_step {
+            return Ok(Some(step));
+        }
         // Halved when the rest would be a sliver: a step far shorter than its neighbours costs accuracy.
         Ok(Some(if step >= left {
             left
@@ -157,24 +301,6 @@ impl<W: Write> Session<W> {
             step
         }))
     }
-}
-
-/// What the library calls a vector that a netlist calls `v(node)` or `i(source)`.
-fn internal_name(vector: &str) -> String {
-    let inside = |prefix| vector.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(')'));
-    match (inside("v("), inside("i(")) {
-        (Some(node), _) => node.to_owned(),
-        (_, Some(source)) => format!("{source}#branch"),
-        _ => vector.to_owned(),
-    }
-}
-
-/// # Safety
-/// `vector` points to what ngspice sends.
-unsafe fn is_named(vector: *const super::library::VectorValue, name: &str) -> bool {
-    // SAFETY: as the caller promises.
-    let found = unsafe { CStr::from_ptr((*vector).name) };
-    found.to_bytes().eq_ignore_ascii_case(name.as_bytes())
 }
 
 /// The session behind the pointer that ngspice hands back.
