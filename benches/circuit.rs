@@ -4,11 +4,12 @@
 //! diodes, which is what all of them stand for. ngspice is started anew for each run, as its users do; that takes some 10 ms.
 
 use std::hint::black_box;
+use std::path::Path;
 
 use anyhow::Context as _;
 use criterion::{Criterion, SamplingMode};
 use fmu_import::Fmu;
-use videg::cosim::HarvesterFmu;
+use videg::cosim::{CircuitSample, CircuitSlave as _, CosimError, HarvesterFmu, NgspiceCircuit};
 use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
 use videg::package::{Options, build_all};
 use videg::scenario::Request;
@@ -31,6 +32,26 @@ fn deviation(found: &Ledger, exact: &Ledger) -> f64 {
     relative(|ledger| ledger.supply).max(relative(|ledger| ledger.load))
 }
 
+/// The shared library in step with C(t), as a co-simulation has it: on a grid of 1 ms and at the rows of the table, with the
+/// energies of all elements.
+fn live(elements: &Elements, table: &CapacitanceTable, run: &Run) -> Result<CircuitSample, CosimError> {
+    const STEP: f64 = 1e-3;
+    let mut circuit =
+        NgspiceCircuit::new("live", Path::new(env!("CARGO_BIN_EXE_videg")), elements, table.initial(), run)?;
+    for ((from, start), (to, end)) in table.rows().zip(table.rows().skip(1)) {
+        let pieces = ((to - from) / STEP).ceil();
+        let at = |piece: f64| from + (to - from) * (piece / pieces);
+        let capacitance = |piece: f64| [0, 1].map(|j| start[j] + (end[j] - start[j]) * (piece / pieces));
+        let mut piece = 0.0;
+        while piece < pieces {
+            let time = at(piece);
+            circuit.step(time, at(piece + 1.0) - time, capacitance(piece), capacitance(piece + 1.0))?;
+            piece += 1.0;
+        }
+    }
+    circuit.sample()
+}
+
 fn main() -> anyhow::Result<()> {
     let table = table()?;
     let ideal = Parameters::default();
@@ -51,6 +72,7 @@ fn main() -> anyhow::Result<()> {
         b.iter(|| Waveforms::embedded(black_box(&exponential), &table));
     });
     group.bench_function("ngspice, batch", |b| b.iter(|| ngspice.simulate(black_box(&elements), &table, &run)));
+    group.bench_function("ngspice, live", |b| b.iter(|| live(black_box(&elements), &table, &run)));
     group.finish();
     criterion.final_summary();
     Ok(())

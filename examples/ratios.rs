@@ -59,6 +59,7 @@ const ROWS: &[Row] = &[
     row("the same; a plain program in C, closed form sample by sample", NOISE, "in blocks", "C, closed form", Nothing),
     row("8 runs of 20 s of Fig. 17 on two threads; on one", ENSEMBLE, "threads: 2", "threads: 1", Faster(1.8)),
     row("circuit, 10 s of Fig. 14, ideal diodes; ngspice", CIRCUIT, "embedded, ideal diodes", "ngspice, batch", Nothing),
+    row("ngspice live with C(t), a communication step each 1 ms and a ledger of all elements; ngspice", CIRCUIT, "ngspice, live", "ngspice, batch", AtMost(1.5)),
     row("circuit, 10 s of Fig. 14, exponential diodes; ngspice", CIRCUIT, "embedded, exponential diodes", "ngspice, batch", Nothing),
 ];
 

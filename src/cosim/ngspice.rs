@@ -4,10 +4,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use fmu_import::nearest_name;
-use serde::Serialize;
 use videg_circuit::{Ledger, Release};
 
-use super::{CircuitSample, CircuitSlave, CosimError};
+use super::{CircuitSample, CircuitSlave, CosimError, ElementEnergy};
 use crate::ngspice::live::{Account, Circuit, Job, Ramp, State, Wanted, Worker};
 use crate::ngspice::{CapacitanceSource, Elements, NgspiceError, PICO, Role, Run, UserNetlist};
 
@@ -28,18 +27,6 @@ pub struct NetlistCircuit<'a> {
     pub probes: &'a [String],
 }
 
-/// An element of a netlist after a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ElementEnergy {
-    /// Its name in the netlist.
-    pub name: String,
-    /// What it is for; none for a membrane.
-    #[serde(skip)]
-    pub role: Option<Role>,
-    /// Energy that it took, J.
-    pub energy: f64,
-}
-
 /// The circuit in ngspice, which takes its own time steps between the communication points.
 pub struct NgspiceCircuit {
     label: String,
@@ -50,7 +37,13 @@ pub struct NgspiceCircuit {
     elements: Vec<ElementEnergy>,
     probes: Vec<String>,
     notes: Vec<String>,
+    /// What may help a netlist of the user where ngspice gives up.
+    hint: &'static str,
 }
+
+/// Our own netlists have these already.
+const HINT: &str = "; this may help: .ic for every node at another voltage than 0 at the start, looser tolerances \
+                    (.options reltol=1e-6 abstol=1e-9), a resistor from each floating node to ground";
 
 impl NgspiceCircuit {
     /// A circuit of `elements` for the time from 0 to `run.until`, s, both membranes charged, at `capacitance` (left,
@@ -98,7 +91,7 @@ impl NgspiceCircuit {
             format!("{name}: ngspice does not tell its currents, so its energy is missing in the ledger")
         }));
         let begun = circuit.begin(&label, roles, &probes, capacitance, |name| user.netlist.spelled(name))?;
-        Ok(Self { probes: user.probes.to_vec(), notes, ..begun })
+        Ok(Self { probes: user.probes.to_vec(), notes, hint: HINT, ..begun })
     }
 }
 
@@ -210,6 +203,7 @@ impl Loaded {
             elements: elements.collect(),
             probes: Vec::new(),
             notes: Vec::new(),
+            hint: "",
         })
     }
 }
@@ -243,7 +237,7 @@ impl CircuitSlave for NgspiceCircuit {
     fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
         let pico = |capacitance: [f64; 2]| capacitance.map(|c| c / PICO).to_vec();
         let ramp = Ramp { from: time, to: time + step, start: pico(start), end: pico(end) };
-        self.state = self.worker.step(ramp).map_err(|cause| failed(&self.label, cause))?;
+        self.state = self.worker.step(ramp).map_err(|cause| failed(&self.label, cause.with_hint(self.hint)))?;
         Ok(())
     }
 
@@ -255,16 +249,16 @@ impl CircuitSlave for NgspiceCircuit {
             voltage: membranes.voltage,
             load_voltage: self.hidden_load.map_or(load.voltage, |resistance| resistance * load.current),
             load_current: load.current,
-            supply_current: -supply.current,
+            supply_current: 0.0 - supply.current,
             ledger: Ledger {
-                supply: -supply.energy,
+                supply: 0.0 - supply.energy,
                 load: load.energy,
                 zener: zener.energy,
                 diode: diode.energy,
                 leakage: leakage.energy,
                 stored: membranes.stored,
                 mechanical: membranes.mechanical,
-                supply_charge: -supply.charge,
+                supply_charge: 0.0 - supply.charge,
                 load_charge: load.charge,
             },
         })

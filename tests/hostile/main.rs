@@ -32,6 +32,7 @@ fn all() -> Vec<(&'static str, Vec<Input>)> {
         ("Libraries of FMUs", libraries::inputs()),
         ("Settings and options", options::inputs()),
         ("Case files, sweep files, results of sweeps", files::inputs()),
+        ("Netlists", netlists::inputs()),
         ("Serialised states and raw files of ngspice", memory::inputs()),
     ]
 }

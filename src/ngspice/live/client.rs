@@ -36,6 +36,17 @@ pub enum LiveError {
     TimeLimit { when: String, limit: Duration },
 }
 
+impl LiveError {
+    /// The error with a `hint`, where ngspice has ended the analysis.
+    #[must_use]
+    pub fn with_hint(self, hint: &str) -> Self {
+        match self {
+            Self::Failure(text) if text.contains("too small") => Self::Failure(text + hint),
+            other => other,
+        }
+    }
+}
+
 /// A running worker.
 pub struct Worker {
     group: ProcessGroup,

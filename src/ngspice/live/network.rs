@@ -64,6 +64,8 @@ pub struct Account {
 /// A circuit as branches between nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Network {
+    /// Values of elements may differ from those of the listing.
+    is_altered: bool,
     /// The elements.
     pub accounts: Vec<Account>,
     /// The branches.
@@ -81,12 +83,12 @@ pub struct Network {
 }
 
 impl Network {
-    /// The branches of `circuit`.
+    /// The branches of `circuit`; the values of the listing count unless commands may have altered them.
     ///
     /// # Errors
     /// A membrane that is there twice, or none at all.
-    pub fn new(circuit: &Circuit) -> Result<Self, String> {
-        let mut network = Self::default();
+    pub fn new(circuit: &Circuit, is_altered: bool) -> Result<Self, String> {
+        let mut network = Self { is_altered, ..Self::default() };
         let names: BTreeSet<_> = circuit.elements.iter().map(|element| element.name.as_str()).collect();
         let nodes: BTreeSet<_> = circuit.elements.iter().filter(|e| e.kind() != 'a').flat_map(|e| &e.nodes).collect();
         for element in &circuit.elements {
@@ -154,14 +156,15 @@ impl Network {
             _ => (element.kind(), path.to_owned()),
         };
         self.accounts.push(Account { name: shown, kind });
-        let plain = element.rest.is_empty().then(|| number(&element.value)).flatten();
+        let value = number(&element.value).filter(|_| !self.is_altered);
+        let plain = value.filter(|_| element.rest.is_empty());
         let of = |parameter: &str| format!("@{name}[{parameter}]");
         let flow = match element.kind() {
             'r' => match plain.filter(|&value| value > 0.0) {
                 Some(value) => Flow::Conductance(1.0 / value),
                 None => Flow::Current(self.vector(of("i"))),
             },
-            'c' => match (plain, number(&element.value), element.rest.strip_prefix("ic=").map(str::trim)) {
+            'c' => match (plain, value, element.rest.strip_prefix("ic=").map(str::trim)) {
                 (Some(value), ..) => Flow::Capacitor(value),
                 (None, Some(value), Some(start)) if let Some(start) = number(start) => {
                     return self.branch(first, second, Flow::Capacitor(value), Some(start));

@@ -121,9 +121,9 @@ fn load<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<()
         return Err("ngspice does not take the netlist".to_owned());
     }
     if count > MOST_ELEMENTS || lines.len() > MOST_LINES {
-        return Err(format!("the circuit has {count} elements; at most {MOST_ELEMENTS}"));
+        return Err(format!("the circuit has more than {MOST_ELEMENTS} elements, the most that are allowed"));
     }
-    let network = Network::new(&circuit)?;
+    let network = Network::new(&circuit, !session.borrow().job.commands.is_empty())?;
     let mut session = session.borrow_mut();
     if session.job.from_initial_conditions {
         session.initial = circuit.initial;
@@ -192,7 +192,8 @@ impl<W: Write> Session<W> {
                 listing.push(line.to_owned());
             };
         }
-        if line.is_empty() {
+        // What ngspice says of itself is no complaint.
+        if line.is_empty() || ["**", "Note: No compat", "Circuit: "].iter().any(|own| line.starts_with(own)) {
             return;
         }
         if self.lines.len() == KEPT_LINES {
