@@ -2,7 +2,7 @@
 
 use super::format::{Sheet, significant};
 use super::run_output;
-use crate::cosim::{CouplingSummary, Energies, EnergyBalance, LabelledCircuit, Results};
+use crate::cosim::{CouplingSummary, EnergyBalance, LabelledCircuit, Powers, Results};
 use crate::ngspice::Role;
 use crate::scenario::Scenario;
 use videg_report::{Report, Section};
@@ -66,38 +66,40 @@ pub fn energies(results: &Results) -> Sheet {
     Sheet::new(std::iter::once("energy over the whole run, mJ".to_owned()).chain(labels), &[0], rows)
 }
 
-/// The energies of a netlist: first those that count, then its elements, the largest first.
-pub fn elements(results: &Results) -> Sheet {
-    let window = |power: Option<f64>| power.map_or_else(String::new, |power| significant(1e3 * power, DIGITS));
-    let summary = results.circuits.first().map(|circuit| circuit.summary.energy);
-    let sum = |name: &str, value: fn(&Energies) -> f64, power: Option<f64>| {
-        let energy = summary.as_ref().map_or_else(String::new, |energy| significant(1e3 * value(energy), DIGITS));
-        vec![name.to_owned(), String::new(), energy, window(power)]
+/// What a netlist gains and costs.
+fn gains(results: &Results) -> Sheet {
+    let row = |name: &str, energy: f64, power: Option<f64>| {
+        let power = power.map_or_else(String::new, |power| significant(1e3 * power, DIGITS));
+        vec![name.to_owned(), significant(1e3 * energy, DIGITS), power]
     };
-    let powers = results.powers;
-    let mut rows = vec![
-        sum("gain", |energy| energy.load, powers.map(|powers| powers.load_power)),
-        sum("cost", |energy| energy.supply, powers.map(|powers| powers.supply_power)),
-        sum("stored in the membranes", |energy| energy.stored, None),
-        sum(
-            "net = gain - cost + stored",
-            |energy| energy.surplus + energy.stored,
-            powers.map(|powers| powers.net_power),
-        ),
-        sum("work of the mechanics", |energy| energy.mechanical, None),
-    ];
+    let powers = |value: fn(&Powers) -> f64| results.powers.as_ref().map(value);
+    let rows = results.circuits.first().map_or_else(Vec::new, |circuit| {
+        let energy = circuit.summary.energy;
+        vec![
+            row("gain", energy.load, powers(|it| it.load_power)),
+            row("cost", energy.supply, powers(|it| it.supply_power)),
+            row("stored in the membranes", energy.stored, powers(|it| it.net_power - it.load_power + it.supply_power)),
+            row("net = gain - cost + stored", energy.surplus + energy.stored, powers(|it| it.net_power)),
+            row("work of the mechanics", energy.mechanical, None),
+        ]
+    });
+    Sheet::new(["energy", "whole run, mJ", "mean over the window, mW"], &[0], rows)
+}
+
+/// The energies of the elements of a netlist, the largest first.
+fn elements(results: &Results) -> Sheet {
     let mut elements: Vec<_> = results.elements.iter().collect();
     elements.sort_by(|a, b| b.energy.abs().total_cmp(&a.energy.abs()));
-    rows.extend(elements.iter().map(|element| {
+    let rows = elements.iter().map(|element| {
         let role = match element.role {
             Some(Role::Load) => "gain",
             Some(Role::Supply) => "cost",
             Some(_) => "",
             None => "membrane",
         };
-        vec![element.name.clone(), role.to_owned(), significant(1e3 * element.energy, DIGITS), String::new()]
-    }));
-    Sheet::new(["energy that it took", "counts as", "whole run, mJ", "mean over the window, mW"], &[0, 1], rows)
+        vec![element.name.clone(), role.to_owned(), significant(1e3 * element.energy, DIGITS)]
+    });
+    Sheet::new(["element", "counts as", "took over the whole run, mJ"], &[0, 1], rows.collect())
 }
 
 /// By how much the energies of the elements, whose sum is zero by Kirchhoff's law, miss that.
@@ -105,7 +107,7 @@ fn closure(results: &Results) -> String {
     let sum: f64 = results.elements.iter().map(|element| element.energy).sum();
     let moved: f64 = 0.5 * results.elements.iter().map(|element| element.energy.abs()).sum::<f64>();
     let relative = if moved > 0.0 { sum.abs() / moved } else { 0.0 };
-    format!("ledger: the energies of all elements sum to {sum:.1e} J, {relative:.1e} of the energy moved")
+    format!("The energies of all elements sum to {sum:.1e} J, {relative:.1e} of the energy moved.")
 }
 
 /// The tables of energies with their explanation.
@@ -113,7 +115,7 @@ pub fn tables(results: &Results) -> String {
     if results.elements.is_empty() {
         return format!("{}\n\n{}", energies(results).narrow(", "), EXPLANATION.join("\n"));
     }
-    format!("{}\n\n{}", elements(results).text(), closure(results))
+    format!("{}\n\n{}\n\n{}", gains(results).text(), elements(results).text(), closure(results))
 }
 
 /// The coupling with the first circuit, and the energy balance.
@@ -154,19 +156,22 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
 /// Caption of the figure.
 pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
     of the run; (d) energies of the first circuit since its start.";
+const NETLIST_CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) membrane voltages and waveforms of the \
+    netlist in the last seconds of the run; last panel: energies since its start.";
 
 /// The HTML report.
 pub fn report(scenario: &Scenario, results: &Results, svg: String) -> Report {
     let mechanics = run_output::mechanics(scenario, &results.mechanics);
+    let caption = if results.elements.is_empty() { FIGURE_CAPTION } else { NETLIST_CAPTION };
     let section = Section::new("Where the energy goes");
     let energies = if results.elements.is_empty() {
         section.text(EXPLANATION.join(" ")).table(energies(results).html())
     } else {
-        section.text(closure(results)).table(elements(results).html())
+        section.table(gains(results).html()).text(closure(results)).table(elements(results).html())
     };
     run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
         .section(run_output::result(&results.warnings).table(mechanics.html()))
         .section(energies)
         .section(Section::new("Coupling").text(coupling_lines(results)))
-        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, FIGURE_CAPTION))
+        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, caption))
 }
