@@ -24,7 +24,7 @@ fn files(what: &'static str, files: Vec<(&'static str, Vec<u8>)>) -> Input {
 /// Subcircuits that contain ten of the next each, so many deep.
 fn swelling(depth: usize) -> String {
     let level = |k: usize| {
-        let parts: String = (0..10).map(|i| format!("X{i} a b s{}\n", k + 1)).collect();
+        let parts = (0..10).map(|i| format!("X{i} a b s{}\n", k + 1)).collect::<Vec<_>>().concat();
         format!(".subckt s{k} a b\n{parts}.ends\n")
     };
     let levels: String = (0..depth).map(level).collect();
@@ -33,7 +33,7 @@ fn swelling(depth: usize) -> String {
 
 /// Netlists given to `--netlist`.
 pub fn inputs() -> Vec<Input> {
-    let chain = |count: usize| (0..count).map(|k| format!("R{k} n{k} n{} 1\n", k + 1)).collect::<String>();
+    let chain = |count: usize| (0..count).map(|k| format!("R{k} n{k} n{} 1\n", k + 1)).collect::<Vec<_>>().concat();
     vec![
         netlist("a control section", ".control\nshell touch CANARY\n.endc"),
         netlist("a command in a comment", "*#shell touch CANARY"),
