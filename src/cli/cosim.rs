@@ -86,7 +86,7 @@ struct Output<'a> {
     run: RunOutput<'a>,
     circuit: &'a str,
     #[serde(flatten)]
-    powers: Option<Powers>,
+    powers: &'a Powers,
     #[serde(flatten)]
     summary: &'a CircuitSummary,
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
@@ -138,7 +138,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let output = Output {
         run: RunOutput::new(&scenario, results.mechanics, &results.warnings, &files),
         circuit: &first.label,
-        powers: results.powers,
+        powers: &first.powers,
         summary: &first.summary,
         elements: results.elements.iter().map(|element| (element.name.as_str(), element.energy)).collect(),
         coupling: results.coupling,
@@ -147,7 +147,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let text = [
         heading("cosim", &scenario),
+        cosim_report::powers(&scenario, &results).narrow(", "),
         mechanics(&scenario, &results.mechanics).text(),
+        cosim_report::NO_GAIN.to_owned(),
         cosim_report::tables(&results),
         cosim_report::coupling_lines(&results),
         file_list(&files),

@@ -66,24 +66,32 @@ pub fn energies(results: &Results) -> Sheet {
     Sheet::new(std::iter::once("energy over the whole run, mJ".to_owned()).chain(labels), &[0], rows)
 }
 
-/// What a netlist gains and costs.
-fn gains(results: &Results) -> Sheet {
-    let row = |name: &str, energy: f64, power: Option<f64>| {
-        let power = power.map_or_else(String::new, |power| significant(1e3 * power, DIGITS));
-        vec![name.to_owned(), significant(1e3 * energy, DIGITS), power]
-    };
-    let powers = |value: fn(&Powers) -> f64| results.powers.as_ref().map(value);
-    let rows = results.circuits.first().map_or_else(Vec::new, |circuit| {
-        let energy = circuit.summary.energy;
-        vec![
-            row("gain", energy.load, powers(|it| it.load_power)),
-            row("cost", energy.supply, powers(|it| it.supply_power)),
-            row("stored in the membranes", energy.stored, powers(|it| it.net_power - it.load_power + it.supply_power)),
-            row("net = gain - cost + stored", energy.surplus + energy.stored, powers(|it| it.net_power)),
-            row("work of the mechanics", energy.mechanical, None),
-        ]
+/// A mean power of a circuit: its name, and how to read it, in W.
+type PowerRow = (&'static str, fn(&Powers) -> f64);
+
+const POWERS: [PowerRow; 3] = [
+    ("net power = load - supply + stored", |powers| powers.net_power),
+    ("load power", |powers| powers.load_power),
+    ("supply power", |powers| powers.supply_power),
+];
+/// With a netlist, by what counts as a gain and as a cost.
+const NETLIST_POWERS: [&str; 3] = ["net power = gain - cost + stored", "gain", "cost"];
+
+/// Why P of Eq. (14), which stands above, is not among the powers.
+pub const NO_GAIN: &str = "P of Eq. (14) is the mean of W, the change of the stored energy at an impact. That is half of what the \
+    supply gives, not a gain.";
+
+/// What a user gains: mean powers over the averaging window.
+pub fn powers(scenario: &Scenario, results: &Results) -> Sheet {
+    let [from, to] = scenario.window;
+    let rows = POWERS.iter().zip(NETLIST_POWERS).map(|((name, value), netlist)| {
+        let name = if results.elements.is_empty() { name } else { netlist };
+        let values = results.circuits.iter().map(|circuit| significant(1e3 * value(&circuit.powers), DIGITS));
+        std::iter::once(name.to_owned()).chain(values).collect()
     });
-    Sheet::new(["energy", "whole run, mJ", "mean over the window, mW"], &[0], rows)
+    let labels = results.circuits.iter().map(|circuit| circuit.label.clone());
+    let heading = format!("mean over {from} to {to} s, mW");
+    Sheet::new(std::iter::once(heading).chain(labels), &[0], rows.collect())
 }
 
 /// The energies of the elements of a netlist, the largest first.
@@ -115,7 +123,7 @@ pub fn tables(results: &Results) -> String {
     if results.elements.is_empty() {
         return format!("{}\n\n{}", energies(results).narrow(", "), EXPLANATION.join("\n"));
     }
-    format!("{}\n\n{}\n\n{}", gains(results).text(), elements(results).text(), closure(results))
+    format!("{}\n\n{}", elements(results).text(), closure(results))
 }
 
 /// The coupling with the first circuit, and the energy balance.
@@ -167,10 +175,15 @@ pub fn report(scenario: &Scenario, results: &Results, svg: String) -> Report {
     let energies = if results.elements.is_empty() {
         section.text(EXPLANATION.join(" ")).table(energies(results).html())
     } else {
-        section.table(gains(results).html()).text(closure(results)).table(elements(results).html())
+        section.text(closure(results)).table(elements(results).html())
     };
     run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
-        .section(run_output::result(&results.warnings).table(mechanics.html()))
+        .section(
+            run_output::result(&results.warnings)
+                .table(powers(scenario, results).html())
+                .table(mechanics.html())
+                .text(NO_GAIN),
+        )
         .section(energies)
         .section(Section::new("Coupling").text(coupling_lines(results)))
         .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, caption))

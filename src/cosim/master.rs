@@ -43,8 +43,8 @@ pub struct Outcome {
     pub circuits: Vec<CircuitSample>,
     /// Elements of the first circuit with their energies, if it has a ledger of them.
     pub elements: Vec<ElementEnergy>,
-    /// Powers of the first circuit over the averaging window.
-    pub powers: Option<Powers>,
+    /// Powers of the circuits over the averaging window, in their order.
+    pub powers: Vec<Powers>,
     /// The coupling of the harvester with the first circuit.
     pub coupling: CouplingSummary,
     /// The energy balance of harvester and first circuit, with electrostatic feedback.
@@ -114,7 +114,7 @@ impl Master {
         let window = self.scenario.window;
         let mut point = self.start()?;
         let energies_at_start = self.harvester.energies()?;
-        let (mut gains, mut ledgers) = ([None; 2], [None; 2]);
+        let (mut gains, mut ledgers) = ([None; 2], [None, None]);
         loop {
             let harvester = &point.harvester;
             let row = Row { time: point.time, harvester, circuits: &point.circuits, probes: &point.probes };
@@ -127,7 +127,7 @@ impl Master {
             }
             for (ledger, edge) in ledgers.iter_mut().zip(window) {
                 if ledger.is_none() && point.time >= edge {
-                    *ledger = point.circuits.first().map(|circuit| circuit.ledger);
+                    *ledger = Some(point.circuits.iter().map(|circuit| circuit.ledger).collect::<Vec<_>>());
                 }
             }
             if point.time >= self.scenario.until {
@@ -154,7 +154,8 @@ impl Master {
         let balance = energies
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
-        let powers = ledgers[0].zip(ledgers[1]).map(|(before, after)| Powers::over(window, &before, &after));
+        let [before, after] = ledgers.map(Option::unwrap_or_default);
+        let powers = before.iter().zip(&after).map(|(before, after)| Powers::over(window, before, after)).collect();
         let elements = self.circuits.first_mut().map_or_else(|| Ok(Vec::new()), |circuit| circuit.elements())?;
         let mut warnings = self.harvester.warnings();
         warnings.extend(self.circuits.iter().flat_map(|circuit| circuit.notes().iter().cloned()));

@@ -55,6 +55,9 @@ impl<'a> Options<'a> {
 pub struct LabelledCircuit {
     /// Name of the circuit.
     pub label: String,
+    /// Mean powers over the averaging window.
+    #[serde(flatten)]
+    pub powers: Powers,
     /// Energies and charges.
     #[serde(flatten)]
     pub summary: CircuitSummary,
@@ -69,8 +72,6 @@ pub struct Results {
     pub circuits: Vec<LabelledCircuit>,
     /// The elements of a netlist with the energies that they took.
     pub elements: Vec<ElementEnergy>,
-    /// Mean powers of the circuit asked for over the averaging window.
-    pub powers: Option<Powers>,
     /// The coupling of the harvester with the circuit asked for.
     pub coupling: CouplingSummary,
     /// The energy balance, with electrostatic feedback.
@@ -136,8 +137,9 @@ impl<'a> Cosimulation<'a> {
         let Outcome { mechanics, circuits: samples, elements, powers, coupling, balance, mut warnings } = outcome;
         warnings.extend(asked.and_then(|asked| voltage_warning(&asked, bias_voltage)));
         warnings.extend(coupling.warning());
-        let labelled = labels.into_iter().zip(&samples).map(|(label, sample)| LabelledCircuit {
+        let labelled = labels.into_iter().zip(&samples).zip(powers).map(|((label, sample), powers)| LabelledCircuit {
             label,
+            powers,
             summary: CircuitSummary::new(sample, mechanics.energy_eq13),
         });
         let circuits = labelled.collect();
@@ -146,7 +148,7 @@ impl<'a> Cosimulation<'a> {
         let cycle_charge = asked.map_or(0.0, |asked| impact_charge * asked.circuit.supply_voltage);
         // Those of our own netlists are no names of the user.
         let elements = if asked.is_some() { Vec::new() } else { elements };
-        Ok(Results { mechanics, circuits, elements, powers, coupling, balance, cycle_charge, warnings, trace })
+        Ok(Results { mechanics, circuits, elements, coupling, balance, cycle_charge, warnings, trace })
     }
 }
 
