@@ -25,6 +25,7 @@
 //! - [`package`] puts the FMUs together; [`fmu_import`] loads them or any other FMU for FMI 2.0 co-simulation;
 //! - [`scenario`] describes a run: a published case, settings, duration;
 //! - [`cosim`] couples the harvester FMU with a circuit; [`simulate`] runs the harvester alone;
+//! - [`export`] writes C(t) for other programs;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] compares both with each other and with the closed forms of the paper;
 //! - [`paper`] reproduces every table and figure of the paper;
@@ -48,6 +49,7 @@ pub mod cli;
 pub mod cosim;
 pub mod crosscheck;
 pub mod dynamics;
+pub mod export;
 pub mod ngspice;
 pub mod package;
 pub mod paper;

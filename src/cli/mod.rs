@@ -14,6 +14,7 @@ mod crosscheck_report;
 mod dynamics;
 mod dynamics_report;
 mod excitation;
+mod export;
 mod fmu;
 mod fmu_check;
 mod format;
@@ -65,6 +66,8 @@ enum Verb {
     Dynamics(dynamics::Arguments),
     /// Reproduce the tables and figures of the paper as data, pictures and one report
     Reproduce(reproduce::Arguments),
+    /// Export C(t) for other programs: netlists for simulators of circuits, tables
+    Export(export::Arguments),
     /// Build, describe and check FMUs
     Fmu(fmu::Arguments),
     /// Package both FMUs, connected and with the parameters of a case, as Harvester.ssp (SSP 1.0)
@@ -103,6 +106,7 @@ impl Verb {
             Self::Sweep(arguments) => sweep::run(arguments, &interruption),
             Self::Dynamics(arguments) => dynamics::run(arguments),
             Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
+            Self::Export(arguments) => export::run(arguments),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),
             Self::Completions(arguments) => completions::run(arguments),

@@ -14,12 +14,15 @@ use videg_system::atomic_file;
 
 /// The folder for the results of `verb`. Creates it if needed.
 pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::Result<PathBuf> {
-    // A case file may have any name; a path gets letters, digits, dot, dash and underscore only.
-    let safe = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
-    let name: String = scenario.name.chars().map(safe).collect();
+    let name = safe(&scenario.name);
     let folder = asked.map_or_else(|| Path::new("out").join(format!("{verb}-{name}")), Path::to_owned);
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
     Ok(folder)
+}
+
+/// The name of a case as a part of a path: letters, digits, dot, dash and underscore. A case file may have any name.
+pub fn safe(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' }).collect()
 }
 
 /// Writes a file atomically.

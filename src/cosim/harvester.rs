@@ -149,7 +149,7 @@ impl HarvesterFmu {
     }
 
     /// Warnings of the FMU so far.
-    pub(super) fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> {
         let messages = self.instance.messages().into_iter();
         messages.filter(|record| record.status == Status::Warning).map(|record| record.message).collect()
     }
@@ -206,6 +206,17 @@ impl HarvesterFmu {
     /// Goes back to the state saved.
     pub(super) fn restore(&mut self) -> Result<(), CosimError> {
         self.saved.restore(&mut self.instance)
+    }
+
+    /// References to Real variables.
+    pub(crate) fn references(&self, names: &[String]) -> Result<Vec<u32>, CosimError> {
+        let description = self.instance.description();
+        names.iter().map(|name| Ok(description.variable(name)?.value_reference)).collect()
+    }
+
+    /// Reads Real variables at the communication point.
+    pub(crate) fn read(&self, references: &[u32], values: &mut [f64]) -> Result<(), CosimError> {
+        Ok(self.instance.get_real(references, values)?)
     }
 
     /// Outputs at the communication point.
