@@ -140,6 +140,8 @@ pub struct Sensitivities {
     pub contact_time: f64,
     /// Of the mount's force on the cylinder.
     pub mount_force: f64,
+    /// Of the power that the damper takes.
+    pub damping_power: f64,
     /// Of [`Harvester::next_impact`](crate::Harvester::next_impact); 0 if there is none.
     pub next_impact: f64,
     /// Of [`Harvester::next_knot`](crate::Harvester::next_knot); 0 if there is none.

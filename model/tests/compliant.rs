@@ -389,7 +389,7 @@ fn what_the_impulsive_law_cannot_have_is_refused() {
     let feedback = error(Parameters { electrostatic_feedback: true, ..p });
     assert!(feedback.starts_with("contact.electrostaticFeedback = true needs contact.law = compliant"), "{feedback}");
     let mut harvester = Harvester::new(&compliant(p), 0.0).unwrap();
-    assert_eq!(harvester.place(0.0, [0.0; 4], 0.0), Err(ModelError::CompliantExchange));
+    assert_eq!(harvester.place(0.0, [0.0; 5], 0.0), Err(ModelError::CompliantExchange));
     assert!(harvester.set_voltages([f64::NAN, 0.0], [0.0; 2]).is_err());
 }
 

@@ -73,10 +73,10 @@ def test_the_model_description_is_valid_and_offers_both_interfaces():
     description = read_model_description(FMU)
     assert description.modelExchange is not None
     assert description.coSimulation is not None
-    assert description.numberOfContinuousStates == 4
+    assert description.numberOfContinuousStates == 5
     assert description.numberOfEventIndicators == 3
     states = [unknown.variable.derivative.name for unknown in description.derivatives]
-    assert states == ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"]
+    assert states == ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", "energy.damping"]
 
 
 def test_cvode_finds_the_impacts_of_fig14():

@@ -55,6 +55,36 @@ def test_model_exchange_agrees_with_co_simulation(fmus, settings):
     assert exact["impact.lastVelocity"][-1] > 0
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_under_cvode_the_damper_takes_what_it_takes_in_co_simulation(fmus, seed):
+    random = np.random.default_rng(seed)
+    settings = {
+        "cylinder.suspensionStiffness": random.uniform(5.0, 60.0),
+        "cylinder.suspensionDamping": random.uniform(0.05, 1.0),
+        "cylinder.inclination": random.uniform(-0.05, 0.05),
+        "contact.reaction": bool(seed % 2),
+        "excitation.amplitude": random.uniform(0.2, 1.0),
+        "initial.cylinderVelocity": random.uniform(-0.3, 0.3),
+        "initial.ballVelocity": random.uniform(-0.3, 0.3),
+    }
+    names = ["energy.damping", "energy.excitation"]
+    options = {"start_values": settings, "stop_time": 1.0, "output_interval": 1e-3}
+    options["output"] = [*names, "cylinder.velocity", "impact.count"]
+    exact, integrated = (
+        simulate_fmu(str(fmus["VibroImpactHarvester"]), fmi_type=kind, **options, **solver)
+        for kind, solver in (("CoSimulation", {}), ("ModelExchange", {"relative_tolerance": 1e-9}))
+    )
+    assert exact["impact.count"][-1] == integrated["impact.count"][-1] > 0
+    moved = float(np.abs(exact["energy.excitation"]).max() + exact["energy.damping"][-1])
+    for name in names:
+        at = np.interp(exact["time"], integrated["time"], integrated[name])
+        assert at == pytest.approx(exact[name], abs=1e-5 * moved)
+    # The work of the excitation, by the trapezoidal rule; an impact between two points is at a time of its own.
+    force = settings["excitation.amplitude"] * np.cos(2 * np.pi * 2.0 * integrated["time"])
+    work = np.trapezoid(force * integrated["cylinder.velocity"], integrated["time"])
+    assert integrated["energy.excitation"][-1] == pytest.approx(work, abs=1e-4 * moved)
+
+
 def test_a_shaker_bears_the_force_that_its_motion_takes(fmus):
     settings = {"excitation.kind": MOTION, "excitation.acceleration": 4.0, "excitation.frequency": 2.0}
     result = run(fmus["VibroImpactHarvester"], settings, stop_time=1.0, output_interval=0.01)

@@ -19,7 +19,7 @@ use fmu_export::Variable;
 use videg_model::{Direction, Energies, ExcitationKind, Harvester as Model, Parameters, Sensitivities, Side};
 
 use crate::harvester::Harvester;
-use crate::variables::{FORCE, STATES, VOLTAGES};
+use crate::variables::{DAMPING, FORCE, STATES, VOLTAGES};
 
 /// What changes by one unit.
 enum Known {
@@ -81,6 +81,11 @@ impl Harvester {
     /// With respect to the state or force `name` at the present point. Capacitances follow the pulses of impacts that have
     /// been, and so do the sums over them.
     fn change_at_point(&self, name: &str) -> Change<'_> {
+        if name == DAMPING {
+            let energies = Energies { damping: 1.0, excitation: 1.0, ..Energies::default() };
+            let model = Some(Sensitivities { energies, ..Sensitivities::default() });
+            return Change { slave: self, known: Known::Displaced, model };
+        }
         let state = STATES.iter().position(|state| *state == name);
         if let Some(model) = self.model().filter(|model| !model.has_closed_changes()) {
             return Change { slave: self, known: Known::Displaced, model: model.differences_at_point(state) };

@@ -151,7 +151,7 @@ impl Slave for Harvester {
         self.placed = true;
         let model = running(&mut self.model)?;
         let present = model.states();
-        let states = states.map_or(Ok(present), <[f64; 4]>::try_from);
+        let states = states.map_or(Ok(present), <[f64; 5]>::try_from);
         let states = states.map_err(|error| SlaveError::error(error.to_string()))?;
         model.place(time, states, force).map_err(|error| SlaveError::error(error.to_string()))
     }

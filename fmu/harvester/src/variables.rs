@@ -131,14 +131,17 @@ macro_rules! membrane_outputs {
 static LEFT: [V; 3] = membrane_outputs!(Side::Left, "left");
 static RIGHT: [V; 3] = membrane_outputs!(Side::Right, "right");
 
-/// The continuous states.
+/// The continuous states of the motion.
 pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
+
+/// One more continuous state, which acts on nothing but the work of the excitation.
+pub(crate) const DAMPING: &str = "energy.damping";
 
 /// What the predicted times depend on.
 const PREDICTED_FROM: [&str; 7] =
     ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", FORCE, VOLTAGES[0], VOLTAGES[1]];
 
-/// The continuous states, and what depends on them.
+/// These states, and what depends on them.
 static MOTION: [V; 5] = [
     V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
         .nominal(1e-2)
@@ -250,7 +253,7 @@ static ENERGIES: [V; 7] = energies! {
         "r^2 K x^(n+1) / (n+1), or r^2 times the work of another membrane.law: energy that the membranes can give back, with what viscous films have stored; 0 under the impulsive law";
     "energy.impactLoss" impact_loss 1e-4 [] [IMPACT]
         "Energy lost in the membranes since the start: (1 - r^2) K X^(n+1) / (n+1) for each contact, X its largest deflection so far; under the impulsive law (1 - r^2) m v^2 / 2 for each impact, with contact.reaction m M / (m + M) for m";
-    "energy.excitation" excitation 1e-3 ["cylinder.position", "cylinder.velocity"] [IMPACT]
+    "energy.excitation" excitation 1e-3 ["cylinder.position", "cylinder.velocity", "energy.damping"] [IMPACT]
         "Work of excitation and external force on the cylinder since the start, or of the shaker that moves it: the change of energy.cylinderKinetic and energy.suspension, plus energy.damping, plus energy.wall with contact.reaction";
     "energy.electrical" electrical 1e-6 [] []
         "Work of the Maxwell force on the ball since the start: the integral of 1/2 U^2 dC";
@@ -266,8 +269,8 @@ static OTHER_ENERGIES: [V; 4] = energies! {
         "Work of gravity on the ball since the start: -m g sin(beta) times its way along the axis";
     "energy.suspension" suspension 1e-3 ["cylinder.position"] [&["cylinder.suspensionStiffness", "initial.cylinderPosition"]]
         "k z_M^2 / 2: energy in the spring that holds the cylinder";
-    "energy.damping" damping 1e-3 ["cylinder.velocity"] []
-        "Energy lost in the damper that holds the cylinder since the start; in model exchange 0, and missing in energy.excitation";
+    "energy.damping" damping 1e-3 ["energy.damping"] []
+        "Energy lost in the damper that holds the cylinder since the start; in model exchange a continuous state";
 };
 
 static MOUNT: [V; 2] = [V::output(
@@ -337,7 +340,7 @@ macro_rules! membrane_loads {
 static LEFT_LOADS: [V; 2] = membrane_loads!(Side::Left, "left");
 static RIGHT_LOADS: [V; 2] = membrane_loads!(Side::Right, "right");
 
-/// Time derivatives of the continuous states, for model exchange.
+/// Time derivatives of the continuous states of the motion, for model exchange.
 static DERIVATIVES: [V; 4] = [
     V::output("der(cylinder.position)", "m/s", "z_M': time derivative of cylinder.position")
         .local()
@@ -447,6 +450,15 @@ static VISCOUS_ENERGY: [V; 1] = energies! {
         "Energy lost in viscous films (membrane.viscousModulus) since the start";
 };
 
+/// The derivative of a continuous state that came later.
+static DAMPING_POWER: [V; 1] = [V::output("der(energy.damping)", "W", "c z_M'^2: time derivative of energy.damping")
+    .local()
+    .depends_on(&["cylinder.velocity"])
+    .derivative_of(DAMPING)
+    .initially_depends_on(&[IMPACT])
+    .partial_derivative(change!(damping_power))
+    .get(|slave| slave.read(videg_model::Harvester::damping_power))];
+
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
     + CHOICES.len()
@@ -474,7 +486,8 @@ const COUNT: usize = PARAMETERS.len()
     + FILM_PARAMETERS.len()
     + VISCOUS_PARAMETERS.len()
     + EFFECTIVE_RESTITUTION.len()
-    + VISCOUS_ENERGY.len();
+    + VISCOUS_ENERGY.len()
+    + DAMPING_POWER.len();
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
@@ -505,4 +518,5 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     VISCOUS_PARAMETERS,
     &EFFECTIVE_RESTITUTION,
     &VISCOUS_ENERGY,
+    &DAMPING_POWER,
 ]);

@@ -10,7 +10,8 @@ use fmu_host::{Random, ok};
 
 type Settings = Vec<(&'static str, f64)>;
 
-const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity"];
+const STATES: [&str; 5] =
+    ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", "energy.damping"];
 
 /// Inside the bounds, so that a difference can be taken.
 const INSIDE: [(&str, f64); 7] = [
@@ -196,13 +197,13 @@ fn the_wall_brings_along_a_ball_that_starts_at_rest() {
 }
 
 /// Compares with respect to each state and the force at these states; returns how many derivatives are not zero.
-fn check_point(host: &Host, names: &[&str], time: f64, states: [f64; 4], force: f64) -> usize {
+fn check_point(host: &Host, names: &[&str], time: f64, states: [f64; 5], force: f64) -> usize {
     let mut not_zero = 0;
     for (k, known) in STATES.into_iter().chain(["externalForce"]).enumerate() {
         let values = |distance: f64| {
             let mut moved = states;
             moved.iter_mut().skip(k).take(1).for_each(|state| *state += distance);
-            host.set("externalForce", if k == 4 { force + distance } else { force });
+            host.set("externalForce", if k == states.len() { force + distance } else { force });
             ok(host.place(time, &moved));
             Some(host.get_all(names))
         };
@@ -235,7 +236,7 @@ fn derivatives_in_model_exchange_agree_with_central_differences() {
         let position = random.between(-0.01, 0.01);
         let velocity = random.between(-0.3, 0.3);
         let ball = if rests { [position - 0.022, velocity] } else { [position - 0.01, random.between(-0.3, 0.3)] };
-        let states = [position, velocity, ball[0], ball[1]];
+        let states = [position, velocity, ball[0], ball[1], random.between(0.0, 1e-3)];
         let force = random.between(-0.3, 0.3);
         ok(host.enter_continuous_time_mode());
         let not_zero = check_point(&host, &continuous_unknowns(), 0.01, states, force);
@@ -247,11 +248,26 @@ fn derivatives_in_model_exchange_agree_with_central_differences() {
         let is_discrete = |name: &&str| !continuous_unknowns().contains(name);
         let discrete: Vec<_> = unknowns().into_iter().filter(is_discrete).collect();
         // They have been set by events before, or will be by one that is still ahead.
-        assert_eq!(table(&discrete), [0; 4].map(|_| vec![0.0; discrete.len()]));
+        assert_eq!(table(&discrete), [0; 5].map(|_| vec![0.0; discrete.len()]));
         let fields = host.derivatives(&["left.electricField", "right.electricField"], "left.voltage");
         assert_eq!(fields, [1.0 / host.get("membrane.thickness"), 0.0]);
     }
     assert!(resting >= 20, "{resting}");
+}
+
+#[test]
+fn the_power_of_the_damper_follows_the_velocity_in_model_exchange() {
+    const DAMPING: f64 = 0.4;
+    let host = Host::exchanging(&[("cylinder.suspensionDamping", DAMPING)]);
+    ok(host.enter_continuous_time_mode());
+    ok(host.place(0.01, &[0.001, 0.3, 0.002, 0.1, 0.02]));
+    assert!((host.get("der(energy.damping)") - DAMPING * 0.09).abs() < 1e-15);
+    assert!((host.get("energy.damping") - 0.02).abs() < 1e-15);
+    let names = ["der(energy.damping)", "energy.damping", "energy.excitation"];
+    let [power, lost, work]: [f64; 3] = host.derivatives(&names, "cylinder.velocity").try_into().unwrap();
+    assert!((power - 2.0 * DAMPING * 0.3).abs() < 1e-9 && lost == 0.0, "{power}, {lost}");
+    assert!((work - host.get("cylinder.mass") * 0.3).abs() < 1e-9, "{work}");
+    assert_eq!(host.derivatives(&names, "energy.damping"), [0.0, 1.0, 1.0]);
 }
 
 /// A linearisation asks for all outputs between events, where discrete ones are constant.

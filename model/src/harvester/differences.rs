@@ -140,7 +140,7 @@ impl Harvester {
         }
     }
 
-    /// Changes per unit of continuous state number `state` in [`Harvester::states`], or of the external force, at the present time,
+    /// Changes per unit of continuous state number `state` in [`Harvester::states`], one of the motion, or of the external force, at the present time,
     /// by differences. None in a contact that lasts.
     pub fn differences_at_point(&self, state: Option<usize>) -> Option<Sensitivities> {
         if self.motion.ball.contact().is_some() {
@@ -210,7 +210,7 @@ impl Harvester {
         self.push(force + distance, rate);
     }
 
-    /// Moves continuous state number `state` by `distance`, m or m/s. A ball that the cylinder carries goes with it.
+    /// Moves continuous state number `state`, one of the motion, by `distance`, m or m/s. A ball that the cylinder carries goes with it.
     fn displace(&mut self, state: usize, distance: f64) {
         let mut change = [0.0; 4];
         change[state] = distance;
@@ -218,7 +218,7 @@ impl Harvester {
         if self.motion.ball.is_carried() {
             (change[2], change[3]) = (change[0], change[1]);
         }
-        let [position, velocity, ball_position, ball_velocity] = self.states();
+        let [position, velocity, ball_position, ball_velocity, _] = self.states();
         let here = self.motion.cylinder.at(self.time);
         let moved = CylinderState { position: position + change[0], velocity: velocity + change[1], ..here };
         let motion = &mut self.motion;
@@ -336,6 +336,7 @@ impl Harvester {
             energies: self.energies(),
             contact_time: self.contact_time(),
             mount_force: self.mount_force(),
+            damping_power: self.damping_power(),
             next_impact: self.next_impact().unwrap_or(0.0),
             next_knot: self.next_knot().unwrap_or(0.0),
         }
@@ -377,6 +378,7 @@ impl Sensitivities {
             },
             contact_time: of(self.contact_time, other.contact_time),
             mount_force: of(self.mount_force, other.mount_force),
+            damping_power: of(self.damping_power, other.damping_power),
             next_impact: of(self.next_impact, other.next_impact),
             next_knot: of(self.next_knot, other.next_knot),
         }

@@ -27,12 +27,12 @@ const CONTACT: f64 = 1e-9;
 const CLEARANCE: f64 = 8.0;
 
 impl Harvester {
-    /// Takes the continuous states `z_M`, m, `z_M'`, m/s, `z_m`, m, `z_m'`, m/s, at `time`, s, under the external `force`,
-    /// N. Nothing happens to them: an event waits for [`Harvester::handle_events`].
+    /// Takes the continuous states `z_M`, m, `z_M'`, m/s, `z_m`, m, `z_m'`, m/s, and the energy that the damper has taken, J, at
+    /// `time`, s, under the external `force`, N. Nothing happens to them: an event waits for [`Harvester::handle_events`].
     ///
     /// # Errors
     /// A value that is not finite; the compliant law.
-    pub fn place(&mut self, time: f64, states: [f64; 4], force: f64) -> Result<(), ModelError> {
+    pub fn place(&mut self, time: f64, states: [f64; 5], force: f64) -> Result<(), ModelError> {
         for value in states {
             finite("continuous state", value)?;
         }
@@ -41,12 +41,13 @@ impl Harvester {
         if self.parameters.contact_law == ContactLaw::Compliant {
             return Err(ModelError::CompliantExchange);
         }
-        let [position, velocity, ball_position, ball_velocity] = states;
+        let [position, velocity, ball_position, ball_velocity, damping] = states;
         let external = force / self.parameters.cylinder_mass;
         let drive = Drive { external, external_rate: 0.0, ..self.motion.cylinder.drive };
         self.time = time;
         self.leave_to_integrator();
         self.motion.cylinder = CylinderMotion::new(time, position, velocity, drive, self.motion.cylinder.load);
+        self.motion.cylinder.damped = damping / self.parameters.cylinder_mass;
         self.motion.last = Start { time, position: ball_position, velocity: ball_velocity };
         self.forget_search();
         Ok(())
@@ -58,14 +59,17 @@ impl Harvester {
         self.motion.leave_to_integrator();
     }
 
-    /// `z_M`, `z_M'`, `z_m`, `z_m'` (m, m/s).
-    pub fn states(&self) -> [f64; 4] {
-        [self.cylinder_position(), self.cylinder_velocity(), self.ball_position(), self.ball_velocity()]
+    /// `z_M`, `z_M'`, `z_m`, `z_m'` (m, m/s) and the energy that the damper has taken, J.
+    pub fn states(&self) -> [f64; 5] {
+        let [cylinder, ball] = [self.cylinder_position(), self.ball_position()];
+        [cylinder, self.cylinder_velocity(), ball, self.ball_velocity(), self.energies().damping]
     }
 
-    /// Time derivatives of [`Harvester::states`]: Eq. (7), and a ball that is free or carried by the membrane.
-    pub fn derivatives(&self) -> [f64; 4] {
-        [self.cylinder_velocity(), self.cylinder_acceleration(), self.ball_velocity(), self.ball_acceleration()]
+    /// Time derivatives of [`Harvester::states`]: Eq. (7), a ball that is free or carried by the membrane, and the power of the
+    /// damper.
+    pub fn derivatives(&self) -> [f64; 5] {
+        let [cylinder, ball] = [self.cylinder_acceleration(), self.ball_acceleration()];
+        [self.cylinder_velocity(), cylinder, self.ball_velocity(), ball, self.damping_power()]
     }
 
     /// The gaps between ball and membrane, m, left and right, Eq. (8). While the ball rests on a membrane there is no gap: in its

@@ -96,7 +96,7 @@ struct Tally {
 /// Checks the impact or release that comes next, if there is one within `patience`, s. The harvester goes there.
 fn check_next(harvester: &mut Harvester, force: [f64; 2], patience: f64, tally: &mut Tally) {
     let (from, before) = (harvester.time(), *harvester.totals());
-    let [position, _, ball, ball_velocity] = harvester.states();
+    let [position, _, ball, ball_velocity, _] = harvester.states();
     let half = 0.5 * harvester.parameters().travel();
     let (path, until) = (Path::new(harvester, force), from + patience);
     let resting = harvester.resting();
@@ -132,7 +132,7 @@ fn check_next(harvester: &mut Harvester, force: [f64; 2], patience: f64, tally: 
 /// Goes on through the bounces of a chattering sequence that are too low for the places that are looked at.
 fn leave_low_bounces(harvester: &mut Harvester) {
     while harvester.resting().is_none() {
-        let [_, velocity, _, ball] = harvester.states();
+        let [_, velocity, _, ball, _] = harvester.states();
         let gap = 0.5 * harvester.parameters().travel() - harvester.relative_displacement().abs();
         if gap > 1e-7 || (velocity - ball).abs() > 1e-3 {
             return;

@@ -87,7 +87,13 @@ impl Harvester {
         p.cylinder_mass * self.cylinder_acceleration() - external + ball
     }
 
-    /// Change of the same, in closed form, when that of `z_M''` is `acceleration`, m/s^2: a shaker bears the external force.
+    /// Power that the damper takes, W.
+    pub fn damping_power(&self) -> f64 {
+        let velocity = self.cylinder_velocity();
+        self.parameters.suspension_damping * velocity * velocity
+    }
+
+    /// Change of the force of the mount, in closed form, when that of `z_M''` is `acceleration`, m/s^2: a shaker bears the external force.
     fn mount_force_change(&self, acceleration: f64) -> f64 {
         let p = &self.parameters;
         if p.excitation_kind == ExcitationKind::Force {
@@ -255,6 +261,7 @@ impl Harvester {
             energies: changes.energies_change(time),
             contact_time: 0.0,
             mount_force: self.mount_force_change(acceleration),
+            damping_power: 0.0,
             next_impact,
             next_knot: predicting.next_knot_change(next_impact),
         }

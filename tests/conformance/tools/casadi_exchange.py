@@ -14,8 +14,8 @@ PROVES = "model exchange: derivatives and outputs; its Jacobian from directional
 LOADS = True
 FMUS = (job.HARVESTER,)
 
-STATES = [0.01, 0.02, 0.005, 0.1]
-"""A cylinder and a ball inside the gap."""
+STATES = [0.01, 0.02, 0.005, 0.1, 0.002]
+"""A cylinder, a ball inside the gap, and what the damper has taken."""
 INPUTS = [0.05, 2000.0, 2100.0]
 POINT = np.array(STATES + INPUTS)
 TOLERANCE = 1e-6
