@@ -276,7 +276,7 @@ stage_conformance() {
     need_python
     run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     build_fmus
-    run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling
+    run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling tests/netlists
     run "$VENV/bin/python" tests/conformance
     run "$VENV/bin/python" tests/coupling
 }

@@ -95,7 +95,7 @@ fn subcircuit(text: &mut String, format: Format, table: &Table, side: usize, tab
 fn tabulate(out: &mut impl std::io::Write, table: &Table) -> std::io::Result<()> {
     let [time, left, right] = [0, 1, 2].map(|column| &table.columns[column].values);
     let rows = time.iter().zip(left).zip(right).map(|((time, left), right)| (*time, *left, *right));
-    let beyond = rows.clone().last().map(|(time, left, right)| (time + 1.0, left, right));
+    let beyond = rows.clone().next_back().map(|(time, left, right)| (time + 1.0, left, right));
     for (time, left, right) in rows.chain(beyond) {
         writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO)?;
     }
