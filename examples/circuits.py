@@ -1,6 +1,6 @@
 """Net power of the circuits in ngspice_netlists/circuits on cases of the paper, as a table in Markdown.
 
-    python examples/circuits.py > table.md
+    python examples/circuits.py > table.md     # with videg on the PATH
 
 Each runs live with the harvester. The communication step is short where the capacitance of a pulse grows a hundredfold. A cell is the
 net power in mW over the second half of the run; `*` marks a run whose coupling makes or loses more than 1 % of the energy moved.
@@ -10,8 +10,6 @@ import json
 import subprocess
 import tempfile
 from pathlib import Path
-
-from find_videg import find
 
 CIRCUITS = Path(__file__).parents[1] / "ngspice_netlists" / "circuits"
 NETLISTS = ["paper", "leaky", "half_wave", "constant_charge", "self_priming"]
@@ -29,7 +27,7 @@ def net_power(netlist: str, case: str) -> str:
     """Net power in mW, or why there is none."""
     with tempfile.TemporaryDirectory() as folder:
         path = CIRCUITS / f"{netlist}.cir"
-        command = [find() or "videg", "cosim", "--netlist", path, "--case", case, *CASES[case], "--json", "--output", folder]
+        command = ["videg", "cosim", "--netlist", path, "--case", case, *CASES[case], "--json", "--output", folder]
         run = subprocess.run(command, capture_output=True, text=True)
     if run.returncode != 0:
         return "stops"

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import circuits
 import device
+import netlists
 
 FOLDER = Path(__file__).resolve().parents[1] / "figures"
 
 
 def drawings() -> dict[str, str]:
     """File names and contents."""
-    return device.drawings() | circuits.drawings()
+    return device.drawings() | circuits.drawings() | netlists.drawings()
 
 
 if __name__ == "__main__":
