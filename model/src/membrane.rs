@@ -141,6 +141,7 @@ impl Membrane {
         }
     }
 
+    #[inline]
     fn measured_excess_and_slope(&self, deflection: f64) -> Option<[f64; 2]> {
         self.elasticity.table()?.capacitance_excess_and_slope(deflection)
     }

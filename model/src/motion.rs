@@ -251,7 +251,7 @@ impl Motion {
     pub fn restart(&mut self, time: f64, drive: Drive) {
         let motion = self.relative_at(time);
         self.cylinder = self.cylinder.continued(time, drive);
-        self.new_flight(&self.cylinder.at(time), motion);
+        self.new_flight(&self.cylinder.at_start(), motion);
     }
 
     /// Searches from where the cylinder is `here` and `z_M` - `z_m` and its rate are `motion`, m and m/s. These are handed on
@@ -267,12 +267,17 @@ impl Motion {
     #[inline]
     fn change_ball(&mut self, ball: Ball, slip: f64, here: &mut CylinderState) {
         (self.ball, self.slip) = (ball, slip);
-        if self.mount.ratio == 0.0 && !self.mount.is_suspended() {
-            return; // the cylinder goes on as before
+        // Else the cylinder goes on as before.
+        if self.mount.ratio > 0.0 || self.mount.is_suspended() {
+            self.change_load(here);
         }
-        let load = Self::load_of(&self.mount, &self.ball, slip);
-        self.cylinder = CylinderMotion::from_state(here, self.drive_at(here.time), load);
-        *here = self.cylinder.at(here.time);
+    }
+
+    #[inline(never)] // what a free cylinder does stays small
+    fn change_load(&mut self, here: &mut CylinderState) {
+        let load = Self::load_of(&self.mount, &self.ball, self.slip);
+        self.cylinder = self.cylinder.loaded(here, load);
+        *here = self.cylinder.at_start();
     }
 
     /// dz'', m/s^2, of a ball without friction where the cylinder is `here`, if the ball does not act on it.

@@ -52,7 +52,7 @@ impl Motion {
             return (leaving == 0.0 && rebound == 0.0 && side.sign() * wall.jerk > 0.0).then_some(Tail::Unresolved);
         }
         let [highest, tolerance] = self.accuracy.bounds();
-        let (highest, unresolved) = (highest * self.half_travel, 4.0 * self.flight.rounding(0.0));
+        let (highest, unresolved) = (highest * self.half_travel, 4.0 * self.flight.rounding_at_start());
         if rebound * rebound > 2.0 * leaving * highest.max(unresolved) {
             return None;
         }

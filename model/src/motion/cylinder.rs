@@ -176,8 +176,19 @@ impl CylinderMotion {
     /// Motion from `position`, m, and `velocity`, m/s, at `start`, s, under `drive` and `load`.
     pub fn new(start: f64, position: f64, velocity: f64, drive: Drive, load: Load) -> Self {
         let harmonic = Harmonic::new(&drive, &load);
-        let [sin_start, cos_start] = harmonic.sine(start);
-        let Harmonic { amplitude, own_turns, speed, swing, .. } = harmonic;
+        Self::with_sine((start, position, velocity), drive, load, &harmonic, harmonic.sine(start))
+    }
+
+    /// The same if sine and cosine of the angle of this `harmonic` force at the start are known.
+    #[inline]
+    fn with_sine(
+        (start, position, velocity): (f64, f64, f64),
+        drive: Drive,
+        load: Load,
+        harmonic: &Harmonic,
+        [sin_start, cos_start]: [f64; 2],
+    ) -> Self {
+        let Harmonic { amplitude, own_turns, speed, swing, .. } = *harmonic;
         let (external, damped) = (drive.line(&load, start), 0.0);
         Self {
             start,
@@ -205,9 +216,20 @@ impl CylinderMotion {
     /// All of the motion at `time`, s.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
-        let Self { amplitude, external: [external, external_rate], .. } = *self;
         let turns = self.turns(time);
-        let sine = sin_cos(4.0 * turns);
+        self.at_angle(time, turns, sin_cos(4.0 * turns))
+    }
+
+    /// The same at its start.
+    #[inline]
+    pub(crate) fn at_start(&self) -> CylinderState {
+        self.at_angle(self.start, self.turns(self.start), [self.sin_start, self.cos_start])
+    }
+
+    /// The same where the angle of the harmonic force is so many `turns`, and has this `sine` and cosine.
+    #[inline]
+    fn at_angle(&self, time: f64, turns: f64, sine: [f64; 2]) -> CylinderState {
+        let Self { amplitude, external: [external, external_rate], .. } = *self;
         let ([sin, cos], elapsed) = (sine, time - self.start);
         let acceleration = excitation::acceleration(amplitude, cos, external) + external_rate * elapsed;
         let jerk = external_rate - amplitude * self.drive.omega() * sin;
@@ -243,9 +265,12 @@ impl CylinderMotion {
     #[inline(never)] // what a free cylinder does stays small
     fn suspended_at(&self, forced: CylinderState) -> CylinderState {
         let (suspension, elapsed) = (self.suspension(), forced.time - self.start);
-        let terms = self.oscillation().terms(elapsed);
-        let [position, velocity] = self.after(elapsed, change(&terms, elapsed));
-        let damped = forced.damped + damped_energy(self.load.suspension.damping, &terms, elapsed);
+        let ([mut position, mut velocity], mut damped) = ([self.position, self.velocity], forced.damped);
+        if elapsed != 0.0 {
+            let terms = self.oscillation().terms(elapsed);
+            [position, velocity] = self.after(elapsed, change(&terms, elapsed));
+            damped += damped_energy(self.load.suspension.damping, &terms, elapsed);
+        }
         let acceleration = forced.acceleration + suspension.acceleration(position, velocity);
         let jerk = forced.jerk + suspension.acceleration(velocity, acceleration);
         CylinderState { position, velocity, acceleration, jerk, damped, ..forced }
@@ -294,6 +319,15 @@ impl CylinderMotion {
     /// The motion that goes on from `here` under this drive and load.
     pub fn from_state(here: &CylinderState, drive: Drive, load: Load) -> Self {
         Self { damped: here.damped, ..Self::new(here.time, here.position, here.velocity, drive, load) }
+    }
+
+    /// The motion that goes on from `here`, a place of this one, under another load.
+    #[must_use]
+    pub fn loaded(&self, here: &CylinderState, load: Load) -> Self {
+        let CylinderState { time, position, velocity, sine, damped, .. } = *here;
+        let drive = self.drive_at(time);
+        let harmonic = Harmonic::new(&drive, &load);
+        Self { damped, ..Self::with_sine((time, position, velocity), drive, load, &harmonic, sine) }
     }
 
     /// Whether spring or damper hold it.

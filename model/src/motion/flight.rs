@@ -205,6 +205,12 @@ impl Flight {
         8.0 * f64::EPSILON * (self.half_travel + (self.dz.abs() + polynomial) + harmonic)
     }
 
+    /// The same at the start.
+    #[inline]
+    pub fn rounding_at_start(&self) -> f64 {
+        8.0 * f64::EPSILON * (self.half_travel + self.dz.abs())
+    }
+
     /// The same of the change of dz since the start.
     fn rounding_of_change(&self, tau: f64) -> f64 {
         let [polynomial, harmonic] = self.sizes_of_change(tau);
@@ -226,7 +232,7 @@ impl Flight {
     pub fn skip(&self, window: u64) -> Option<u64> {
         let [sin, cos] = self.sine;
         let middle = self.dz + self.swing * cos;
-        let reach = self.half_travel - self.swing - self.rounding(0.0);
+        let reach = self.half_travel - self.swing - self.rounding_at_start();
         let [c2, c3] = self.external; // one by one: a comparison of arrays is a call
         if c2 != 0.0 || c3 != 0.0 || middle.abs() >= reach {
             return Some(window);
@@ -274,7 +280,7 @@ impl Flight {
         let is_first_period = begin == 0.0 && end == self.period;
         let at_end = || if is_first_period { self.first_knot().angle.after_a_turn() } else { self.angle(end) };
         if self.has_curvature_only() {
-            return self.first_between_inflections(from, self.knot(0, end, at_end()), contacts_only, find);
+            return self.first_between_inflections(from, end, || self.knot(0, end, at_end()), contacts_only, find);
         }
         for zero in self.zeros(1, begin, end).iter() {
             let to = self.knot_at(0, zero);
@@ -300,8 +306,8 @@ impl Flight {
     }
 
     fn window_bounds(&self, window: u64, limit: f64) -> (f64, f64) {
-        let length = self.window_length();
-        (window as f64 * length, ((window + 1) as f64 * length).min(limit))
+        let (length, number) = (self.window_length(), window as f64);
+        (number * length, ((number + 1.0) * length).min(limit))
     }
 
     /// False if speed and acceleration are too small to reach a membrane from `begin` to `end`: a quick test that decides

@@ -74,13 +74,7 @@ impl Motion {
     }
 
     fn flight_from(&self, state: &HoldState, cylinder: &CylinderMotion) -> Flight {
-        Flight::new(
-            cylinder,
-            &cylinder.at(cylinder.start),
-            [state.dz, state.rate],
-            self.half_travel,
-            self.mount.incline,
-        )
+        Flight::new(cylinder, &cylinder.at_start(), [state.dz, state.rate], self.half_travel, self.mount.incline)
     }
 
     /// The cylinder's motion when the event comes that is predicted.

@@ -220,7 +220,7 @@ impl Motion {
         let Piece { cylinder: Start { time, position, velocity }, relative, damped, drive } = *piece;
         let mut cylinder = CylinderMotion::new(time, position, velocity, drive, self.cylinder.load);
         cylinder.damped = damped;
-        let here = cylinder.at(time);
+        let here = cylinder.at_start();
         (cylinder, Flight::new(&cylinder, &here, relative, self.half_travel, self.mount.relative(self.slip)))
     }
 

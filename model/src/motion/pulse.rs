@@ -154,14 +154,14 @@ pub(crate) struct Knot<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct Running {
     pub(crate) pulse: Pulse,
-    own: Option<Own>,
+    own: Option<Arc<Own>>,
 }
 
 /// The way of a pulse whose law of the membrane has no shape that all pulses share: worked out when somebody asks for it.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Own {
     membrane: Shared<Membrane>,
-    course: OnceLock<Arc<Course>>,
+    course: OnceLock<Course>,
 }
 
 impl PartialEq for Running {
@@ -173,13 +173,13 @@ impl PartialEq for Running {
 
 impl Running {
     pub(crate) fn new(membrane: &Shared<Membrane>, pulse: Pulse) -> Self {
-        let own = (!membrane.is_power()).then(|| Own { membrane: membrane.clone(), course: OnceLock::new() });
+        let own = (!membrane.is_power()).then(|| Arc::new(Own { membrane: membrane.clone(), course: OnceLock::new() }));
         Self { pulse, own }
     }
 
     fn course(&self) -> Option<&Course> {
-        let Own { membrane, course } = self.own.as_ref()?;
-        Some(course.get_or_init(|| Arc::new(Course::new(membrane, self.pulse.peak))))
+        let Own { membrane, course } = self.own.as_deref()?;
+        Some(course.get_or_init(|| Course::new(membrane, self.pulse.peak)))
     }
 
     fn loading_time(&self, shape: &PulseShape) -> f64 {

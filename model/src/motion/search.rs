@@ -115,7 +115,8 @@ impl Motion {
     }
 
     /// The same of any flight or rest of this ball, under this `drive`.
-    #[inline]
+    #[allow(clippy::inline_always)] // at each event, and not inlined otherwise
+    #[inline(always)]
     pub(super) fn search_window_of(
         (mount, ball, slip, search): (&Mount, &Ball, &f64, &mut Search),
         drive: &Drive,

@@ -39,9 +39,10 @@ impl Suspension {
     /// The cylinder is free.
     pub const NONE: Self = Self { stiffness: 0.0, damping: 0.0 };
 
-    /// Whether there is neither spring nor damper.
+    /// Whether there is neither spring nor damper, of which none is negative.
+    #[inline]
     pub fn is_none(&self) -> bool {
-        *self == Self::NONE
+        self.stiffness + self.damping <= 0.0
     }
 
     /// The same over a mass that is 1 / `share` times as large.

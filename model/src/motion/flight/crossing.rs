@@ -19,12 +19,11 @@ const ROUGH: f64 = 0.3;
 struct Series([f64; 8]);
 
 impl Series {
-    /// Series of `gap` less `sign` times what dz adds to it.
+    /// Series of a gap that is `level` where these, a value and its derivatives, are zero.
     #[inline]
-    fn new(gap: f64, sign: f64, [_, d1, d2, d3, d4, d5, d6, d7]: [f64; 8]) -> Self {
-        let [c1, c2, c3] = [-sign * d1, -sign * d2 * (1.0 / 2.0), -sign * d3 * (1.0 / 6.0)];
-        let [c4, c5] = [-sign * d4 * (1.0 / 24.0), -sign * d5 * (1.0 / 120.0)];
-        Self([gap, c1, c2, c3, c4, c5, -sign * d6 * (1.0 / 720.0), -sign * d7 * (1.0 / 5040.0)])
+    fn new(level: f64, [d0, d1, d2, d3, d4, d5, d6, d7]: [f64; 8]) -> Self {
+        let [c2, c3, c4] = [d2 * (1.0 / 2.0), d3 * (1.0 / 6.0), d4 * (1.0 / 24.0)];
+        Self([level + d0, d1, c2, c3, c4, d5 * (1.0 / 120.0), d6 * (1.0 / 720.0), d7 * (1.0 / 5040.0)])
     }
 
     /// Value, first and half the second derivative.
@@ -87,16 +86,16 @@ impl Flight {
     /// When, and how fast, dz comes to be `beyond`, m, outside of the membrane at `side`, on a piece on which it rises or
     /// falls all the way to there.
     pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> Crossing {
-        let (sign, level) = (side.sign(), self.room(side) + beyond);
+        let (gap_to, level) = (self.seen_from(side), self.room(side) + beyond);
         let (mut low, mut high) = (from.tau, to.tau);
         let (begin, angle) = self.steepest(side, from, to).unwrap_or((from.tau, from.angle));
-        let first = self.series(begin, &angle, level, sign);
+        let first = gap_to.series(begin, &angle, level);
         let start = if begin == from.tau { first.root_of_parabola() } else { first.first_step() };
         let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
         let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
         for _ in 0..MAX_SERIES {
             let angle = self.angle(tau);
-            let series = self.series(tau, &angle, level, sign);
+            let series = gap_to.series(tau, &angle, level);
             if series.0[0] > 0.0 {
                 low = tau;
             } else {
@@ -112,12 +111,12 @@ impl Flight {
             let [_, slope, half_curvature] = series.at(step);
             // With all digits: in the series, the straight part of the flight would carry the rounding of `tau` along.
             let there = angle.swept.further(self.omega() * step);
-            let gap = level - sign * self.change(tau + step, &there);
+            let gap = level + gap_to.change(tau + step, &there);
             let change = Series::halley([gap, slope, half_curvature]);
             if let Some(change) = change.filter(|_| self.is_found(tau, step, gap / slope, slope)) {
                 let elapsed = (tau + (step + change)).clamp(low, high);
                 let there = angle.swept.further(self.omega() * (step + change));
-                let speed = sign * self.slope(elapsed, &there);
+                let speed = -gap_to.slope(elapsed, &there);
                 return Crossing { elapsed, side, speed: speed.max(0.0) };
             }
             let next = tau + step;
@@ -132,11 +131,18 @@ impl Flight {
         Crossing { elapsed, side, speed: (side.sign() * rate).max(0.0) }
     }
 
-    /// The gap about `tau`, s, where the angle is this one.
+    /// The same with the sign that it adds to the gap to the membrane at `side`.
     #[inline]
-    fn series(&self, tau: f64, angle: &Angle, level: f64, sign: f64) -> Series {
-        let derivatives = self.derivatives(tau, angle);
-        Series::new(level - sign * derivatives[0], sign, derivatives)
+    fn seen_from(&self, side: Side) -> Self {
+        let sign = -side.sign();
+        let external = self.external.map(|part| sign * part);
+        Self { external, swing: sign * self.swing, rate: sign * self.rate, ..*self }
+    }
+
+    /// The gap about `tau`, s, where the angle is this one, of a flight that is seen from the membrane.
+    #[inline]
+    fn series(&self, tau: f64, angle: &Angle, level: f64) -> Series {
+        Series::new(level, self.derivatives(tau, angle))
     }
 
     /// Whether the `step`, s, of Halley's method from `tau` and one more of that method lead to the crossing, if Newton's method

@@ -48,6 +48,14 @@ impl Zeros {
         }
     }
 
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(super) fn get(&self, number: usize) -> Option<Zero> {
+        self.list[..self.len].get(number).copied()
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = Zero> {
         self.list[..self.len].iter().copied()
     }
@@ -55,7 +63,8 @@ impl Zeros {
 
 impl Flight {
     /// The place at `tau`, s, where the angle is this one, with derivative number `order`.
-    #[inline]
+    #[allow(clippy::inline_always)] // the order is known where it is called, and little is left
+    #[inline(always)]
     pub(super) fn knot(&self, order: usize, tau: f64, angle: Angle) -> Knot {
         let value = match order {
             0 => self.change(tau, &angle.swept),
@@ -79,7 +88,7 @@ impl Flight {
     pub(super) fn zeros(&self, order: usize, begin: f64, end: f64) -> Zeros {
         let [c2, c3] = self.external;
         let constant = match order {
-            1 => c2 == 0.0 && c3 == 0.0,
+            1 => c3 == 0.0 && c2 == 0.0,
             2 => c3 == 0.0,
             _ => true,
         };
