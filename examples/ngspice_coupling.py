@@ -16,6 +16,9 @@ sys.path.append("examples")
 # Under the paper's contact law the circuit does not act on the mechanics. So C(t) can be computed once, and circuits later, as often
 # as you like.
 #
+# `videg export` writes C(t) as subcircuits that ngspice includes ([Export C(t)](../howto/export.md)); `videg cosim --netlist` runs your netlist in step
+# with the harvester ([Run a netlist of your own](../howto/netlist.md)). This page shows what is behind both, by hand.
+#
 # ## Get C(t)
 
 # %%

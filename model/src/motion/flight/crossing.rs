@@ -131,7 +131,7 @@ impl Flight {
         Crossing { elapsed, side, speed: (side.sign() * rate).max(0.0) }
     }
 
-    /// The same with the sign that it adds to the gap to the membrane at `side`.
+    /// This flight with the sign with which it adds to the gap to the membrane at `side`.
     #[inline]
     fn seen_from(&self, side: Side) -> Self {
         let sign = -side.sign();
