@@ -1,16 +1,16 @@
 //! The event-driven motion against the paper's stepping, in one run: `cargo bench --bench harvester`.
 
 mod baseline;
+mod mounts;
 
 use std::hint::black_box;
 
 use std::f64::consts::TAU;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use mounts::UNTIL;
 use videg_model::{Case, ExcitationKind, Harvester, ModelError, Parameters, Recording, Setup};
 
-/// Duration of the paper's runs, s.
-const UNTIL: f64 = 100.0;
 /// Step of the paper's runs, s.
 const DT: f64 = 1e-5;
 /// Communication step of a coupled run, s.
@@ -29,18 +29,10 @@ fn event_driven<'a>(setup: impl Into<Setup<'a>>, steps: u32) -> Result<f64, Mode
     Ok(harvester.totals().voltage_gain)
 }
 
-/// Fig. 14 beside the same capsule held and driven in other ways; all have some 600 events.
-fn mounts(criterion: &mut Criterion) {
-    let level = parameters("fig14");
+fn other_mounts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("100 s of fig14, another mount");
-    for (name, p) in [
-        ("level, free, without friction", level),
-        ("inclined", Parameters { inclination: 0.02, ..level }),
-        ("with friction", Parameters { friction: 0.02, ..level }),
-        ("suspended", Parameters { suspension_stiffness: 5.0, suspension_damping: 0.02, ..level }),
-        ("keeping the momentum", Parameters { reaction: true, ..level }),
-    ] {
-        group.bench_function(name, |b| b.iter(|| event_driven(black_box(&p), 1)));
+    for mounted in mounts::mounts() {
+        group.bench_function(mounted.name, |b| b.iter(|| mounts::run(black_box(&mounted.parameters))));
     }
     group.finish();
 }
@@ -105,5 +97,5 @@ fn runs_of_100_s(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, runs_of_100_s, mounts, recordings);
+criterion_group!(benches, runs_of_100_s, other_mounts, recordings);
 criterion_main!(benches);

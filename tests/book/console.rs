@@ -3,7 +3,7 @@
 /// Commands that do not run here, and why: what they do belongs to other stages or takes long.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("cargo bench", "a benchmark"),
-    ("cargo run --release --example", "shows what benchmarks measured last"),
+    ("cargo run --release --example", "shows what benchmarks measure, or valgrind counts"),
     ("cargo test", "the tests themselves"),
     ("cargo +nightly", "needs a nightly compiler"),
     ("cargo fuzz", "needs a nightly compiler"),

@@ -1,0 +1,35 @@
+//! The capsule of Fig. 14 beside the same one held in other ways.
+
+use videg_model::{Case, Harvester, ModelError, Parameters, Totals};
+
+/// Duration of the paper's runs, s.
+pub const UNTIL: f64 = 100.0;
+
+/// A capsule.
+pub struct Mounted {
+    pub name: &'static str,
+    pub parameters: Parameters,
+    /// How many times the cost of an event of the level capsule one of its events may have.
+    #[allow(dead_code)] // the benchmark measures all
+    pub allowed: Option<f64>,
+}
+
+/// All of them; each has some 600 events in [`UNTIL`].
+pub fn mounts() -> [Mounted; 5] {
+    let level = Case::find("fig14").map_or_else(Parameters::default, |case| (case.parameters)());
+    [
+        ("level, free, without friction", level, None),
+        ("inclined", Parameters { inclination: 0.02, ..level }, Some(1.5)),
+        ("with friction", Parameters { friction: 0.02, ..level }, Some(2.0)),
+        ("suspended", Parameters { suspension_stiffness: 5.0, suspension_damping: 0.02, ..level }, Some(4.0)),
+        ("keeping the momentum", Parameters { reaction: true, ..level }, None),
+    ]
+    .map(|(name, parameters, allowed)| Mounted { name, parameters, allowed })
+}
+
+/// One run in one go.
+pub fn run(parameters: &Parameters) -> Result<Totals, ModelError> {
+    let mut harvester = Harvester::new(parameters, 0.0)?;
+    harvester.advance(UNTIL)?;
+    Ok(*harvester.totals())
+}
