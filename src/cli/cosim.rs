@@ -9,12 +9,13 @@ use serde::Serialize;
 
 use super::isolation::IsolationOptions;
 use super::options::RunOptions;
+use super::picture::{Electrical, Probe};
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading, mechanics};
 use super::{Exit, cosim_report, excitation, output, packaging, picture, time_series};
 use crate::cosim::{
-    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance,
-    LabelledCircuit, Method, NetlistCircuit, Options, Powers, Results,
+    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance, ForeignCircuit,
+    LabelledCircuit, Mapping, Method, NetlistCircuit, Options, Powers, Results,
 };
 use crate::ngspice::UserNetlist;
 use crate::scenario::Scenario;
@@ -36,6 +37,8 @@ pub struct Arguments {
     circuit: Backend,
     #[command(flatten)]
     netlist: NetlistOptions,
+    #[command(flatten)]
+    foreign: ForeignOptions,
     /// Signals that harvester and circuit exchange for a communication step
     #[arg(long, value_enum, default_value_t)]
     master: Method,
@@ -52,7 +55,7 @@ pub struct Arguments {
 struct NetlistOptions {
     /// Netlist of your own circuit, run by ngspice in step with the harvester; the membranes are in it as subcircuits with
     /// two nodes, `deg_left` and `deg_right`
-    #[arg(long, value_name = "FILE.cir", conflicts_with = "circuit")]
+    #[arg(long, value_name = "FILE.cir", group = "own", conflicts_with = "circuit")]
     netlist: Option<PathBuf>,
     /// Elements of the netlist whose energy is a gain, with commas between them [default: all resistors, capacitors and
     /// inductors]
@@ -61,12 +64,28 @@ struct NetlistOptions {
     /// Elements of the netlist whose energy is a cost [default: all sources]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "netlist")]
     cost: Vec<String>,
-    /// Nodes of the netlist, or i(source), whose waveforms are written and drawn
-    #[arg(long, value_name = "NODES", value_delimiter = ',', requires = "netlist")]
+    /// Nodes of the netlist, i(source), or Real variables of the circuit FMU, whose waveforms are written and drawn
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "own")]
     probe: Vec<String>,
     /// Trust the netlist: execute its commands, include files from anywhere, allow models that read files
     #[arg(long, requires = "netlist")]
     trust: bool,
+}
+
+/// A circuit FMU of the user.
+#[derive(Args)]
+struct ForeignOptions {
+    /// FMU of your own circuit (co-simulation, FMI 2.0), in a process of its own
+    #[arg(long, value_name = "FILE.fmu", group = "own", conflicts_with = "circuit")]
+    circuit_fmu: Option<PathBuf>,
+    /// The variable of the circuit FMU that is left.capacitance, right.capacitance (inputs), left.voltage, right.voltage, or another
+    /// output of HarvestingCircuit, which may be left out; none: there is none. Same names need no --map, units are converted; the
+    /// FMU's variable is FACTOR times the SI value if it has no unit. May be repeated
+    #[arg(long, value_name = "NAME=VARIABLE[*FACTOR]", requires = "circuit_fmu")]
+    map: Vec<String>,
+    /// The same as a TOML file, with a table [map] and start values of the circuit FMU in a table [set]
+    #[arg(long, value_name = "FILE.toml", requires = "circuit_fmu")]
+    map_file: Option<PathBuf>,
 }
 
 /// What solves the circuit.
@@ -103,23 +122,32 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let scenario = options.scenario()?;
     let coupling = Coupling { method: arguments.master, tolerance: arguments.adaptive };
     coupling.check()?;
-    let harvester = arguments.isolation.open_own("VibroImpactHarvester")?;
+    let (circuit, program, netlist, mapping);
+    let (own, foreign) = (&arguments.netlist, &arguments.foreign);
+    // Limits bind the FMU of the user.
+    let harvester = match foreign.circuit_fmu {
+        Some(_) => arguments.isolation.open_beside("VibroImpactHarvester")?,
+        None => arguments.isolation.open_own("VibroImpactHarvester")?,
+    };
     let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
-    let (circuit, program, netlist);
-    let own = &arguments.netlist;
-    let solver = match (&own.netlist, arguments.circuit) {
-        (Some(path), _) => {
+    let solver = match (&own.netlist, &foreign.circuit_fmu, arguments.circuit) {
+        (_, Some(path), _) => {
+            mapping = Mapping::read(&foreign.map, foreign.map_file.as_deref())?;
+            circuit = arguments.isolation.open(path)?;
+            CircuitSolver::Foreign(ForeignCircuit { fmu: &circuit, mapping: &mapping, probes: &own.probe })
+        }
+        (Some(path), ..) => {
             program = packaging::program()?;
             netlist = UserNetlist::read(path, own.trust)?;
             let (gain, cost, probes) = (&own.gain, &own.cost, &own.probe);
             CircuitSolver::Netlist(&program, NetlistCircuit { netlist: &netlist, gain, cost, probes })
         }
-        (None, Backend::Embedded) => CircuitSolver::Embedded,
-        (None, Backend::Ngspice) => {
+        (None, None, Backend::Embedded) => CircuitSolver::Embedded,
+        (None, None, Backend::Ngspice) => {
             program = packaging::program()?;
             CircuitSolver::Ngspice(&program)
         }
-        (None, Backend::Fmu) => {
+        (None, None, Backend::Fmu) => {
             circuit = arguments.isolation.open_own("HarvestingCircuit")?;
             CircuitSolver::Fmu(&circuit)
         }
@@ -130,7 +158,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     output::warn(warning.as_slice());
     let csv = folder.join("timeseries.csv");
     let results = record(cosimulation, &scenario, &csv, &own.probe)?;
-    let svg = picture::cosim(&results.trace, &scenario, own.netlist.is_some().then_some(own.probe.as_slice()))?.svg;
+    let drawn = match solver {
+        CircuitSolver::Netlist(_, user) => {
+            Electrical::Netlist(user.probes.iter().map(|it| Probe::of_node(it)).collect())
+        }
+        CircuitSolver::Foreign(user) => {
+            Electrical::Foreign(user.probes.iter().map(|name| Probe::of_variable(name, user.fmu)).collect())
+        }
+        _ => Electrical::Paper,
+    };
+    let svg = picture::cosim(&results.trace, &scenario, drawn)?.svg;
     let report = cosim_report::report(&scenario, &results, svg.clone());
     let html = videg_report::render_html(&excitation::described(report, &harvester, &scenario)?)?;
     let files = run_output::write(&folder, &[csv], &svg, &html)?;

@@ -21,6 +21,9 @@ pub const EXPLANATION: [&str; 10] = [
     "The last row is the charge from the supply over the charge in Eq. (13), the sum of U_in dC over all impacts.",
 ];
 
+/// Under the table of a circuit FMU of the user.
+const UNTOLD: &str = "A dash is what the circuit FMU does not tell: map its variable to see it.";
+
 /// A row of the energy table: its name and how to read it from a circuit, in J.
 type EnergyRow = (&'static str, fn(&LabelledCircuit) -> f64);
 
@@ -49,10 +52,19 @@ const SURPLUS: EnergyRow = ("surplus = load - supply", |c| c.summary.energy.surp
 /// Significant digits of energies.
 const DIGITS: usize = 5;
 
+/// A number of a table; a circuit FMU of a user need not tell all.
+fn number(value: f64) -> String {
+    if value.is_nan() { "-".to_owned() } else { significant(value, DIGITS) }
+}
+
+fn is_netlist(results: &Results) -> bool {
+    !results.elements.is_empty()
+}
+
 /// The energy table: energies in mJ and the charge moved against `U_in` dC.
 pub fn energies(results: &Results) -> Sheet {
     let row = |name: &str, value: &dyn Fn(&LabelledCircuit) -> f64| {
-        let values = results.circuits.iter().map(|circuit| significant(value(circuit), DIGITS));
+        let values = results.circuits.iter().map(|circuit| number(value(circuit)));
         std::iter::once(name.to_owned()).chain(values).collect()
     };
     let leaks = results.circuits.iter().any(|circuit| circuit.summary.energy.leakage != 0.0);
@@ -85,8 +97,8 @@ pub const NO_GAIN: &str = "P of Eq. (14) is the mean of W, the change of the sto
 pub fn powers(scenario: &Scenario, results: &Results) -> Sheet {
     let [from, to] = scenario.window;
     let rows = POWERS.iter().zip(NETLIST_POWERS).map(|((name, value), netlist)| {
-        let name = if results.elements.is_empty() { name } else { netlist };
-        let values = results.circuits.iter().map(|circuit| significant(1e3 * value(&circuit.powers), DIGITS));
+        let name = if is_netlist(results) { netlist } else { name };
+        let values = results.circuits.iter().map(|circuit| number(1e3 * value(&circuit.powers)));
         std::iter::once(name.to_owned()).chain(values).collect()
     });
     let labels = results.circuits.iter().map(|circuit| circuit.label.clone());
@@ -118,12 +130,22 @@ fn closure(results: &Results) -> String {
     format!("The energies of all elements sum to {sum:.1e} J, {relative:.1e} of the energy moved.")
 }
 
+/// What stands under the energy table, in lines with `separator` between them.
+fn explanation(results: &Results, separator: &str) -> String {
+    let is_untold = || results.circuits.iter().any(|circuit| circuit.summary.energy.converted.is_nan());
+    match results.is_foreign {
+        false => EXPLANATION.join(separator),
+        true if is_untold() => UNTOLD.to_owned(),
+        true => "The energies are those that the circuit FMU tells.".to_owned(),
+    }
+}
+
 /// The tables of energies with their explanation.
 pub fn tables(results: &Results) -> String {
-    if results.elements.is_empty() {
-        return format!("{}\n\n{}", energies(results).narrow(", "), EXPLANATION.join("\n"));
+    if is_netlist(results) {
+        return format!("{}\n\n{}", elements(results).text(), closure(results));
     }
-    format!("{}\n\n{}", elements(results).text(), closure(results))
+    format!("{}\n\n{}", energies(results).narrow(", "), explanation(results, "\n"))
 }
 
 /// The coupling with the first circuit, and the energy balance.
@@ -164,18 +186,18 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
 /// Caption of the figure.
 pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
     of the run; (d) energies of the first circuit since its start.";
-const NETLIST_CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) membrane voltages and waveforms of the \
-    netlist in the last seconds of the run; last panel: energies since its start.";
+const OWN_CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) membrane voltages and waveforms of the \
+    circuit in the last seconds of the run; last panel: energies since its start.";
 
 /// The HTML report.
 pub fn report(scenario: &Scenario, results: &Results, svg: String) -> Report {
     let mechanics = run_output::mechanics(scenario, &results.mechanics);
-    let caption = if results.elements.is_empty() { FIGURE_CAPTION } else { NETLIST_CAPTION };
+    let caption = if results.is_foreign { OWN_CAPTION } else { FIGURE_CAPTION };
     let section = Section::new("Where the energy goes");
-    let energies = if results.elements.is_empty() {
-        section.text(EXPLANATION.join(" ")).table(energies(results).html())
-    } else {
+    let energies = if is_netlist(results) {
         section.text(closure(results)).table(elements(results).html())
+    } else {
+        section.text(explanation(results, " ")).table(energies(results).html())
     };
     run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
         .section(

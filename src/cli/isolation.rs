@@ -58,6 +58,11 @@ impl IsolationOptions {
     /// Packages the FMUs of this project, with progress, and opens the one with this identifier.
     pub fn open_own(&self, identifier: &str) -> anyhow::Result<Fmu> {
         self.check_own()?;
+        self.open_beside(identifier)
+    }
+
+    /// The same beside an FMU of the user, which limits bind.
+    pub fn open_beside(&self, identifier: &str) -> anyhow::Result<Fmu> {
         let path = packaging::path(identifier)?;
         if self.isolate { Ok(Fmu::open_isolated(path, &self.isolation()?)?) } else { Ok(Fmu::open(path)?) }
     }

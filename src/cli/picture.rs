@@ -2,6 +2,7 @@
 
 use crate::cosim::{HarvesterSample, Trace, TracePoint};
 use crate::scenario::Scenario;
+use fmu_import::Fmu;
 use videg_circuit::Ledger;
 use videg_report::{Drawing, Figure, Panel, ReportError, Series, Style, render_svg};
 
@@ -117,20 +118,38 @@ const NETLIST_ENERGIES: [EnergyCurve; 4] = [
     ("net = gain - cost + stored", |ledger| ledger.surplus() + ledger.stored, Style::Dashed),
 ];
 
-/// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit; of a netlist also
-/// the waveforms called `probes`.
-pub fn cosim(trace: &Trace, scenario: &Scenario, probes: Option<&[String]>) -> Result<Drawing, ReportError> {
+/// Of a circuit FMU of the user.
+const FOREIGN_ENERGIES: [EnergyCurve; 4] = [
+    ("supply", |ledger| ledger.supply, Style::Line),
+    ("from the mechanics", |ledger| ledger.mechanical, Style::Dashed),
+    ("load", |ledger| ledger.load, Style::Line),
+    ("net = load - supply + stored", |ledger| ledger.surplus() + ledger.stored, Style::Dashed),
+];
+
+/// Whose circuit is drawn; of a user's, also the waveforms asked for.
+pub enum Electrical {
+    Paper,
+    Netlist(Vec<Probe>),
+    Foreign(Vec<Probe>),
+}
+
+/// Relative displacement, C(t), voltages (in detail) and cumulative energy (whole run) of the first circuit.
+pub fn cosim(trace: &Trace, scenario: &Scenario, circuit: Electrical) -> Result<Drawing, ReportError> {
     let mechanics = Mechanics::new(trace);
     let voltage = |side: usize| {
         points(&trace.detail, move |point| point.circuits.first().map_or(f64::NAN, |c| 1e-3 * c.voltage[side]))
     };
     let [left, right] = [voltage(0), voltage(1)];
-    let curves = if probes.is_some() { NETLIST_ENERGIES } else { ENERGIES };
+    let (curves, probes) = match circuit {
+        Electrical::Paper => (ENERGIES, Vec::new()),
+        Electrical::Netlist(probes) => (NETLIST_ENERGIES, probes),
+        Electrical::Foreign(probes) => (FOREIGN_ENERGIES, probes),
+    };
     let energies = curves.map(|(_, value, _)| {
         points(&trace.overview, |point| point.circuits.first().map_or(f64::NAN, |c| 1e3 * value(&c.ledger)))
     });
     let eq13 = points(&trace.overview, |point| 1e3 * point.harvester.energy_eq13());
-    let probes = Probes::new(trace, probes.unwrap_or_default());
+    let probes = Probes::new(trace, probes);
     // On a shared node the two voltages are one.
     let shared = left == right;
     let mut voltages = Panel::new("(c)", "time (s)", "voltage (kV)").height(120.0);
@@ -144,10 +163,12 @@ pub fn cosim(trace: &Trace, scenario: &Scenario, probes: Option<&[String]>) -> R
     if !probed.is_empty() {
         voltages = voltages.share_x_with_next();
     }
-    let letter = ["(d)", "(e)", "(f)"][probed.len().min(2)];
+    let letter = letter(3 + probed.len());
     let figure = probed.into_iter().fold(figure.panel(voltages), Figure::panel);
     let mut panel = Panel::new(letter, "time (s)", "energy (mJ)").height(150.0);
-    for (color, ((name, _, style), energy)) in curves.into_iter().zip(&energies).enumerate() {
+    let known = |energy: &Points| energy.iter().any(|(_, value)| !value.is_nan());
+    let drawn = curves.into_iter().zip(&energies).enumerate().filter(|(_, (_, energy))| known(energy));
+    for (color, ((name, _, style), energy)) in drawn {
         panel = panel.series(Series::points(name, energy).style(style).color(color));
     }
     let figure = figure.panel(panel.series(Series::points("W, Eq. (13)", &eq13).color(6))).caption(
@@ -157,45 +178,70 @@ pub fn cosim(trace: &Trace, scenario: &Scenario, probes: Option<&[String]>) -> R
     Drawing::new(&figure)
 }
 
-/// The waveforms of a netlist that were asked for.
+/// A waveform of a user's circuit that was asked for.
+pub struct Probe {
+    name: String,
+    /// Label of its axis.
+    axis: String,
+    /// The value on the axis over that of the circuit.
+    scale: f64,
+}
+
+impl Probe {
+    /// A node of a netlist, or `i(source)`.
+    pub fn of_node(name: &str) -> Self {
+        let is_current = name.to_ascii_lowercase().starts_with("i(");
+        let (axis, scale) = if is_current { ("current (uA)", 1e6) } else { ("voltage (V)", 1.0) };
+        Self { name: name.to_owned(), axis: axis.to_owned(), scale }
+    }
+
+    /// A variable of a circuit FMU.
+    pub fn of_variable(name: &str, fmu: &Fmu) -> Self {
+        let unit = fmu.description().variable(name).ok().and_then(|variable| variable.unit());
+        let axis = unit.map_or_else(|| "value".to_owned(), |unit| format!("value ({unit})"));
+        Self { name: name.to_owned(), axis, scale: 1.0 }
+    }
+}
+
+/// The waveforms in panels, one for each kind of axis.
 struct Probes {
-    curves: Vec<(String, Points)>,
+    curves: Vec<(Probe, Points)>,
 }
 
 impl Probes {
-    fn new(trace: &Trace, names: &[String]) -> Self {
-        let curve = |(index, name): (usize, &String)| {
-            let scale = if is_current(name) { 1e6 } else { 1.0 };
-            let value = |point: &TracePoint| scale * point.probes.get(index).copied().unwrap_or(f64::NAN);
-            (name.clone(), points(&trace.detail, value))
+    fn new(trace: &Trace, probes: Vec<Probe>) -> Self {
+        let curve = |(index, probe): (usize, Probe)| {
+            let value = |point: &TracePoint| probe.scale * point.probes.get(index).copied().unwrap_or(f64::NAN);
+            let points = points(&trace.detail, value);
+            (probe, points)
         };
-        Self { curves: names.iter().enumerate().map(curve).collect() }
+        Self { curves: probes.into_iter().enumerate().map(curve).collect() }
     }
 
-    /// A panel for the voltages and one for the currents, if there are any.
     fn panels(&self) -> Vec<Panel<'_>> {
-        let kinds: Vec<_> = [(false, "voltage (V)"), (true, "current (uA)")]
-            .into_iter()
-            .map(|(current, label)| {
-                (label, self.curves.iter().filter(move |(name, _)| is_current(name) == current).collect::<Vec<_>>())
-            })
-            .filter(|(_, curves)| !curves.is_empty())
-            .collect();
-        let count = kinds.len();
-        let mut panels = Vec::new();
-        for (index, (label, curves)) in kinds.into_iter().enumerate() {
-            let mut panel = Panel::new(["(d)", "(e)"][index], "", label).height(120.0);
-            for (name, points) in curves {
-                panel = panel.series(Series::points(name.as_str(), points));
+        let mut axes: Vec<&str> = Vec::new();
+        for (probe, _) in &self.curves {
+            if !axes.contains(&probe.axis.as_str()) {
+                axes.push(&probe.axis);
             }
-            panels.push(if index + 1 < count { panel.share_x_with_next() } else { panel });
         }
-        panels
+        let last = axes.len().saturating_sub(1);
+        let panel = |(index, axis): (usize, &&str)| {
+            let curves = self.curves.iter().filter(|(probe, _)| probe.axis == **axis);
+            let panel = curves
+                .fold(Panel::new(letter(3 + index), "", *axis).height(120.0), |panel, (probe, points)| {
+                    panel.series(Series::points(probe.name.as_str(), points))
+                });
+            if index < last { panel.share_x_with_next() } else { panel }
+        };
+        axes.iter().enumerate().map(panel).collect()
     }
 }
 
-fn is_current(probe: &str) -> bool {
-    probe.to_ascii_lowercase().starts_with("i(")
+/// Label of the panel with this index: (a), (b), ...
+fn letter(index: usize) -> String {
+    let letters = ('a'..='z').map(|letter| format!("({letter})"));
+    letters.cycle().nth(index).unwrap_or_default()
 }
 
 /// Relative displacement, C(t) and velocities (in detail) and the gains (whole run).

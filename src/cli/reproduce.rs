@@ -160,7 +160,7 @@ impl Reproduction<'_> {
             }
         };
         recorder.finish()?;
-        let drawing = picture::cosim(&results.trace, &scenario, None)?;
+        let drawing = picture::cosim(&results.trace, &scenario, picture::Electrical::Paper)?;
         output::write(&svg, &drawing.svg)?;
         self.warnings.extend(results.warnings.iter().cloned());
         self.chapters.push(Chapter::audit(AUDIT, &results, drawing, vec![csv, svg]));

@@ -76,9 +76,11 @@ impl EnergyBalance {
             damping,
             viscous,
         ] = change;
-        let converted = ledger.converted();
+        // A circuit FMU of a user may not tell where the energy went.
+        let converted = Some(ledger.converted()).filter(|energy| !energy.is_nan()).unwrap_or(ledger.mechanical);
         let residual = wall + gravity - (kinetic + elastic + impact_loss + viscous + friction + converted);
-        let through = impact_loss.abs() + viscous + friction + ledger.supply.abs();
+        let supply = if ledger.supply.is_nan() { converted } else { ledger.supply };
+        let through = impact_loss.abs() + viscous + friction + supply.abs();
         let relative_residual = if through > 0.0 { residual.abs() / through } else { 0.0 };
         Self {
             excitation,

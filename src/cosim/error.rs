@@ -23,6 +23,12 @@ pub enum CosimError {
     NoRollback { label: String },
     #[error("{option} {name}: {reason}")]
     Element { option: String, name: String, reason: String },
+    #[error("{place}: {reason}")]
+    Mapping { place: String, reason: String },
+    #[error("circuit \"{label}\": {variable} = {value}; allowed are finite numbers")]
+    NotFinite { label: String, variable: String, value: f64 },
+    #[error(transparent)]
+    File(#[from] Box<crate::scenario::ScenarioError>),
     #[error("{names}: with --netlist the netlist has the values of the circuit")]
     CircuitSettings { names: String },
     #[error("{instance}: no earlier state is saved to go back to")]

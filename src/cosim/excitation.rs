@@ -6,8 +6,8 @@ use fmu_import::Fmu;
 use videg_model::{ExcitationKind, Setup};
 
 use super::spectrum::amplitudes;
-use super::{CircuitRequest, CosimError, HarvesterFmu};
-use crate::scenario::Scenario;
+use super::{CosimError, HarvesterFmu};
+use crate::scenario::{Scenario, Setting};
 
 /// Most samples; a longer time is cut off at its end.
 const MOST: f64 = 262_144.0;
@@ -38,7 +38,9 @@ impl Excitation {
     /// # Errors
     /// As [`HarvesterFmu::new`].
     pub fn of(fmu: &Fmu, scenario: &Scenario) -> Result<Option<Self>, CosimError> {
-        let (mechanical, _) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
+        // Those of a circuit are no matter here.
+        let is_mechanical = |setting: &&Setting| fmu.description().variable(&setting.name).is_ok();
+        let mechanical: Vec<_> = scenario.settings.iter().filter(is_mechanical).cloned().collect();
         let Some((parameters, file)) = HarvesterFmu::new(fmu, scenario, &mechanical)?.parameters() else {
             return Ok(None);
         };

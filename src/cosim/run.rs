@@ -7,11 +7,11 @@ use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology};
 
 use super::ratios::{CapacitanceRatios, best_release_voltage};
-use super::settings::{CircuitRequest, label, voltage_warning};
+use super::settings::{CircuitRequest, label, split_between, voltage_warning};
 use super::{
     CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, ElementEnergy, EmbeddedCircuit, EnergyBalance,
-    FmuCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit, Observer, Outcome, Powers,
-    TimeProgress, Trace,
+    FmuCircuit, ForeignCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit, Observer,
+    Outcome, Powers, TimeProgress, Trace,
 };
 use crate::ngspice::{self, Elements};
 use crate::progress::Progress;
@@ -41,6 +41,8 @@ pub enum CircuitSolver<'a> {
     Fmu(&'a Fmu),
     /// A netlist of the user in ngspice; the program as for [`CircuitSolver::Ngspice`].
     Netlist(&'a Path, NetlistCircuit<'a>),
+    /// A circuit FMU of the user.
+    Foreign(ForeignCircuit<'a>),
 }
 
 impl<'a> Options<'a> {
@@ -70,13 +72,15 @@ pub struct Results {
     pub mechanics: MechanicsSummary,
     /// The circuit asked for, then those to compare it with.
     pub circuits: Vec<LabelledCircuit>,
+    /// Whether the circuit asked for is one of the user, not the paper's.
+    pub is_foreign: bool,
     /// The elements of a netlist with the energies that they took.
     pub elements: Vec<ElementEnergy>,
     /// The coupling of the harvester with the circuit asked for.
     pub coupling: CouplingSummary,
     /// The energy balance, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
-    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C; 0 for a netlist.
+    /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C; 0 for a circuit of the user.
     pub cycle_charge: f64,
     /// Warnings about the validity of the numbers.
     pub warnings: Vec<String>,
@@ -97,7 +101,7 @@ pub struct Cosimulation<'a> {
     master: Master,
     scenario: &'a Scenario,
     labels: Vec<String>,
-    /// The circuit asked for, unless it is a netlist.
+    /// The circuit asked for, unless it is one of the user.
     asked: Option<Settings>,
     bias_voltage: f64,
 }
@@ -106,6 +110,9 @@ impl<'a> Cosimulation<'a> {
     /// Initialises harvester and circuits, with a run of the mechanics alone ahead.
     pub fn new(options: &Options<'a>) -> Result<Self, CosimError> {
         let &Options { harvester: fmu, scenario, solver, coupling } = options;
+        if let CircuitSolver::Foreign(user) = solver {
+            return Self::with_foreign(options, &user);
+        }
         let (mechanical, request) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
         let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
         let bias_voltage = harvester.bias_voltage();
@@ -129,6 +136,21 @@ impl<'a> Cosimulation<'a> {
         Ok(Self { master, scenario, labels, asked, bias_voltage })
     }
 
+    /// The same with a circuit FMU of the user.
+    fn with_foreign(options: &Options<'a>, user: &ForeignCircuit<'_>) -> Result<Self, CosimError> {
+        let &Options { harvester: fmu, scenario, coupling, .. } = options;
+        let description = user.fmu.description();
+        let [mechanical, electrical] = split_between(fmu.description(), description, &scenario.settings)?;
+        let settings = [user.mapping.settings.as_slice(), &electrical].concat();
+        let connection = user.mapping.resolve(description, &settings, &coupling, scenario)?;
+        let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
+        let (bias_voltage, capacitance) = (harvester.bias_voltage(), harvester.sample()?.capacitance());
+        let circuit = FmuCircuit::of_user(user, connection, &settings, capacitance, scenario.until)?;
+        let labels = vec![circuit.label().to_owned()];
+        let master = Master::new(harvester, vec![Box::new(circuit)], scenario, coupling)?;
+        Ok(Self { master, scenario, labels, asked: None, bias_voltage })
+    }
+
     /// Runs to the end and shows each communication point to `recorder`.
     pub fn run(self, recorder: &mut dyn Observer, progress: &dyn Progress) -> Result<Results, CosimError> {
         let Self { master, scenario, labels, asked, bias_voltage } = self;
@@ -148,7 +170,8 @@ impl<'a> Cosimulation<'a> {
         let cycle_charge = asked.map_or(0.0, |asked| impact_charge * asked.circuit.supply_voltage);
         // Those of our own netlists are no names of the user.
         let elements = if asked.is_some() { Vec::new() } else { elements };
-        Ok(Results { mechanics, circuits, elements, coupling, balance, cycle_charge, warnings, trace })
+        let is_foreign = asked.is_none();
+        Ok(Results { mechanics, circuits, is_foreign, elements, coupling, balance, cycle_charge, warnings, trace })
     }
 }
 

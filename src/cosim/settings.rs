@@ -26,7 +26,10 @@ impl CircuitRequest {
             } else if EmbeddedCircuit::apply(&mut circuit.values, setting)? {
                 circuit.given.push(setting.clone());
             } else {
-                return Err(unknown(harvester, setting));
+                let harvester = harvester.variables.iter().map(|variable| variable.name.as_str());
+                let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
+                let choices = Settings::CHOICES.iter().map(|choice| choice.name);
+                return Err(unknown(harvester.chain(quantities).chain(choices), setting));
             }
         }
         Ok((mechanical, circuit))
@@ -79,13 +82,28 @@ impl CircuitRequest {
     }
 }
 
-fn unknown(harvester: &ModelDescription, setting: &Setting) -> CosimError {
-    let harvester = harvester.variables.iter().map(|variable| variable.name.as_str());
-    let quantities = Settings::QUANTITIES.iter().map(|quantity| quantity.name);
-    let choices = Settings::CHOICES.iter().map(|choice| choice.name);
-    let nearest = nearest_name(&setting.name, harvester.chain(quantities).chain(choices));
+fn unknown<'a>(names: impl Iterator<Item = &'a str>, setting: &Setting) -> CosimError {
+    let nearest = nearest_name(&setting.name, names);
     let hint = nearest.map_or_else(|| "see videg fmu info".to_owned(), |nearest| format!("did you mean {nearest}?"));
     CosimError::UnknownVariable { place: setting.place(), hint }
+}
+
+/// Divides `settings` into those of the harvester and those of a user's `circuit` FMU. A name that both have is the harvester's.
+///
+/// # Errors
+/// A setting that neither has.
+pub fn split_between(
+    harvester: &ModelDescription,
+    circuit: &ModelDescription,
+    settings: &[Setting],
+) -> Result<[Vec<Setting>; 2], CosimError> {
+    let mut parts = [Vec::new(), Vec::new()];
+    for setting in settings {
+        let side = [harvester, circuit].iter().position(|description| description.variable(&setting.name).is_ok());
+        let names = || [harvester, circuit].into_iter().flat_map(|it| &it.variables).map(|it| it.name.as_str());
+        parts[side.ok_or_else(|| unknown(names(), setting))?].push(setting.clone());
+    }
+    Ok(parts)
 }
 
 /// Name of a circuit in tables.

@@ -17,8 +17,15 @@
 #ifndef SETUP
 #define SETUP
 #endif
+#ifndef BEGIN
+#define BEGIN
+#endif
 #ifndef STEP
 #define STEP
+#endif
+/* Value of the Real variable v from the inputs u. */
+#ifndef VALUE
+#define VALUE(v) ((v) ? 0.0 : self->y)
 #endif
 #ifndef SIZE
 #define SIZE sizeof(struct instance)
@@ -41,6 +48,8 @@ struct callbacks {
 struct instance {
     const struct callbacks *callbacks;
     double y;
+    double u[8]; /* Reals that were set, by value reference */
+    double kept; /* of the macros */
 };
 typedef struct instance *C;
 typedef const unsigned *VR;
@@ -88,7 +97,13 @@ int fmi2DoStep(C self, double time, double step, int forget) {
 
 int fmi2GetReal(C self, VR vr, size_t n, double *values) {
     for (size_t i = 0; i < n; ++i)
-        values[i] = vr[i] ? 0.0 : self->y;
+        values[i] = VALUE(vr[i]);
+    return 0;
+}
+
+int fmi2SetReal(C self, VR vr, size_t n, const double *values) {
+    for (size_t i = 0; i < n; ++i)
+        self->u[vr[i] % 8] = values[i];
     return 0;
 }
 
@@ -137,13 +152,17 @@ int fmi2DeSerializeFMUstate(C self, const char *from, size_t size, C *state) {
     return 0;
 }
 
+int fmi2ExitInitializationMode(C self) {
+    BEGIN
+    return 0;
+}
+
 #define PLAIN(name) \
     int name(C self) { \
         (void)self; \
         return 0; \
     }
 PLAIN(fmi2EnterInitializationMode)
-PLAIN(fmi2ExitInitializationMode)
 PLAIN(fmi2Terminate)
 PLAIN(fmi2Reset)
 PLAIN(fmi2CancelStep)
@@ -155,7 +174,6 @@ PLAIN(fmi2CancelStep)
     }
 ACCESS(fmi2GetInteger, int)
 ACCESS(fmi2GetBoolean, int)
-ACCESS(fmi2SetReal, const double)
 ACCESS(fmi2SetInteger, const int)
 ACCESS(fmi2SetBoolean, const int)
 ACCESS(fmi2SetString, const char *const)

@@ -8,6 +8,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 mod archives;
+mod circuits;
 mod descriptions;
 mod files;
 #[path = "../support/instance.rs"]
@@ -33,6 +34,7 @@ fn all() -> Vec<(&'static str, Vec<Input>)> {
         ("Settings and options", options::inputs()),
         ("Case files, sweep files, results of sweeps", files::inputs()),
         ("Netlists", netlists::inputs()),
+        ("Circuit FMUs and their mappings", circuits::inputs()),
         ("Serialised states and raw files of ngspice", memory::inputs()),
     ]
 }

@@ -42,9 +42,14 @@ pub fn library(folder: &Path, macros: &[&str]) -> Vec<u8> {
 
 /// Writes an FMU whose library is compiled with these macros.
 pub fn fmu(folder: &Path, name: &str, macros: &[&str]) -> PathBuf {
+    described(folder, name, DESCRIPTION, macros)
+}
+
+/// The same with another description.
+pub fn described(folder: &Path, name: &str, description: &str, macros: &[&str]) -> PathBuf {
     let path = folder.join(name);
     let library = library(folder, macros);
-    let entries: [(&str, &[u8]); 2] = [("modelDescription.xml", DESCRIPTION.as_bytes()), (&library_name(), &library)];
+    let entries: [(&str, &[u8]); 2] = [("modelDescription.xml", description.as_bytes()), (&library_name(), &library)];
     std::fs::write(&path, zipped(&entries)).unwrap();
     path
 }
