@@ -34,7 +34,7 @@ usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
 
-Runs the stages named, or these in this order:
+Runs the stages named, or those of these that have not passed yet on the same files, in this order:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
   unit         the tests of all Rust packages, but for the slow ones
@@ -338,12 +338,41 @@ is_stage() {
     return 1
 }
 
+# What a result depends on: every file that git knows or would add, the compiler, Python and the seed of random tests. Nothing where
+# this is no clone.
+state() {
+    git rev-parse --git-dir >/dev/null 2>&1 || return 0
+    {
+        # A file that git knows may be gone.
+        git ls-files -z --cached --others --exclude-standard | xargs -0 sha256sum 2>/dev/null || true
+        rustc --version
+        python3 --version
+        env | grep -E '^(PROPTEST|RUST|CARGO|VIDEG)' | sort
+    } | sha256sum
+}
+
+# The state in which a stage last passed.
+record() {
+    echo "${CARGO_TARGET_DIR:-target}/passed/$1"
+}
+
+has_passed() {
+    local now
+    now=$(state)
+    # Setup looks at the machine, which may be another.
+    [[ $1 != setup && -n $now && -f $(record "$1") && $(<"$(record "$1")") == "$now" ]]
+}
+
 run_stages() {
-    local stage started
+    local stage started before
     for stage in "$@"; do
         started=$SECONDS
         echo "=== $stage"
+        before=$(state)
         "stage_$stage"
+        mkdir -p "$(dirname "$(record "$stage")")"
+        # A file that changed meanwhile was tested before or after.
+        [[ $(state) == "$before" ]] && echo "$before" >"$(record "$stage")"
         echo "=== $stage: passed in $((SECONDS - started)) s"
     done
 }
@@ -359,9 +388,19 @@ main() {
             *) is_stage "$stage" || fail "no stage is called \"$stage\"; there are: ${STAGES[*]} ${EXTRA_STAGES[*]}" ;;
         esac
     done
-    [[ $# -gt 0 ]] || set -- "${STAGES[@]}"
-    run_stages "$@"
-    echo "=== all passed: $*"
+    if [[ $# -gt 0 ]]; then
+        run_stages "$@"
+        echo "=== all passed: $*"
+        return
+    fi
+    for stage in "${STAGES[@]}"; do
+        if has_passed "$stage"; then
+            echo "=== $stage: passed before on the same files; ./test.sh $stage runs it again"
+        else
+            run_stages "$stage"
+        fi
+    done
+    echo "=== all passed: ${STAGES[*]}"
 }
 
 main "$@"

@@ -32,6 +32,7 @@ pub fn inputs() -> Vec<Input> {
         circuit("a command to ngspice in a name", "load.resistance\n.control\nshell touch CANARY\n.endc\n=1"),
         circuit("no number for the circuit", "load.resistance=NaN"),
         circuit("a resistance below zero", "load.resistance=-1"),
+        circuit("a leakage below zero", "leakage.timeConstant=-1"),
         option("a run without end", "simulate --output out --until inf"),
         option("more steps than can be written", "simulate --output out --step 1e-300"),
         option("a window outside of the run", "simulate --output out --until 10 --window 50,100"),
