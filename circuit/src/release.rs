@@ -79,7 +79,7 @@ impl Discharge {
 
     #[cold]
     fn leaking_excess_at(&self, t: f64) -> f64 {
-        self.leaking().excess_after(self.excess, self.capacitance_at(t), self.tau(t).min(f64::MAX))
+        self.leaking().excess_after(self.excess, self.capacitance_at(t), self.bounded_tau(t))
     }
 
     #[cold]
@@ -92,13 +92,21 @@ impl Discharge {
     /// [`Self::work`] with a leak.
     #[cold]
     pub fn leaking_work(&self, t: f64) -> Work {
-        let integrals = self.leaking().integrals(self.excess, self.capacitance, self.tau(t).min(f64::MAX));
+        let integrals = self.leaking().integrals(self.excess, self.capacitance, self.bounded_tau(t));
         Work {
             load: self.conductance * integrals.excess_squared,
             mechanical: -0.5 * self.rate * integrals.voltage_squared,
             leaked: self.leak * integrals.charge,
             leakage: self.leak * integrals.energy,
         }
+    }
+
+    /// [`Self::tau`] up to where nothing is left of a capacitance that falls: beside 1e98 F, one of some pF rounds to nothing.
+    fn bounded_tau(&self, t: f64) -> f64 {
+        /// e to the power of this, negative, is no number above 0.
+        const VANISHED: f64 = 746.0;
+        let most = if self.rate < 0.0 { (VANISHED / -self.rate).min(f64::MAX) } else { f64::MAX };
+        self.tau(t).min(most)
     }
 
     fn leaking(&self) -> Leaking {
