@@ -73,3 +73,32 @@ fn capacitances_steps_and_starting_voltages_are_checked_and_change_nothing() {
         assert_eq!(circuit, before);
     }
 }
+
+#[test]
+fn an_error_names_the_variables_that_it_is_about_and_its_message_has_them() {
+    type Change = fn(&mut Parameters);
+    let cases: [(Change, &[&str]); 5] = [
+        (|p| p.supply_voltage = f64::NAN, &["supply.voltage"]),
+        (|p| p.load_resistance = -1.0, &["load.resistance"]),
+        (|p| p.leakage_time_constant = 1e-7, &["leakage.timeConstant"]),
+        (|p| p.zener_voltage = 0.5 * p.supply_voltage, &["zener.voltage", "supply.voltage"]),
+        (
+            |p| {
+                p.release = videg_circuit::Release::Storage;
+                p.storage_voltage = 0.5 * p.supply_voltage;
+            },
+            &["storage.voltage", "supply.voltage"],
+        ),
+    ];
+    for (change, names) in cases {
+        let mut parameters = PAPER();
+        change(&mut parameters);
+        let error = Circuit::new(parameters, C).unwrap_err();
+        assert_eq!(error.variables(), names, "{error}");
+        let message = error.to_string();
+        assert!(names.iter().all(|name| message.contains(name)), "{message}");
+    }
+    let mut circuit = Circuit::new(PAPER(), C).unwrap();
+    assert_eq!(circuit.advance(1.0, [0.0, C[1]]).unwrap_err().variables(), ["left.capacitance"]);
+    assert!(Circuit::with_voltages(PAPER(), C, [2000.0, 2100.0]).unwrap_err().variables().is_empty());
+}

@@ -301,3 +301,38 @@ fn a_steep_ramp_tears_a_stuck_ball_off_once() {
         }
     }
 }
+
+proptest! {
+    #[test]
+    fn the_excitation_shown_is_the_harmonic_and_the_line_between_the_samples(
+        (times, values) in any_samples(),
+        (scale, offset, repeats) in (-3.0..3.0_f64, -0.3..0.3_f64, prop::bool::ANY),
+        motion in prop::bool::ANY,
+        places in prop::collection::vec(-1.0..3.0_f64, 1..20),
+    ) {
+        let kind = if motion { ExcitationKind::Motion } else { ExcitationKind::Force };
+        let p = Parameters {
+            excitation_kind: kind,
+            acceleration: if motion { 0.7 } else { 0.0 },
+            file_scale: scale,
+            file_offset: offset,
+            file_repeat: repeats,
+            ..Parameters::default()
+        };
+        let recording = Recording::new(kind, times.clone(), values.clone()).unwrap();
+        prop_assert_eq!(recording.values(), &values[..]);
+        let said = format!("{recording:?}");
+        prop_assert!(said.contains(&format!("samples: {}", times.len())), "{said}");
+        let recorded = Recorded { times, values, scale, offset, repeats, line: Default::default() };
+        let shown = p.with_recording(Some(&recording)).excitation(places.iter().copied());
+        for (time, shown) in places.iter().zip(shown) {
+            let line = recorded.line_from(*time);
+            // Within rounding of a sample either line may hold.
+            prop_assume!((time - line.start).abs() > 1e-9 && (time - line.end).abs() > 1e-9);
+            let amplitude = if motion { p.acceleration } else { p.amplitude };
+            let harmonic = amplitude * (TAU * p.frequency * time + p.phase).cos();
+            let expected = harmonic + line.value + line.rate * (time - line.start);
+            prop_assert!((shown - expected).abs() < 1e-9 * (1.0 + expected.abs() + line.rate.abs()), "{shown} at {time}, not {expected}");
+        }
+    }
+}

@@ -20,7 +20,8 @@ HEAD = """\
 
 The page shows how many lines of the packages of the FMUs their own tests reach. `./test.sh coverage` measures this and
 writes the page. It fails if a package is below {bound:g} %, or if a file is below and `tests/coverage/gaps.toml` gives no
-reason. Unit tests inside source files do not count as lines. Lines that the other tests reach through the packaged FMUs are
+reason. Unit tests inside source files do not count as lines, nor do const functions that only the compiler evaluates: they make rows of
+constants. Lines that the other tests reach through the packaged FMUs are
 not counted.
 """
 
@@ -43,11 +44,30 @@ class File:
         source = (ROOT / self.name).read_text().splitlines()
         places: dict[str, int] = {}
         for line in self.missed:
-            heads = (re.match(r"\s*(?:pub(?:\([a-z]+\))? )?(?:const |unsafe |extern \"C\" )*fn (\w+)", text)
-                     for text in reversed(source[:line]))
-            name = next((head.group(1) for head in heads if head), "outside of functions")
+            found = head(source, line)
+            name = found["name"] if found else "outside of functions"
             places[name] = places.get(name, 0) + 1
         return ", ".join(f"`{name}` {count}" for name, count in places.items())
+
+
+def head(source: list[str], line: int) -> re.Match | None:
+    """The head of the function that a line belongs to, up to the brace below its first column."""
+    pattern = r"(?P<indent>\s*)(?:pub(?:\([a-z]+\))? )?(?P<words>(?:const |unsafe |extern \"C\" )*)fn (?P<name>\w+)"
+    for start in range(line - 1, -1, -1):
+        if found := re.match(pattern, source[start]):
+            return None if f"{found['indent']}}}" in source[start : line - 1] else found
+    return None
+
+
+def without_compiled(source: str, lines: dict[int, int]) -> dict[int, int]:
+    """The lines without those of const functions that never run."""
+    heads = {line: head(source.splitlines(), line) for line in lines}
+    ran = {found["name"] for line, found in heads.items() if found and lines[line]}
+
+    def is_compiled(found: re.Match | None) -> bool:
+        return bool(found and "const " in found["words"] and found["name"] not in ran)
+
+    return {line: count for line, count in lines.items() if not is_compiled(heads[line])}
 
 
 def percent(lines: int, missed: int) -> float:
@@ -72,9 +92,10 @@ def read(lcov: Path) -> list[File]:
         package = next((it for it in PACKAGES if name.startswith(f"{it}/src/")), None)
         if package is None or re.search(r"(^|[/_])tests?\.rs$", name):
             continue
-        end = test_lines((ROOT / name).read_text())
+        source = (ROOT / name).read_text()
+        end = test_lines(source)
         counts = ((int(line), int(count)) for line, count in re.findall(r"^DA:(\d+),(\d+)", record, re.MULTILINE))
-        files.append(File(name, {line: count for line, count in counts if line < end}))
+        files.append(File(name, without_compiled(source, {line: count for line, count in counts if line < end})))
     return sorted((file for file in files if file.lines), key=lambda file: file.name)
 
 

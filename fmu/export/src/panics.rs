@@ -24,3 +24,15 @@ pub(crate) fn panic_message(payload: Box<dyn Any + Send>) -> String {
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::panic_message;
+
+    #[test]
+    fn a_panic_has_its_text_whatever_its_payload() {
+        assert_eq!(panic_message(Box::new("text")), "text");
+        assert_eq!(panic_message(Box::new("owned".to_owned())), "owned");
+        assert_eq!(panic_message(Box::new(3)), "no message");
+    }
+}

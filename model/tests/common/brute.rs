@@ -8,10 +8,10 @@ use videg_model::{ExcitationKind, Parameters};
 /// A straight line up to a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    start: f64,
-    end: f64,
-    value: f64,
-    rate: f64,
+    pub start: f64,
+    pub end: f64,
+    pub value: f64,
+    pub rate: f64,
 }
 
 impl Line {
