@@ -10,7 +10,7 @@ mod mounts;
 
 use std::f64::consts::TAU;
 
-use brute::{Brute, Recorded, small_steps};
+use brute::{Brute, Line, Recorded, small_steps};
 use mounts::{
     any_mount, close_books, compliant, difference, follow_brute_force, follow_small_steps, meet_predictions, positions,
     sensitivity_of,
@@ -323,7 +323,7 @@ proptest! {
         prop_assert_eq!(recording.values(), &values[..]);
         let said = format!("{recording:?}");
         prop_assert!(said.contains(&format!("samples: {}", times.len())), "{said}");
-        let recorded = Recorded { times, values, scale, offset, repeats, line: Default::default() };
+        let recorded = Recorded { times, values, scale, offset, repeats, line: Line::default() };
         let shown = p.with_recording(Some(&recording)).excitation(places.iter().copied());
         for (time, shown) in places.iter().zip(shown) {
             let line = recorded.line_from(*time);

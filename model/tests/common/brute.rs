@@ -177,8 +177,12 @@ impl Brute {
 
     fn step(&mut self) {
         let half = self.p.travel() / 2.0;
-        let mut rest = self.dt.min(self.recorded.line.end - self.time);
-        let end = self.time + rest;
+        // Whether a ball that is carried leaves is looked at between steps: a jump of the recording has some, too.
+        let Line { start, end: line_end, .. } = self.recorded.line;
+        let left = line_end - self.time;
+        let piece = self.dt.min(0.05 * (line_end - start));
+        let mut rest = if left < 1.5 * piece { left } else { piece };
+        let end = if rest == left { line_end } else { self.time + rest };
         for _ in 0..50 {
             if let Mode::Carried(side) = self.mode {
                 let leaves =

@@ -162,16 +162,26 @@ pub fn follow_small_steps(
 /// The energy books of the ball close over 4 s, under a `force`, N, from 1.3 s on.
 pub fn close_books(mut harvester: Harvester, force: f64) -> Result<(), TestCaseError> {
     let start = harvester.energies();
-    harvester.advance(1.3).unwrap();
+    // A wall that accelerates presses the ball into the membrane deeper than its speed does.
+    let mut deepest = 0.0_f64;
+    let mut show = |event: &Event| {
+        if let Event::Peak(peak) = event {
+            deepest = deepest.max(peak.deflection);
+        }
+    };
+    harvester.advance_with(1.3, &mut show).unwrap();
     harvester.set_external_force(force, -0.1).unwrap();
-    harvester.advance(4.0).unwrap();
+    harvester.advance_with(4.0, &mut show).unwrap();
     let end = harvester.energies();
     let of_ball = end.ball - start.ball + end.elastic + end.impact_loss + end.viscous + end.friction;
     let given = end.wall + end.electrical + end.gravity;
-    let moved = [end.ball, start.ball, end.wall, end.gravity, end.impact_loss, end.viscous, end.friction]
+    let stored = deepest * harvester.membrane().force(deepest);
+    let moved = [end.ball, start.ball, end.wall, end.gravity, stored, end.viscous, end.friction]
         .iter()
         .fold(1e-12, |sum: f64, value| sum + value.abs());
-    prop_assert!((of_ball - given).abs() < 1e-9 * moved, "{:e} of {moved:e}: {end:?}", of_ball - given);
+    // A contact is integrated to 1e-13 of the speeds, that of the wall included: a slow impact on a fast wall keeps fewer digits.
+    let mixed = (moved * (end.excitation.abs() + end.damping)).sqrt();
+    prop_assert!((of_ball - given).abs() < 1e-9 * moved + 1e-11 * mixed, "{:e} of {moved:e}: {end:?}", of_ball - given);
     prop_assert!(end.impact_loss >= 0.0 && end.viscous >= 0.0 && end.friction >= 0.0 && end.damping >= 0.0);
     Ok(())
 }

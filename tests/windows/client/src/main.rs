@@ -24,7 +24,7 @@ const SUMMED: [&str; 2] = ["left.capacitance", "right.capacitance"];
 /// Time at which the differential equations are evaluated, s.
 const LATER: f64 = 0.01;
 /// Position and velocity of the cylinder, then of the ball, which is in flight; m and m/s.
-const STATES: [f64; 4] = [0.02, 0.3, 0.001, -0.1];
+const STATES: [f64; 5] = [0.02, 0.3, 0.001, -0.1, 2e-6];
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
