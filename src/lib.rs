@@ -47,6 +47,7 @@ mod book;
 mod circuit_sample;
 pub mod cli;
 pub mod cosim;
+pub mod coupled;
 pub mod crosscheck;
 pub mod dynamics;
 pub mod export;

@@ -29,7 +29,7 @@ const PACKAGES: [(&str, &[&str]); 12] = [
 const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 15] = [
+const DOWNWARDS: [&str; 16] = [
     "cli",
     "paper",
     "dynamics",
@@ -38,6 +38,7 @@ const DOWNWARDS: [&str; 15] = [
     "package",
     "simulate",
     "export",
+    "coupled",
     "cosim",
     "ngspice",
     "scenario",

@@ -73,7 +73,7 @@ pub struct Powers {
 
 impl Powers {
     /// The powers over `window`, s, from the ledgers at its edges.
-    pub(super) fn over([from, to]: [f64; 2], before: &Ledger, after: &Ledger) -> Self {
+    pub fn over([from, to]: [f64; 2], before: &Ledger, after: &Ledger) -> Self {
         let load = (after.load - before.load) / (to - from);
         let supply = (after.supply - before.supply) / (to - from);
         let stored = (after.stored - before.stored) / (to - from);

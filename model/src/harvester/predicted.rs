@@ -38,6 +38,19 @@ impl Harvester {
         knots.min_by(f64::total_cmp)
     }
 
+    /// Up to where [`Harvester::next_knot`] knows every knot, s, later than the present time: one excitation period ahead, with phase noise at
+    /// most 256 hold intervals, and where these are passed one by one the end of the present one.
+    pub fn known_until(&self) -> f64 {
+        let period = 1.0 / self.parameters.frequency;
+        let ahead = self.time + self.noise.horizon(period);
+        if self.noise.in_blocks() {
+            return ahead;
+        }
+        let ends = [self.noise.limit(), Some(self.time + self.parameters.noise_hold)];
+        let single = ends.into_iter().flatten().find(|end| *end > self.time).unwrap_or(ahead);
+        if self.noise.limit().is_some() { single.min(ahead) } else { ahead }
+    }
+
     /// Up to where the contact is predicted, s: to where the membrane's force changes its branch, if that is within a period.
     /// With phase noise a contact is followed hold interval by hold interval, whose ends are no knots.
     fn contact_knot(&self) -> Option<f64> {
