@@ -25,6 +25,7 @@
 //! - [`package`] puts the FMUs together; [`fmu_import`] loads them or any other FMU for FMI 2.0 co-simulation;
 //! - [`scenario`] describes a run: a published case, settings, duration;
 //! - [`cosim`] couples the harvester FMU with a circuit; [`simulate`] runs the harvester alone;
+//! - [`coupled`] does both at once in one process, for many runs;
 //! - [`export`] writes C(t) for other programs;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] compares both with each other and with the closed forms of the paper;

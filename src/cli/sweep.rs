@@ -14,7 +14,7 @@ use super::progress::RunBar;
 use super::run_output::file_list;
 use super::sweep_options::What;
 use super::{Exit, format, output};
-use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, SweepFile};
+use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, SweepFile, System};
 use fmu_import::Fmu;
 
 /// Arguments of the verb.
@@ -134,7 +134,7 @@ fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     if fmu.is_none() {
         arguments.isolation.check_own()?;
     }
-    let own = sweep::harvester_description()?;
+    let own = sweep::system_description()?;
     let description = fmu.as_ref().map_or(&own, Fmu::description);
     let fingerprint = arguments.fmu.as_deref().map(sweep::fingerprint).transpose()?;
     let isolation = arguments.isolation.bounds_of(fmu.as_ref());
@@ -144,6 +144,10 @@ fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     }
     let engine = match fmu {
         Some(fmu) => Engine::Fmu(fmu),
+        None if sweep.is_coupled() => {
+            let harvester = || arguments.isolation.open_own("VibroImpactHarvester");
+            Engine::System(Box::new(System::new(&sweep, harvester)?))
+        }
         // The FMU has variables that the model does not offer; the numbers are the same.
         None => match BuiltIn::new(&sweep) {
             Some(built_in) if !arguments.isolation.is_forced() => Engine::BuiltIn(Box::new(built_in)),

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::options::{Window, mechanical, parse_window};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
-use crate::sweep::{Request, Sampling, SweepFile, Times, Vary};
+use crate::sweep::{POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
 use fmu_import::{Bounds, ModelDescription};
 
 /// Options that describe a sweep. An option wins over the same key of the file.
@@ -20,10 +20,10 @@ pub struct What {
     /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// Set a parameter or input in all runs; may be repeated
+    /// Set a parameter or input of harvester or circuit in all runs; may be repeated
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
-    /// Vary a parameter or input: name=from:to:count for a grid, name=from:to for the other designs, with log: before
+    /// Vary a parameter or input of harvester or circuit: name=from:to:count for a grid, name=from:to for the other designs, with log: before
     /// from for equal ratios; name=a,b,c for any type; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     vary: Vec<String>,
@@ -38,7 +38,7 @@ pub struct What {
     /// Averaging window, s [default: 50,100, or the second half of a shorter run]
     #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
     window: Option<Window>,
-    /// Record a variable at the end of each run; may be repeated
+    /// Record a variable at the end of each run, or `net_power`, `load_power`, `supply_power` over the window; may be repeated
     #[arg(long, value_name = "VARIABLE")]
     record: Vec<String>,
 }
@@ -66,20 +66,26 @@ impl What {
         let step =
             if is_harvester { step } else { Some(step.map_or_else(|| own_step(description, scenario.until), Ok)?) };
         let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<_, _>>()?;
+        let vary: Vec<Vary> = [vary, asked].concat();
+        let has_circuit = description.variable(POWERS[0]).is_ok();
+        let settings =
+            if is_harvester { mechanical(description, &scenario, "sweep")? } else { scenario.changes().to_vec() };
+        let mut record = if self.record.is_empty() { record } else { self.record.clone() };
+        let mut named = settings.iter().map(|it| &it.name).chain(vary.iter().map(|it| &it.name));
+        let is_electrical = |name: &String| description.variable(name).is_ok_and(is_electrical);
+        if has_circuit && record.is_empty() && named.any(is_electrical) {
+            record = POWERS.map(str::to_owned).to_vec();
+        }
         Ok(Request {
             description,
             fmu: fingerprint,
             isolation,
-            settings: if is_harvester {
-                mechanical(description, &scenario, "sweep")?
-            } else {
-                scenario.changes().to_vec()
-            },
+            settings,
             times: Times { until: scenario.until, step, window: scenario.window },
             name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
-            vary: [vary, asked].concat(),
+            vary,
             sampling: self.sampling.clone().or(sampling),
-            record: if self.record.is_empty() { record } else { self.record.clone() },
+            record,
             in_file,
         })
     }

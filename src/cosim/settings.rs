@@ -35,6 +35,11 @@ impl CircuitRequest {
         Ok((mechanical, circuit))
     }
 
+    /// The request of `values` of which those called `given` were asked for.
+    pub fn of<'a>(values: Settings, given: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { values, given: given.into_iter().map(|name| Setting::new(name, "")).collect() }
+    }
+
     /// The variables that were set, with commas between them; none if none was.
     pub fn names(&self) -> Option<String> {
         let names: Vec<_> = self.given.iter().map(|setting| setting.name.as_str()).collect();

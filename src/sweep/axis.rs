@@ -47,6 +47,11 @@ impl Axis {
         Ok(axis)
     }
 
+    /// The values of a list; none of a range.
+    pub fn listed(&self) -> &[Value] {
+        if let Values::List(values) = &self.values { values } else { &[] }
+    }
+
     /// How many values it has in a grid.
     pub fn len(&self) -> u64 {
         match &self.values {

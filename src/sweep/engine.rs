@@ -2,16 +2,21 @@
 
 use videg_model::{Harvester, ModelError, Parameters};
 
-use super::plan::{GAINS, Results, Run};
+use super::instance::run_fmu;
+use super::plan::{Results, Run};
+use super::setter::Setter;
+use super::system::System;
 use super::times::Driven;
 use super::{Sweep, SweepError};
 use crate::cosim::Gains;
-use fmu_import::{FmiError, Fmu, Instance, Kind, Logging, Status, Value, Variable};
+use fmu_import::{FmiError, Fmu, Status, Value};
 
 /// Computes runs.
 pub enum Engine {
     /// The model behind the harvester FMU, without the FMU: the same numbers to the last bit.
     BuiltIn(Box<BuiltIn>),
+    /// The same with the embedded circuit.
+    System(Box<System>),
     /// An FMU; a run is an instance.
     Fmu(Fmu),
 }
@@ -21,13 +26,6 @@ pub struct BuiltIn {
     parameters: Parameters,
     /// How the varied parameters are set, in their order, and the seed.
     setters: Vec<Setter>,
-}
-
-/// How a parameter of the model is set.
-#[derive(Clone, Copy)]
-enum Setter {
-    Quantity(fn(&mut Parameters, f64)),
-    Choice(fn(&mut Parameters, i32)),
 }
 
 impl Engine {
@@ -54,6 +52,7 @@ impl Engine {
             Self::BuiltIn(built_in) => {
                 Ok(simulate(sweep, &built_in.parameters(run)).map_err(|error| error.to_string()))
             }
+            Self::System(system) => Ok(system.run(sweep, run)),
             Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
                 Ok(results) => Ok(Ok(results)),
                 Err(error) if is_final(&error, fmu) => Err(error.into()),
@@ -113,33 +112,6 @@ fn simulate(sweep: &Sweep, parameters: &Parameters) -> Result<Results, ModelErro
     Ok(Results { averages, recorded: Vec::new() })
 }
 
-impl Setter {
-    /// That of `variable`, if it is a parameter whose values are of the parameter's type.
-    fn of(variable: &Variable) -> Option<Self> {
-        let named = |name: &str| name == variable.name;
-        match variable.kind {
-            Kind::Real { .. } => Parameters::TABLE.iter().find(|it| named(it.name)).map(|it| Self::Quantity(it.set)),
-            Kind::Integer { .. } | Kind::Boolean { .. } | Kind::Enumeration { .. } => {
-                Parameters::CHOICES.iter().find(|it| named(it.name)).map(|it| Self::Choice(it.set))
-            }
-            Kind::String { .. } => None,
-        }
-    }
-
-    /// Sets a value of the variable's type.
-    fn set(self, parameters: &mut Parameters, value: &Value) {
-        match (self, value) {
-            (Self::Quantity(set), Value::Real(number)) => set(parameters, *number),
-            (Self::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
-                set(parameters, *number);
-            }
-            (Self::Choice(set), Value::Boolean(on)) => set(parameters, i32::from(*on)),
-            // No value of a variable is of another type than the variable.
-            _ => debug_assert!(false, "{value} is of type {}", value.type_name()),
-        }
-    }
-}
-
 impl Driven for Harvester {
     type Error = ModelError;
 
@@ -151,60 +123,6 @@ impl Driven for Harvester {
         let totals = self.totals();
         let impacts = i32::try_from(totals.impacts).unwrap_or(i32::MAX);
         Ok(Gains { voltage: totals.voltage_gain, energy: totals.energy, impacts })
-    }
-}
-
-fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
-    let mut instance = fmu.instantiate("sweep", Logging::default())?;
-    let seed = run.seed.map(Value::Integer);
-    let settings = sweep.settings.iter().map(|(variable, value)| (variable, value));
-    let point = sweep.points.axes().iter().map(|axis| &axis.variable).zip(&run.values);
-    let seed = sweep.seeds.iter().map(|seeds| &seeds.variable).zip(&seed);
-    let choices: Vec<_> = settings.chain(point).chain(seed).collect();
-    instance.begin_initialization(
-        0.0,
-        None,
-        &choices,
-        |(variable, _)| variable.is_input(),
-        |instance, (variable, value)| instance.set_value(variable.value_reference, &sweep.files.for_fmu(value)),
-    )?;
-    instance.exit_initialization_mode()?;
-    let mut slave = Slave { instance, has_gains: sweep.averages };
-    let end = if sweep.record.is_empty() { sweep.times.window[1] } else { sweep.times.until };
-    let averages = sweep.times.drive(&mut slave, end)?;
-    let recorded = sweep.record.iter().map(|variable| slave.instance.get_by_name(&variable.name));
-    let results =
-        Results { averages: averages.filter(|_| sweep.averages), recorded: recorded.collect::<Result<_, _>>()? };
-    slave.instance.terminate()?;
-    slave.instance.free()?;
-    Ok(results)
-}
-
-struct Slave {
-    instance: Instance,
-    /// Whether the FMU has the variables [`GAINS`].
-    has_gains: bool,
-}
-
-impl Driven for Slave {
-    type Error = FmiError;
-
-    fn step(&mut self, time: f64, step: f64) -> Result<(), FmiError> {
-        self.instance.do_step(time, step)
-    }
-
-    fn gains(&self) -> Result<Gains, FmiError> {
-        if !self.has_gains {
-            return Ok(Gains::default());
-        }
-        let [voltage, energy, impacts] = GAINS.map(|name| self.instance.get_by_name(name));
-        match (voltage?, energy?, impacts?) {
-            (Value::Real(voltage), Value::Real(energy), Value::Integer(impacts)) => {
-                Ok(Gains { voltage, energy, impacts })
-            }
-            // The sweep has seen that they are of these types.
-            _ => Ok(Gains::default()),
-        }
     }
 }
 

@@ -10,11 +10,13 @@ mod axis;
 mod column;
 mod differences;
 mod document;
+mod electrical;
 mod engine;
 mod error;
 mod file;
 mod files;
 mod folder;
+mod instance;
 mod lines;
 #[cfg(test)]
 mod lines_tests;
@@ -27,14 +29,17 @@ mod record;
 mod run;
 mod sampling;
 mod seeds;
+mod setter;
 mod shard;
 mod sums;
+mod system;
 mod table;
 mod times;
 mod unfinished;
 mod vary;
 
 pub use column::{Column, Type};
+pub use electrical::{POWERS, is_electrical};
 pub use engine::{BuiltIn, Engine};
 pub use error::SweepError;
 pub use file::SweepFile;
@@ -44,6 +49,7 @@ pub use run::{Options, Report, run};
 pub use sampling::{Design, Sampling};
 pub use seeds::SEED_VARIABLE;
 pub use shard::Shard;
+pub use system::System;
 pub use times::Times;
 pub use vary::{Range, Scale, Spread, Vary};
 
@@ -58,6 +64,14 @@ use fmu_import::{FmiError, ModelDescription};
 pub fn harvester_description() -> Result<ModelDescription, FmiError> {
     let document = include_bytes!("../../modelDescription/VibroImpactHarvester.xml");
     ModelDescription::parse(document, "modelDescription/VibroImpactHarvester.xml")
+}
+
+/// The same with the variables of the circuit and the mean powers, [`POWERS`]. A name that both have is the harvester's.
+///
+/// # Errors
+/// None: it is part of this program.
+pub fn system_description() -> Result<ModelDescription, FmiError> {
+    electrical::with_circuit(harvester_description()?)
 }
 
 /// SHA-256 of a file, in hexadecimal digits.

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::axis::Axis;
 use super::column::{self, Column, Type};
 use super::document::Document;
+use super::electrical::is_electrical;
 use super::lines::LONGEST;
 use super::named_files::NamedFiles;
 use super::points::{MAX_RUNS, Points};
@@ -154,6 +155,13 @@ impl Sweep {
     /// How it is called.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether runs need a circuit: a variable of it, or a power, is set, varied or recorded.
+    pub fn is_coupled(&self) -> bool {
+        let set = self.settings.iter().map(|(variable, _)| variable);
+        let varied = self.points.axes().iter().map(|axis| &axis.variable);
+        set.chain(varied).chain(&self.record).any(is_electrical)
     }
 
     /// Number of points.

@@ -2,6 +2,7 @@
 //! says to bad input.
 
 mod checksums;
+mod coupled;
 mod request;
 mod resume;
 mod runs;

@@ -29,7 +29,6 @@ fn bad_input_is_one_line_with_the_thing_the_value_and_the_bound_before_anything_
     for (arguments, named) in [
         (&["--vary", "membrane.restitution"][..], "--vary membrane.restitution: allowed is name=from:to:count"),
         (&["--vary", "membrane.restitution=1.1:2:3"], "membrane.restitution = 1.1 is out of range: allowed is 0 .. 1"),
-        (&["--vary", "load.resistance=1,2"], "load.resistance"),
         (&["--set", "membrane.restitution=7"], "membrane.restitution = 7 is out of range: allowed is 0 .. 1"),
         (&["--set", "excitation.seed=7", "--samples", "2"], "--set excitation.seed"),
         (&["--samples", "0"], "--samples 0: with 1 points it must lie from 1 to 1000000000000"),

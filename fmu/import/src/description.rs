@@ -281,6 +281,28 @@ impl ModelDescription {
         })
     }
 
+    /// The same with further variables and enumeration types; those of names that are there already are left out.
+    #[must_use]
+    pub fn with(
+        mut self,
+        variables: impl IntoIterator<Item = Variable>,
+        enumerations: impl IntoIterator<Item = EnumerationType>,
+    ) -> Self {
+        for variable in variables {
+            if !self.positions.contains_key(&variable.name) {
+                self.positions.insert(variable.name.clone(), self.variables.len());
+                self.variables.push(variable);
+            }
+        }
+        for enumeration in enumerations {
+            if !self.enumeration_positions.contains_key(&enumeration.name) {
+                self.enumeration_positions.insert(enumeration.name.clone(), self.enumerations.len());
+                self.enumerations.push(enumeration);
+            }
+        }
+        self
+    }
+
     /// The enumeration type of this variable, if it is an enumeration.
     pub fn enumeration(&self, variable: &Variable) -> Option<&EnumerationType> {
         let name = variable.declared_type.as_deref()?;

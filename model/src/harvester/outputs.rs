@@ -5,7 +5,7 @@ use crate::accounting::ledger::{Energies, Totals};
 use crate::contact::Recoil;
 use crate::membrane::Membrane;
 use crate::motion::Ball;
-use crate::motion::pulse::Deflection;
+use crate::motion::pulse::{Deflection, Pulse};
 use crate::motion::side::Side;
 use crate::parameters::{ContactLaw, ExcitationKind, Parameters};
 use crate::sensitivity::{Sensitivities, membrane_changes};
@@ -120,6 +120,12 @@ impl Harvester {
             ContactLaw::Impulsive => self.pulses.at(side, self.time),
             ContactLaw::Compliant => self.motion.contact_deflection(&self.membrane, side, self.time),
         }
+    }
+
+    /// Pulses of the membrane at `side` that have not ended, the largest peak first; none under the compliant law. Where they overlap, the larger
+    /// deflection wins.
+    pub fn pulses(&self, side: Side) -> impl Iterator<Item = &Pulse> {
+        self.pulses.going_on(side, self.time)
     }
 
     /// Capacitance of the membrane at `side`, F, Eq. (1).

@@ -251,6 +251,12 @@ impl Pulses {
         list.insert(position, Running::new(membrane, pulse));
     }
 
+    /// The pulses of the membrane at `side` that have not ended at `time`, s.
+    pub(crate) fn going_on(&self, side: Side, time: f64) -> impl Iterator<Item = &Pulse> {
+        let list = self.under_way[side.index()].iter();
+        list.filter(move |running| !running.has_ended(&self.shape, time)).map(|running| &running.pulse)
+    }
+
     /// The pulses themselves, of the left and of the right membrane.
     pub(crate) fn lists(&self) -> [Vec<Pulse>; 2] {
         self.under_way.each_ref().map(|list| list.iter().map(|running| running.pulse).collect())

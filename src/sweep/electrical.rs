@@ -1,0 +1,44 @@
+//! Variables of the circuit, and the powers, beside those of the harvester.
+
+use fmu_import::{Causality, FmiError, Kind, ModelDescription, Variability, Variable};
+use videg_circuit::Settings;
+
+use crate::cosim::CircuitSample;
+
+/// Mean powers over the averaging window, W, that runs with a circuit have.
+pub const POWERS: [&str; 3] = ["net_power", "load_power", "supply_power"];
+
+/// The variables of the `harvester`, of the circuit, and the powers. A name that both have is the harvester's.
+///
+/// # Errors
+/// None: they are part of this program.
+pub fn with_circuit(harvester: ModelDescription) -> Result<ModelDescription, FmiError> {
+    let document = include_bytes!("../../modelDescription/HarvestingCircuit.xml");
+    let circuit = ModelDescription::parse(document, "modelDescription/HarvestingCircuit.xml")?;
+    let powers = POWERS.map(|name| Variable {
+        name: name.to_owned(),
+        value_reference: u32::MAX,
+        description: Some("Mean over the averaging window".to_owned()),
+        causality: Causality::Output,
+        variability: Variability::Continuous,
+        initial: None,
+        declared_type: None,
+        kind: Kind::Real { unit: Some("W".into()), start: None, min: None, max: None },
+    });
+    // C(t) comes from the harvester.
+    let of_circuit = circuit.variables.into_iter().filter(|variable| !variable.is_input());
+    Ok(harvester.with(of_circuit.chain(powers), circuit.enumerations))
+}
+
+/// Whether a variable of `system_description` is one of the circuit, or a power.
+pub fn is_electrical(variable: &Variable) -> bool {
+    let name = variable.name.as_str();
+    let quantities = Settings::QUANTITIES.iter().map(|it| it.name);
+    let mut names = quantities.chain(Settings::CHOICES.iter().map(|it| it.name)).chain(outputs());
+    POWERS.contains(&name) || names.any(|known| known == name)
+}
+
+/// Outputs of the circuit alone: the harvester has inputs of the names of the others.
+pub(super) fn outputs() -> impl Iterator<Item = &'static str> {
+    CircuitSample::NAMES.into_iter().filter(|name| !name.ends_with("left.voltage") && !name.ends_with("right.voltage"))
+}

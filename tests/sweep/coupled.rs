@@ -1,0 +1,98 @@
+//! Sweeps over harvester and circuit.
+
+use std::fs;
+use std::path::Path;
+
+use crate::command::{assert_same_results, column, done, folder, json, refused, rows, stderr, sweep, videg};
+
+/// The circuit with isolated membranes and a switch.
+const BETTER: [&str; 4] = ["--set", "topology=isolated", "--set", "release=switch"];
+
+const VARIED: [&str; 4] = ["--vary", "zener.voltage=2100:2700:4", "--vary", "membrane.restitution=0.3:0.9:5"];
+
+fn numbers(folder: &Path, name: &str) -> Vec<f64> {
+    column(folder, name).iter().map(|text| text.parse().unwrap()).collect()
+}
+
+#[test]
+#[ignore = "slow"]
+fn powers_are_those_of_co_simulation() {
+    let (_guard, folder) = folder();
+    let film = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/film.csv");
+    let film = format!("membrane.file={film}");
+    for (round, what) in [
+        vec!["--set", "zener.voltage=2450"],
+        vec!["--set", "release=storage"],
+        vec!["--set", "zener.voltage=2200", "--set", "leakage.timeConstant=10", "--set", "load.resistance=1e10"],
+        vec!["--set", "membrane.law=table", "--set", &film, "--set", "zener.voltage=2300"],
+        vec!["--set", "contact.law=compliant", "--set", "zener.voltage=2300"],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let swept = folder.join(round.to_string());
+        let what = [&BETTER[..], &what].concat();
+        let given = ["--record", "net_power", "--record", "load.energy", "--record", "ball.position"];
+        let varied = ["--vary", "membrane.restitution=0.6,0.8"];
+        let sweep = [&["sweep", "--until", "6"][..], &what, &given, &varied, &["--output"]].concat();
+        done(videg(&sweep).arg(&swept));
+        let single = ["cosim", "--until", "6", "--step", "1e-4", "--set", "membrane.restitution=0.8", "--output"];
+        let run = json(videg(&[&single[..1], &what, &single[1..]].concat()).arg(folder.join("cosim")));
+        let expected = run["net_power"].as_f64().unwrap();
+        let supply = run["supply_power"].as_f64().unwrap();
+        let found = numbers(&swept, "net_power")[1];
+        assert!((found - expected).abs() < 1e-3 * supply, "{what:?}: {found:e} against {expected:e}");
+        let load = run["energy"]["load"].as_f64().unwrap();
+        assert!((numbers(&swept, "load.energy")[1] - load).abs() < 1e-3 * load, "{what:?}");
+        let position = numbers(&swept, "ball.position")[1];
+        assert!(position.abs() < 1.0 && position != 0.0, "{position}");
+        let gain = run["average_voltage_gain"].as_f64().unwrap();
+        assert!((numbers(&swept, "average_voltage_gain")[1] / gain - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn coupled_sweeps_have_the_same_bytes_in_shards_and_after_a_cut() {
+    let (_guard, folder) = folder();
+    let [whole, shared, merged, cut] = ["whole", "shared", "merged", "cut"].map(|name| folder.join(name));
+    let noisy = ["--set", "excitation.phaseNoise=0.5", "--set", "excitation.noiseHold=1e-3", "--samples", "2"];
+    let what = [&BETTER[..], &VARIED, &noisy].concat();
+    done(&mut sweep(&whole, &what));
+    // Powers are recorded though nobody asked.
+    assert_eq!(rows(&whole)[0][9..12], ["net_power", "load_power", "supply_power"]);
+    for shard in ["1/3", "2/3", "3/3"] {
+        done(sweep(&shared, &what).args(["--shard", shard, "--jobs", "1"]));
+    }
+    done(videg(&["sweep", "merge", "--output"]).arg(&merged).arg(&shared));
+    assert_same_results(&whole, &merged);
+    fs::create_dir(&cut).unwrap();
+    fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
+    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
+    fs::write(cut.join("sweep.csv.part"), &bytes[..bytes.len() / 2]).unwrap();
+    let said = json(&mut sweep(&cut, &what));
+    assert!(said["resumed_from"].as_u64().unwrap() > 10, "{said}");
+    assert_same_results(&whole, &cut);
+}
+
+#[test]
+fn what_a_coupled_sweep_cannot_do_is_said() {
+    let (_guard, folder) = folder();
+    let (code, said) = refused(&mut sweep(&folder, &["--set", "zener.volt=3", "--vary", "ball.mass=1e-3,2e-3"]));
+    assert!(code == Some(2) && said.contains("did you mean \"zener.voltage\""), "{said}");
+    let (code, said) = refused(&mut sweep(&folder, &["--vary", "load.resistance=-3:-1:3"]));
+    assert!(code == Some(2) && said.contains("load.resistance"), "{said}");
+    let (_, said) = refused(&mut sweep(&folder, &["--set", "net_power=1", "--vary", "ball.mass=1e-3,2e-3"]));
+    assert!(said.contains("net_power") && said.contains("cannot be set"), "{said}");
+    let missing = ["--set", "excitation.file=none.csv", "--vary", "load.resistance=1e8,1e9"];
+    let (code, said) = refused(&mut sweep(&folder, &missing));
+    assert!(code == Some(2) && said.contains("excitation.file") && said.contains("none.csv"), "{said}");
+    // A point that the circuit refuses is a row with its reason.
+    let output = done(&mut sweep(&folder, &["--vary", "zener.voltage=1000,2000"]));
+    assert!(stderr(&output).contains("1 of 2 runs failed"));
+    assert!(column(&folder, "error")[0].contains("zener.voltage = 1000 V is below supply.voltage"));
+    let feedback = ["--set", "contact.law=compliant", "--set", "contact.electrostaticFeedback=true"];
+    let again = folder.join("feedback");
+    let output = sweep(&again, &[&feedback[..], &["--vary", "load.resistance=1e8,1e9"]].concat()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(column(&again, "error")[0].contains("contact.electrostaticFeedback"));
+}
