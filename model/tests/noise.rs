@@ -1,7 +1,7 @@
 //! Phase noise with the hold time of the paper, over whole runs.
 #![allow(clippy::unwrap_used)] // helpers outside of #[test] functions fail a test, too
 
-use videg_model::{ContactLaw, Harvester, Parameters};
+use videg_model::{ContactLaw, Event, Harvester, NoiseModel, Parameters, Recording, Side};
 
 /// Fig. 17: gamma = 5, `f_0` = 2 Hz, r = 1, D = sigma^2.
 fn fig17(intensity: f64, seed: i32) -> Parameters {
@@ -73,5 +73,50 @@ fn a_seed_gives_the_same_samples_whichever_law_moves_the_ball() {
         let difference = blocks.cylinder_position() - one_by_one.cylinder_position();
         assert!(difference.abs() < 1e-15, "{difference:e} m at {time} s");
         assert!((blocks.cylinder_acceleration() - one_by_one.cylinder_acceleration()).abs() < 1e-13);
+    }
+}
+
+/// As a master that goes from knot to knot sees it: nothing happens that was not announced, and pulses peak and end where it says.
+#[test]
+fn no_event_comes_unannounced_before_the_time_up_to_which_knots_are_known() {
+    let base = Parameters::default();
+    let noisy = Parameters { phase_noise: 2.0, ..base };
+    let held = Parameters { noise_hold: 2e-2, ..noisy };
+    let fine = Parameters { noise_hold: 1e-3, ..noisy };
+    let times: Vec<f64> = (0..50).map(|k| 0.1 * f64::from(k)).collect();
+    let values = times.iter().map(|time| 0.05 * (7.0 * time).sin()).collect();
+    let recording = Recording::new(videg_model::ExcitationKind::Force, times, values).unwrap();
+    for (what, p, recording) in [
+        ("none", base, None),
+        ("held", held, None),
+        ("in blocks", fine, None),
+        ("wiener", Parameters { noise_model: NoiseModel::Wiener, ..fine }, None),
+        ("compliant", Parameters { contact_law: ContactLaw::Compliant, ..held }, None),
+        ("recorded", fine, Some(&recording)),
+        ("longer than a period", Parameters { noise_hold: 0.7, ..noisy }, None),
+    ] {
+        let mut harvester = Harvester::new(p.with_recording(recording), 0.0).unwrap();
+        let mut pulses = 0;
+        while harvester.time() < 4.0 {
+            let now = harvester.time();
+            let knot = harvester.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);
+            let known = harvester.known_until();
+            assert!(known > now, "{what}: {known} at {now}");
+            let mut early = None;
+            let show = |event: &Event| {
+                if let Event::Impact(impact) = event {
+                    early = Some(impact.time);
+                }
+            };
+            if knot <= known {
+                harvester.advance_with(knot, show).unwrap();
+                assert!(early.is_none_or(|time| time == knot), "{what}: an impact at {early:?}, before {knot}");
+            } else {
+                harvester.advance_with(known, show).unwrap();
+                assert_eq!(early, None, "{what}: from {now} to {known}");
+            }
+            pulses += [Side::Left, Side::Right].into_iter().flat_map(|side| harvester.pulses(side)).count();
+        }
+        assert!(harvester.totals().impacts > 3 && (pulses > 3) == (p.contact_law == ContactLaw::Impulsive), "{what}");
     }
 }
