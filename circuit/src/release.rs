@@ -101,12 +101,17 @@ impl Discharge {
         }
     }
 
-    /// [`Self::tau`] up to where nothing is left of a capacitance that falls: beside 1e98 F, one of some pF rounds to nothing.
+    /// [`Self::tau`] where it is a number. Otherwise from the capacitances at both ends: beside 1e98 F, one of some pF rounds to nothing, and
+    /// a time over 1e-314 F overflows.
     fn bounded_tau(&self, t: f64) -> f64 {
-        /// e to the power of this, negative, is no number above 0.
-        const VANISHED: f64 = 746.0;
-        let most = if self.rate < 0.0 { (VANISHED / -self.rate).min(f64::MAX) } else { f64::MAX };
-        self.tau(t).min(most)
+        /// The smallest number above 0.
+        const LEAST: f64 = f64::from_bits(1);
+        let tau = self.tau(t);
+        if tau.is_finite() {
+            return tau;
+        }
+        let end = self.capacitance_at(t).max(LEAST);
+        ((end.ln() - self.capacitance.ln()) / self.rate).abs().min(f64::MAX)
     }
 
     fn leaking(&self) -> Leaking {

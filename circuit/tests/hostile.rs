@@ -171,13 +171,17 @@ proptest! {
     }
 }
 
-/// Beside 1e98 F, a capacitance of some pF rounds to nothing: the way there takes a bounded number of pieces.
+/// Beside 1e98 F, a capacitance of some pF rounds to nothing, and a time over 1e-314 F overflows: the way takes a bounded number of pieces.
 #[test]
 fn a_leaking_capacitance_that_all_but_vanishes_ends_in_time() {
     for (kind, mut settings) in kinds().into_iter().filter(|(_, settings)| !settings.exponential) {
         settings.circuit.leakage_time_constant = 2.0;
         settings.circuit.load_resistance = 3.5e-6;
-        for ramps in [[(1e-2, [2e98; 2]), (1e-2, [15e-12; 2])], [(1e-2, [2e98, 15e-12]), (1e-12, [1e-300, 15e-12])]] {
+        for ramps in [
+            [(1e-2, [2e98; 2]), (1e-2, [15e-12; 2])],
+            [(1e-2, [2e98, 15e-12]), (1e-12, [1e-300, 15e-12])],
+            [(1e-2, [2e-314; 2]), (1e-2, [15e-12; 2])],
+        ] {
             let mut circuit = Circuit::new(settings.parameters(), [15e-12; 2]).unwrap();
             for (dt, capacitance) in ramps {
                 if circuit.advance(dt, capacitance).is_err() {
