@@ -147,7 +147,7 @@ impl FmuCircuit {
         )?;
         let references = |wires: &[Wire]| wires.iter().map(|wire| wire.reference).collect::<Vec<_>>();
         let (inputs, outputs) = (references(&connection.inputs), references(&connection.outputs));
-        instance.set_real(&inputs, &connection.scaled(capacitance))?;
+        instance.set_real(&inputs, &connection.scaled(capacitance)[..inputs.len()])?;
         instance.exit_initialization_mode()?;
         let mut circuit = Self {
             label: label.to_owned(),
@@ -208,9 +208,13 @@ fn real(description: &fmu_import::ModelDescription, name: &str) -> Result<u32, C
 }
 
 impl Connection {
-    /// The inputs of the FMU for `values` in SI units (left, right).
-    fn scaled(&self, values: [f64; 2]) -> Vec<f64> {
-        self.inputs.iter().map(|wire| wire.factor * values[wire.ours]).collect()
+    /// The inputs of the FMU, as many as it has, for `values` in SI units (left, right).
+    fn scaled(&self, values: [f64; 2]) -> [f64; 2] {
+        let mut scaled = [0.0; 2];
+        for (wire, scaled) in self.inputs.iter().zip(&mut scaled) {
+            *scaled = wire.factor * values[wire.ours];
+        }
+        scaled
     }
 
     /// The outputs by index from the `values` of the FMU; NaN for those that are not known.
@@ -230,13 +234,13 @@ impl CircuitSlave for FmuCircuit {
     }
 
     fn step(&mut self, time: f64, step: f64, start: [f64; 2], end: [f64; 2]) -> Result<(), CosimError> {
+        let count = self.inputs.len();
         if self.connection.interpolates {
-            let rate = [0, 1].map(|j| (end[j] - start[j]) / step);
-            self.instance.set_real(&self.inputs, &self.connection.scaled(start))?;
-            let orders = vec![1; self.inputs.len()];
-            self.instance.set_real_input_derivatives(&self.inputs, &orders, &self.connection.scaled(rate))?;
+            let rate = self.connection.scaled([0, 1].map(|j| (end[j] - start[j]) / step));
+            self.instance.set_real(&self.inputs, &self.connection.scaled(start)[..count])?;
+            self.instance.set_real_input_derivatives(&self.inputs, &[1, 1][..count], &rate[..count])?;
         } else {
-            self.instance.set_real(&self.inputs, &self.connection.scaled(end))?;
+            self.instance.set_real(&self.inputs, &self.connection.scaled(end)[..count])?;
         }
         self.instance.do_step(time, step)?;
         self.instance.get_real(&self.probe_references, &mut self.probed)?;

@@ -235,3 +235,34 @@ impl SharedPulses {
 fn capacitance(harvester: &Harvester) -> [f64; 2] {
     SIDES.map(|side| harvester.capacitance(side))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use videg_model::Membrane;
+
+    #[test]
+    fn lines_are_as_close_to_a_pulse_as_they_say() {
+        let p = Parameters::default();
+        let membrane = Membrane::new(&p);
+        let mut pulses = SharedPulses::of(&p).unwrap();
+        for (peak, tolerance) in [(1e-3, 1e-3), (4e-3, 1e-2), (7e-3, 1e-3), (1e-2, 1e-3), (1e-2, 1e-4), (2e-2, 1e-3)] {
+            let at = |share: f64| membrane.capacitance(peak * share);
+            let count = lines(6.0 * (at(1.0) - at(0.0)) / at(0.0), tolerance);
+            let knots: Vec<f64> = pulses.deflections(count).iter().map(|share| at(*share)).collect();
+            let exact: Vec<f64> = pulses.deflections(20 * count).iter().map(|share| at(*share)).collect();
+            let moved = |k: usize| match k {
+                0 => knots[0],
+                k if k + 1 == knots.len() => knots[k],
+                k => knots[k] - (knots[k - 1] - 2.0 * knots[k] + knots[k + 1]) / 12.0,
+            };
+            let off = |k: usize| {
+                let (line, share) = ((k / 20).min(knots.len() - 2), (k as f64) / 20.0);
+                let share = share - line as f64;
+                (moved(line) * (1.0 - share) + moved(line + 1) * share) / exact[k] - 1.0
+            };
+            let largest = (0..exact.len()).map(|k| off(k).abs()).fold(0.0, f64::max);
+            assert!(largest <= tolerance, "{peak} m: {largest:e} with {tolerance:e}");
+        }
+    }
+}

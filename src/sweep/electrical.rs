@@ -40,5 +40,5 @@ pub fn is_electrical(variable: &Variable) -> bool {
 
 /// Outputs of the circuit alone: the harvester has inputs of the names of the others.
 pub(super) fn outputs() -> impl Iterator<Item = &'static str> {
-    CircuitSample::NAMES.into_iter().filter(|name| !name.ends_with("left.voltage") && !name.ends_with("right.voltage"))
+    CircuitSample::NAMES.into_iter().filter(|name| !matches!(*name, "left.voltage" | "right.voltage"))
 }

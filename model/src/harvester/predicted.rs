@@ -46,9 +46,9 @@ impl Harvester {
         if self.noise.in_blocks() {
             return ahead;
         }
-        let ends = [self.noise.limit(), Some(self.time + self.parameters.noise_hold)];
-        let single = ends.into_iter().flatten().find(|end| *end > self.time).unwrap_or(ahead);
-        if self.noise.limit().is_some() { single.min(ahead) } else { ahead }
+        // At the end of an interval the next one has not been entered yet.
+        let next = self.time + self.parameters.noise_hold;
+        self.noise.limit().map_or(ahead, |end| if end > self.time { end } else { next }.min(ahead))
     }
 
     /// Up to where the contact is predicted, s: to where the membrane's force changes its branch, if that is within a period.
