@@ -10,21 +10,23 @@ use anyhow::Context as _;
 use criterion::{Criterion, SamplingMode};
 use fmu_import::Fmu;
 use videg::cosim::{CircuitSample, CircuitSlave as _, CosimError, HarvesterFmu, NgspiceCircuit};
+use videg::coupled::{self, TOLERANCE, Times};
 use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
 use videg::package::{Options, build_all};
 use videg::scenario::Request;
-use videg_circuit::{DiodeParameters, Diodes, Ledger, Parameters};
+use videg_circuit::{DiodeParameters, Diodes, Ledger, Parameters, Release, Settings, Topology};
+use videg_model::Case;
 
 /// Duration, s: some sixty pulses.
 const UNTIL: f64 = 10.0;
 
-fn table() -> anyhow::Result<CapacitanceTable> {
+fn table(until: f64, tolerance: f64) -> anyhow::Result<CapacitanceTable> {
     let folder = tempfile::tempdir()?;
     let paths = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() })?;
     let fmu = Fmu::open(paths.first().context("no FMU")?)?;
-    let scenario = Request { case: Some("fig14".to_owned()), until: Some(UNTIL), ..Request::default() }.resolve()?;
+    let scenario = Request { case: Some("fig14".to_owned()), until: Some(until), ..Request::default() }.resolve()?;
     let mut harvester = HarvesterFmu::new(&fmu, &scenario, &scenario.settings)?;
-    Ok(CapacitanceTable::from_harvester(&mut harvester, UNTIL, 1e-4)?)
+    Ok(CapacitanceTable::from_harvester(&mut harvester, until, tolerance)?)
 }
 
 fn deviation(found: &Ledger, exact: &Ledger) -> f64 {
@@ -52,8 +54,36 @@ fn live(elements: &Elements, table: &CapacitanceTable, run: &Run) -> Result<Circ
     circuit.sample()
 }
 
+/// 100 s of mechanics and circuit together, without steps, and ngspice on the same C(t).
+fn coupled_runs(criterion: &mut Criterion, ngspice: &Ngspice) -> anyhow::Result<()> {
+    const UNTIL: f64 = 100.0;
+    let mut settings = Settings::default();
+    settings.circuit.topology = Topology::Isolated;
+    settings.circuit.release = Release::Switch;
+    settings.circuit.zener_voltage = 2450.0;
+    let case = (Case::find("fig14").context("no such case")?.parameters)();
+    let times = Times { until: UNTIL, window: [50.0, UNTIL], tolerance: TOLERANCE };
+    let table = table(UNTIL, TOLERANCE)?;
+    let elements = Elements::new(&settings.parameters(), table.growth())?;
+    let run = Run::new(table.until(), table.growth());
+    let ours = coupled::run(&case, &settings, &times)?.circuit.ledger;
+    let exact = Waveforms::embedded(&settings.parameters(), &table)?.ledger();
+    println!(
+        "fig14, {UNTIL} s, isolated, switch; deviation from the circuit alone on {} ramps of C(t):",
+        table.len() - 1
+    );
+    println!("  coupled {:.1e}", deviation(&ours, &exact));
+    println!("  ngspice {:.1e}", deviation(&ngspice.simulate(&elements, &table, &run)?.ledger(), &exact));
+    let mut group = criterion.benchmark_group("100 s of fig14, isolated, switch");
+    group.bench_function("harvester and circuit", |b| b.iter(|| coupled::run(black_box(&case), &settings, &times)));
+    group.sampling_mode(SamplingMode::Flat).sample_size(10);
+    group.bench_function("ngspice, batch", |b| b.iter(|| ngspice.simulate(black_box(&elements), &table, &run)));
+    group.finish();
+    Ok(())
+}
+
 fn main() -> anyhow::Result<()> {
-    let table = table()?;
+    let table = table(UNTIL, 1e-4)?;
     let ideal = Parameters::default();
     let exponential = Parameters { diodes: Diodes::Exponential(DiodeParameters::default()), ..ideal };
     let (ngspice, elements) = (Ngspice::find(None)?, Elements::new(&ideal, table.growth())?);
@@ -74,6 +104,7 @@ fn main() -> anyhow::Result<()> {
     group.bench_function("ngspice, batch", |b| b.iter(|| ngspice.simulate(black_box(&elements), &table, &run)));
     group.bench_function("ngspice, live", |b| b.iter(|| live(black_box(&elements), &table, &run)));
     group.finish();
+    coupled_runs(&mut criterion, &ngspice)?;
     criterion.final_summary();
     Ok(())
 }

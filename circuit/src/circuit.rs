@@ -114,6 +114,16 @@ impl Circuit {
         self.check_numbers().inspect_err(|_| self.state = before)
     }
 
+    /// Whether all that happens while both capacitances (F) go to `capacitance` without turning round follows from where they end: with
+    /// ideal diodes, no leak, and no charge that the load would get. One call of [`Circuit::advance`] is then as good as many.
+    pub fn is_path_independent(&self, capacitance: [f64; 2]) -> bool {
+        let p = &self.parameters;
+        let (open, bound) = (p.conductance() == 0.0 && p.release != Release::Storage, p.release_voltage());
+        let ends = self.node_capacitances(capacitance);
+        let is_calm = |j: usize| !self.state.releasing[j] && (open || self.state.charge[j] <= bound * ends[j]);
+        p.diodes == Diodes::Ideal && !p.leaks() && (0..p.nodes()).all(is_calm)
+    }
+
     /// That no voltage, current or energy has left the range of numbers, as it does beside a capacitance of 1e308 F.
     fn check_numbers(&self) -> Result<(), Error> {
         let ([left, right], ledger) = (self.voltage(), self.ledger());
@@ -197,7 +207,7 @@ impl Circuit {
 
     /// Voltages `U_DE` of the membranes, left and right (V).
     pub fn voltage(&self) -> [f64; 2] {
-        let nodes = self.network().nodes;
+        let nodes = self.state.nodes(self.parameters.nodes());
         match self.parameters.topology {
             Topology::SharedNode => [nodes[0].voltage(); 2],
             Topology::Isolated => nodes.map(|node| node.voltage()),
@@ -266,8 +276,8 @@ impl Circuit {
     }
 
     fn stored_energy(&self) -> f64 {
-        let network = self.network();
-        network.nodes[..network.count].iter().map(Node::energy).sum()
+        let count = self.parameters.nodes();
+        self.state.nodes(count)[..count].iter().map(Node::energy).sum()
     }
 
     fn accept(&mut self, mut network: Network) {

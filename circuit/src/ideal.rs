@@ -10,6 +10,9 @@ use crate::state::{Mode, Node};
 /// Bound on the switching instants in one step; a pair of linear ramps has a handful.
 pub(crate) const EVENTS: usize = 64;
 
+/// Relative distance from a switching instant at which none is looked for.
+const MARGIN: f64 = 1e-9;
+
 /// What happens at a switching instant.
 #[derive(Debug, Clone, Copy)]
 enum Event {
@@ -68,8 +71,14 @@ impl Network {
         let discharge = self.discharge();
         let leaks = self.elements.leak > 0.0;
         let threshold = self.elements.threshold;
-        let fall = discharge.and_then(|discharge| {
-            if leaks { discharge.time_to_leak_to(threshold, span) } else { discharge.time_to_fall_to(threshold) }
+        // Without a leak the load voltage is monotonic: mostly its least value tells that nothing happens.
+        let lowest = discharge.filter(|_| !leaks).map_or(0.0, |leader| least(leader.excess, leader.excess_at(span)));
+        let fall = discharge.and_then(|leader| {
+            if leaks {
+                return leader.time_to_leak_to(threshold, span);
+            }
+            let is_above = lowest + leader.drop - threshold > MARGIN * leader.excess;
+            if is_above { None } else { leader.time_to_fall_to(threshold) }
         });
         // Beyond it, leaking nodes may have lost so much that nothing is left to compare.
         let falls = if leaks { fall.unwrap_or(span) } else { span };
@@ -86,7 +95,15 @@ impl Network {
                 (Mode::Off, leader) => {
                     offer(self.time_to_supply(j, span), Event::Supply(j));
                     match leader {
-                        Some(leader) => offer(self.time_to_meet(j, leader, falls), Event::Meet(j)),
+                        Some(leader) => {
+                            // Of the level that the charge falls to, both factors are monotonic.
+                            let node = &self.nodes[j];
+                            let least_level =
+                                least(node.capacitance, node.capacitance + node.rate * span) * (lowest + leader.drop);
+                            if leaks || least_level <= node.charge * (1.0 + MARGIN) {
+                                offer(self.time_to_meet(j, leader, falls), Event::Meet(j));
+                            }
+                        }
                         None => offer(self.time_to_threshold(j, span), Event::Threshold(j)),
                     }
                 }
@@ -294,6 +311,10 @@ impl Network {
             };
         }
     }
+}
+
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// When a node of constant charge reaches a voltage, on a ramp that leads there.

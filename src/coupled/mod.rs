@@ -117,11 +117,8 @@ impl Coupled {
             return self.follow(side, &pulse, rises, end);
         }
         let start = self.harvester.time();
-        let is_flat = SIDES.into_iter().all(|side| {
-            let deflection = self.harvester.deflection(side);
-            deflection.value == 0.0 && deflection.rate == 0.0
-        });
-        let count = if is_flat && self.harvester.present_impact().is_none() { 1 } else { self.count(end)? };
+        let is_flat = SIDES.into_iter().all(|side| self.is_flat(side));
+        let count = if is_flat { 1 } else { self.count(end)? };
         self.samples.clear();
         self.samples.push(capacitance(&self.harvester));
         for k in 1..=count {
@@ -132,20 +129,37 @@ impl Coupled {
         self.give(end - start)
     }
 
+    /// Whether the membrane at `side` is flat now, and stays so until the next knot.
+    fn is_flat(&self, side: Side) -> bool {
+        match self.harvester.parameters().contact_law {
+            ContactLaw::Impulsive => self.harvester.pulses(side).next().is_none(),
+            ContactLaw::Compliant => {
+                let deflection = self.harvester.deflection(side);
+                deflection.value == 0.0 && deflection.rate == 0.0
+            }
+        }
+    }
+
     /// Gives the circuit the samples of C(t), which are evenly spaced over `length`, s, as straight lines. Inner knots are moved by a twelfth of the
     /// second difference, so that the lines lie as much above C(t) as below: the error of energies is of the fourth order then.
+    /// Lines that the circuit can take as one are given as one.
     fn give(&mut self, length: f64) -> Result<(), CoupledError> {
         let Self { circuit, samples, lines, .. } = self;
         let step = length / (samples.len() - 1) as f64;
-        for window in samples.windows(3) {
-            let [before, here, after] = [window[0], window[1], window[2]];
-            let moved = [0, 1].map(|j| here[j] - (before[j] - 2.0 * here[j] + after[j]) / 12.0);
-            circuit.advance(step, moved)?;
+        let mut before = samples[0];
+        for k in 1..samples.len() - 1 {
+            let [here, after] = [samples[k], samples[k + 1]];
+            samples[k] = [0, 1].map(|j| here[j] - (before[j] - 2.0 * here[j] + after[j]) / 12.0);
+            before = here;
         }
-        if let Some(last) = samples.last() {
-            circuit.advance(step, *last)?;
+        let mut start = 0;
+        while start + 1 < samples.len() {
+            let goes_on = |k: usize| circuit.is_path_independent(samples[k + 1]) && !turns(&samples[start..=k + 1]);
+            let end = (start + 1..samples.len() - 1).find(|k| !goes_on(*k)).unwrap_or(samples.len() - 1);
+            circuit.advance((end - start) as f64 * step, samples[end])?;
+            *lines += 1;
+            start = end;
         }
-        *lines += samples.len() as u64 - 1;
         Ok(())
     }
 
@@ -166,6 +180,15 @@ impl Coupled {
         let length = end - self.harvester.time();
         let membrane = self.harvester.membrane();
         let (rest, peak) = (membrane.rest_capacitance(), membrane.capacitance(pulse.peak));
+        let mut last = [rest; 2];
+        if rises {
+            last[side.index()] = peak;
+        }
+        if self.circuit.is_path_independent(last) {
+            self.harvester.advance(end)?;
+            self.lines += 1;
+            return Ok(self.circuit.advance(length, last)?);
+        }
         let count = lines(6.0 * (peak - rest) / rest, self.tolerance);
         let Some(shared) = &mut self.pulses else { return Ok(()) };
         let deflections = shared.deflections(count);
@@ -205,6 +228,12 @@ fn lines(curvature: f64, tolerance: f64) -> u32 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1 to MOST
     let count = (curvature / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, MOST) as u32;
     count
+}
+
+/// Whether one of the capacitances turns round at the last knot but one of `samples`.
+fn turns(samples: &[[f64; 2]]) -> bool {
+    let [.., before, here, after] = samples else { return false };
+    (0..2).any(|j| (here[j] - before[j]) * (after[j] - here[j]) < 0.0)
 }
 
 /// Pulses of one shape: deflections at even times, by their number.
