@@ -114,7 +114,7 @@ impl Circuit {
         self.check_numbers().inspect_err(|_| self.state = before)
     }
 
-    /// Whether all that happens while both capacitances (F) go to `capacitance` without turning round follows from where they end: with
+    /// Whether all that happens while both capacitances (F), and their sum, go to `capacitance` without turning round follows from where they end: with
     /// ideal diodes, no leak, and no charge that the load would get. One call of [`Circuit::advance`] is then as good as many.
     pub fn is_path_independent(&self, capacitance: [f64; 2]) -> bool {
         let p = &self.parameters;

@@ -102,6 +102,35 @@ proptest! {
         prop_assert!((a.load_charge - b.load_charge).abs() <= 1e-10 * scale, "{a:?} {b:?}");
         prop_assert!((a.supply_charge - b.supply_charge).abs() <= 1e-10 * scale, "{a:?} {b:?}");
     }
+
+    #[test]
+    fn one_step_is_as_good_as_any_way_where_the_circuit_says_so(
+        parameters in parameters(),
+        ramps in ramps(),
+        mut shares in prop::collection::vec(0.0..1.0_f64, 1..9),
+    ) {
+        shares.sort_by(f64::total_cmp);
+        let mut circuit = Circuit::new(parameters, START).unwrap();
+        for &(dt, ends) in &ramps {
+            if circuit.is_path_independent(ends) && dt > 0.0 {
+                let (from, before) = (circuit.capacitance(), circuit.ledger());
+                let [mut straight, mut winding] = [circuit.clone(), circuit.clone()];
+                straight.advance(dt, ends).unwrap();
+                let step = dt / (shares.len() + 1) as f64;
+                for share in &shares {
+                    winding.advance(step, [0, 1].map(|j| from[j] + (ends[j] - from[j]) * share)).unwrap();
+                }
+                winding.advance(step, ends).unwrap();
+                let [one, many] = [&straight, &winding].map(Circuit::ledger);
+                prop_assert_eq!(one.load_charge, before.load_charge);
+                let scale = many.supply.abs() + one.stored.abs() + before.stored.abs() + circuit.state().initial_energy;
+                for (one, many) in [(one.supply, many.supply), (one.mechanical, many.mechanical), (one.load, many.load), (one.stored, many.stored)] {
+                    prop_assert!((one - many).abs() <= 1e-10 * scale, "{one:e} and {many:e} of {scale:e}");
+                }
+            }
+            circuit.advance(dt, ends).unwrap();
+        }
+    }
 }
 
 #[test]

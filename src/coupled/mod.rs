@@ -230,10 +230,11 @@ fn lines(curvature: f64, tolerance: f64) -> u32 {
     count
 }
 
-/// Whether one of the capacitances turns round at the last knot but one of `samples`.
+/// Whether one of the capacitances, or their sum, turns round at the last knot but one of `samples`.
 fn turns(samples: &[[f64; 2]]) -> bool {
     let [.., before, here, after] = samples else { return false };
-    (0..2).any(|j| (here[j] - before[j]) * (after[j] - here[j]) < 0.0)
+    let steps = |a: &[f64; 2], b: &[f64; 2]| [b[0] - a[0], b[1] - a[1], b[0] + b[1] - a[0] - a[1]];
+    steps(before, here).iter().zip(steps(here, after)).any(|(first, second)| first * second < 0.0)
 }
 
 /// Pulses of one shape: deflections at even times, by their number.
