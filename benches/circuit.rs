@@ -67,13 +67,13 @@ fn coupled_runs(criterion: &mut Criterion, ngspice: &Ngspice) -> anyhow::Result<
     let elements = Elements::new(&settings.parameters(), table.growth())?;
     let run = Run::new(table.until(), table.growth());
     let ours = coupled::run(&case, &settings, &times)?.circuit.ledger;
-    let exact = Waveforms::embedded(&settings.parameters(), &table)?.ledger();
-    println!(
-        "fig14, {UNTIL} s, isolated, switch; deviation from the circuit alone on {} ramps of C(t):",
-        table.len() - 1
-    );
+    let fine = self::table(UNTIL, 1e-5)?;
+    let exact = Waveforms::embedded(&settings.parameters(), &fine)?.ledger();
+    let (count, fine) = (table.len() - 1, fine.len() - 1);
+    println!("fig14, {UNTIL} s, isolated, switch; deviation from the circuit alone on {fine} ramps of C(t):");
     println!("  coupled {:.1e}", deviation(&ours, &exact));
-    println!("  ngspice {:.1e}", deviation(&ngspice.simulate(&elements, &table, &run)?.ledger(), &exact));
+    let by_ngspice = ngspice.simulate(&elements, &table, &run)?.ledger();
+    println!("  ngspice on {count} ramps {:.1e}", deviation(&by_ngspice, &exact));
     let mut group = criterion.benchmark_group("100 s of fig14, isolated, switch");
     group.bench_function("harvester and circuit", |b| b.iter(|| coupled::run(black_box(&case), &settings, &times)));
     group.sampling_mode(SamplingMode::Flat).sample_size(10);

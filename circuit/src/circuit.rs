@@ -114,14 +114,16 @@ impl Circuit {
         self.check_numbers().inspect_err(|_| self.state = before)
     }
 
-    /// Whether all that happens while both capacitances (F), and their sum, go to `capacitance` without turning round follows from where they end: with
-    /// ideal diodes, no leak, and no charge that the load would get. One call of [`Circuit::advance`] is then as good as many.
+    /// Whether all that happens while both capacitances (F), and their sum, go to `capacitance` without turning round
+    /// follows from where they end: with ideal diodes, no leak, and no charge that the load would get. One call of
+    /// [`Circuit::advance`] is then as good as many.
     pub fn is_path_independent(&self, capacitance: [f64; 2]) -> bool {
         let p = &self.parameters;
-        let (open, bound) = (p.conductance() == 0.0 && p.release != Release::Storage, p.release_voltage());
+        let elements = Elements::new(p);
         let ends = self.node_capacitances(capacitance);
-        let is_calm = |j: usize| !self.state.releasing[j] && (open || self.state.charge[j] <= bound * ends[j]);
-        p.diodes == Diodes::Ideal && !p.leaks() && (0..p.nodes()).all(is_calm)
+        let stays_below = |j: usize| elements.open() || self.state.charge[j] <= elements.threshold * ends[j];
+        let is_calm = |j: usize| !self.state.releasing[j] && stays_below(j);
+        p.diodes == Diodes::Ideal && elements.leak == 0.0 && (0..p.nodes()).all(is_calm)
     }
 
     /// That no voltage, current or energy has left the range of numbers, as it does beside a capacitance of 1e308 F.

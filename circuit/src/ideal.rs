@@ -95,15 +95,8 @@ impl Network {
                 (Mode::Off, leader) => {
                     offer(self.time_to_supply(j, span), Event::Supply(j));
                     match leader {
-                        Some(leader) => {
-                            // Of the level that the charge falls to, both factors are monotonic.
-                            let node = &self.nodes[j];
-                            let least_level =
-                                least(node.capacitance, node.capacitance + node.rate * span) * (lowest + leader.drop);
-                            if leaks || least_level <= node.charge * (1.0 + MARGIN) {
-                                offer(self.time_to_meet(j, leader, falls), Event::Meet(j));
-                            }
-                        }
+                        Some(leader) if !leaks && self.stays_blocked(j, lowest + leader.drop, span) => {}
+                        Some(leader) => offer(self.time_to_meet(j, leader, falls), Event::Meet(j)),
                         None => offer(self.time_to_threshold(j, span), Event::Threshold(j)),
                     }
                 }
@@ -135,6 +128,13 @@ impl Network {
             return self.time_to_rise_to(node, self.elements.threshold, span);
         }
         (node.rate < 0.0 && !self.elements.open()).then(|| time_to_voltage(node, self.elements.threshold))
+    }
+
+    /// Whether the charge of node `j` stays clearly below what it would be at the least voltage of the leader within
+    /// `span` seconds. NaN never does.
+    fn stays_blocked(&self, j: usize, lowest: f64, span: f64) -> bool {
+        let node = &self.nodes[j];
+        least(node.capacitance, node.capacitance + node.rate * span) * lowest > node.charge * (1.0 + MARGIN)
     }
 
     /// When the blocked node `j` reaches the voltage of the leader, that is when `h = C_j V_leader - Q_j`

@@ -230,11 +230,12 @@ fn lines(curvature: f64, tolerance: f64) -> u32 {
     count
 }
 
-/// Whether one of the capacitances, or their sum, turns round at the last knot but one of `samples`.
+/// Whether one of the capacitances, or their sum, which had not turned round before, does so at the last knot but one of
+/// `samples`. From the first on: between a rise and a fall, two samples may be equal.
 fn turns(samples: &[[f64; 2]]) -> bool {
-    let [.., before, here, after] = samples else { return false };
+    let [first, .., here, after] = samples else { return false };
     let steps = |a: &[f64; 2], b: &[f64; 2]| [b[0] - a[0], b[1] - a[1], b[0] + b[1] - a[0] - a[1]];
-    steps(before, here).iter().zip(steps(here, after)).any(|(first, second)| first * second < 0.0)
+    steps(first, here).iter().zip(steps(here, after)).any(|(so_far, next)| so_far * next < 0.0)
 }
 
 /// Pulses of one shape: deflections at even times, by their number.
@@ -270,6 +271,17 @@ fn capacitance(harvester: &Harvester) -> [f64; 2] {
 mod tests {
     use super::*;
     use videg_model::Membrane;
+
+    #[test]
+    fn a_turn_is_seen_in_each_capacitance_and_in_the_sum_and_behind_a_plateau() {
+        let turn = |samples: &[[f64; 2]]| turns(&samples.iter().map(|c| c.map(|c| c * 1e-12)).collect::<Vec<_>>());
+        assert!(turn(&[[1.0, 1.0], [2.0, 1.0], [1.0, 1.0]]));
+        assert!(turn(&[[1.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0, 1.0]]));
+        assert!(turn(&[[1.0, 5.0], [4.0, 4.0], [5.0, 1.0]]));
+        assert!(!turn(&[[1.0, 1.0], [1.0, 1.0], [2.0, 1.0]]));
+        assert!(!turn(&[[1.0, 1.0], [2.0, 3.0], [2.0, 3.0], [3.0, 4.0]]));
+        assert!(!turn(&[[1.0, 1.0], [2.0, 2.0]]));
+    }
 
     #[test]
     fn lines_are_as_close_to_a_pulse_as_they_say() {
