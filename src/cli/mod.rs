@@ -34,6 +34,7 @@ mod simulate;
 mod ssp;
 mod streams;
 mod sweep;
+mod sweep_cases;
 mod sweep_options;
 mod time_series;
 mod worker;

@@ -14,7 +14,7 @@ use super::progress::RunBar;
 use super::run_output::file_list;
 use super::sweep_options::What;
 use super::{Exit, format, output};
-use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, SweepFile, System};
+use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, System};
 use fmu_import::Fmu;
 
 /// Arguments of the verb.
@@ -128,7 +128,7 @@ fn verdict(runs: u64, failed: u64) -> Exit {
 
 fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let started = Instant::now();
-    let file = arguments.what.file.as_deref().map(SweepFile::read).transpose()?.unwrap_or_default();
+    let file = arguments.what.sweep_file()?;
     let design = arguments.what.sampling.design.or(file.sampling.design).unwrap_or_default();
     let fmu = arguments.fmu.as_deref().map(|path| arguments.isolation.open(path)).transpose()?;
     if fmu.is_none() {

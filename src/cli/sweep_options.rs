@@ -6,16 +6,18 @@ use anyhow::anyhow;
 use clap::Args;
 
 use super::options::{Window, mechanical, parse_window};
+use super::sweep_cases::{cases, under};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
-use crate::sweep::{POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
+use crate::sweep::{Case, POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
 use fmu_import::{Bounds, ModelDescription};
 
 /// Options that describe a sweep. An option wins over the same key of the file.
 #[derive(Args, Default)]
 pub struct What {
-    /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table
+    /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table;
+    /// or several case files, over which the sweep goes
     #[arg(value_name = "FILE.toml")]
-    pub file: Option<PathBuf>,
+    files: Vec<PathBuf>,
     /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
     /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
@@ -24,7 +26,7 @@ pub struct What {
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
     /// Vary a parameter or input of harvester or circuit: name=from:to:count for a grid, name=from:to for the other designs, with log: before
-    /// from for equal ratios; name=a,b,c for any type; may be repeated
+    /// from for equal ratios; name=a,b,c for any type; case=fig14,my.toml for cases; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     vary: Vec<String>,
     #[command(flatten)]
@@ -58,20 +60,21 @@ impl What {
         let has_case = self.case.is_some() || file.case.case.is_some();
         let place = || file.case.origin(self.case.is_some()).key("case");
         anyhow::ensure!(is_harvester || !has_case, "{}: {model} is not the harvester, of which the cases are", place());
+        let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
+        let mut vary = [file.vary.clone(), asked].concat();
+        let cases = if is_harvester { cases(&self.files, &mut vary)? } else { Vec::new() };
+        anyhow::ensure!(cases.is_empty() || !has_case, "{}: the sweep goes over cases; leave out either", place());
         let in_file = self.in_file(&file);
-        let step = self.step.or(file.case.step);
-        let SweepFile { case, sampling, record, vary } = file;
-        let name = case.name.clone();
-        let scenario = self.scenario(case, description, is_harvester)?;
-        let step =
-            if is_harvester { step } else { Some(step.map_or_else(|| own_step(description, scenario.until), Ok)?) };
-        let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<_, _>>()?;
-        let vary: Vec<Vary> = [vary, asked].concat();
+        let SweepFile { case, sampling, record, .. } = file;
+        let Planned { name, settings, cases, times } = if cases.is_empty() {
+            self.of_one(case, description, is_harvester)?
+        } else {
+            self.of_several(&case, cases, description)?
+        };
         let has_circuit = description.variable(POWERS[0]).is_ok();
-        let settings =
-            if is_harvester { mechanical(description, &scenario, "sweep")? } else { scenario.changes().to_vec() };
         let mut record = if self.record.is_empty() { record } else { self.record.clone() };
-        let mut named = settings.iter().map(|it| &it.name).chain(vary.iter().map(|it| &it.name));
+        let of_cases = cases.iter().flat_map(|case| &case.settings);
+        let mut named = of_cases.chain(&settings).map(|it| &it.name).chain(vary.iter().map(|it| &it.name));
         let is_electrical = |name: &String| description.variable(name).is_ok_and(is_electrical);
         if has_circuit && record.is_empty() && named.any(is_electrical) {
             record = POWERS.map(str::to_owned).to_vec();
@@ -81,13 +84,71 @@ impl What {
             fmu: fingerprint,
             isolation,
             settings,
-            times: Times { until: scenario.until, step, window: scenario.window },
-            name: name.unwrap_or(if is_harvester { scenario.name } else { model.clone() }),
+            cases,
+            times,
+            name,
             vary,
             sampling: self.sampling.clone().or(sampling),
             record,
             in_file,
         })
+    }
+
+    /// The sweep file, if there is one; several files are cases.
+    pub fn sweep_file(&self) -> Result<SweepFile, ScenarioError> {
+        if let [file] = &self.files[..] { SweepFile::read(file) } else { Ok(SweepFile::default()) }
+    }
+
+    /// What all runs of a sweep over one case, or of an FMU, have in common.
+    fn of_one(&self, case: CaseFile, description: &ModelDescription, is_harvester: bool) -> anyhow::Result<Planned> {
+        let (name, step) = (case.name.clone(), self.step.or(case.step));
+        let scenario = self.scenario(case, description, is_harvester)?;
+        let (until, window) = (scenario.until, scenario.window);
+        Ok(if is_harvester {
+            let settings = mechanical(description, &scenario, "sweep")?;
+            Planned {
+                name: name.unwrap_or(scenario.name),
+                settings,
+                cases: Vec::new(),
+                times: Times { until, step, window },
+            }
+        } else {
+            let step = Some(step.map_or_else(|| own_step(description, until), Ok)?);
+            let (name, settings) = (name.unwrap_or(description.model_name.clone()), scenario.changes().to_vec());
+            Planned { name, settings, cases: Vec::new(), times: Times { until, step, window } }
+        })
+    }
+
+    /// The same over several `cases` with what the sweep file `on_top` says. Their runs have the same times.
+    fn of_several(
+        &self,
+        on_top: &CaseFile,
+        cases: Vec<CaseFile>,
+        description: &ModelDescription,
+    ) -> anyhow::Result<Planned> {
+        let mut planned: Vec<(Case, Times)> = Vec::new();
+        for case in cases {
+            let case = under(case, on_top);
+            let step = self.step.or(case.step);
+            let scenario = self.scenario(case, description, true)?;
+            let times = Times { until: scenario.until, step, window: scenario.window };
+            let case = Case { name: scenario.name.clone(), settings: mechanical(description, &scenario, "sweep")? };
+            if let Some((first, other)) = planned.first()
+                && *other != times
+            {
+                let [one, two] = [(first, other), (&case, &times)].map(|(case, times)| {
+                    let Times { until, window: [from, to], .. } = times;
+                    format!("{} runs until {until} s with the window {from},{to} s", case.name)
+                });
+                anyhow::bail!(
+                    "{one}, {two}: all runs of a sweep have the same times, so give --until, --window and --step"
+                );
+            }
+            planned.push((case, times));
+        }
+        let times = planned.first().map_or(Times { until: 0.0, step: None, window: [0.0; 2] }, |(_, times)| *times);
+        let name = on_top.name.clone().unwrap_or_else(|| "cases".to_owned());
+        Ok(Planned { name, settings: Vec::new(), cases: planned.into_iter().map(|(case, _)| case).collect(), times })
     }
 
     /// Keys of the file that no option overrides, with the path.
@@ -119,6 +180,14 @@ impl What {
         let case = self.case.clone();
         scenario::Request { case, file: Some(file), settings, until, step: self.step, window, until_place }.resolve()
     }
+}
+
+/// What a sweep goes over, besides what is varied.
+struct Planned {
+    name: String,
+    settings: Vec<Setting>,
+    cases: Vec<Case>,
+    times: Times,
 }
 
 /// The step that an FMU proposes, s, or a thousandth of the run.

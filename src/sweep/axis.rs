@@ -47,6 +47,11 @@ impl Axis {
         Ok(axis)
     }
 
+    /// The axis of a variable over these values.
+    pub fn of_list(variable: Variable, values: Vec<Value>, seed: u64) -> Self {
+        Self { stream: Stream::new(seed, &variable.name), values: Values::List(values), variable }
+    }
+
     /// The values of a list; none of a range.
     pub fn listed(&self) -> &[Value] {
         if let Values::List(values) = &self.values { values } else { &[] }

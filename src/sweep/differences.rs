@@ -73,7 +73,7 @@ fn typed(key: &str) -> String {
         "until" | "step" | "window" | "design" | "vary" | "points" | "samples" | "seed" | "common_seeds"
         | "seed_variable" => format!("--{}", key.replace('_', "-")),
         "videg" => "the version of videg".to_owned(),
-        "case" | "model" | "isolation" => format!("the {key}"),
+        "case" | "cases" | "model" | "isolation" => format!("the {key}"),
         "guid" => "the GUID of the model".to_owned(),
         "fmu" => "the SHA-256 of the FMU".to_owned(),
         "columns" => "the column".to_owned(),

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
+use super::cases;
 use super::column::Column;
 use super::times::Times;
 use super::{Design, Vary};
@@ -31,6 +32,9 @@ pub(super) struct Document<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isolation: Option<Limits>,
     pub settings: Vec<Setting>,
+    /// What the cases of the axis `case` set besides.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<cases::Documented<'a>>,
     #[serde(flatten)]
     pub times: Times,
     pub design: Design,

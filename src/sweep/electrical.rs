@@ -38,7 +38,7 @@ pub fn is_electrical(variable: &Variable) -> bool {
     POWERS.contains(&name) || names.any(|known| known == name)
 }
 
-/// Outputs of the circuit alone: the harvester has inputs of the names of the others.
-pub(super) fn outputs() -> impl Iterator<Item = &'static str> {
+/// Outputs of the circuit alone: the names of the others are those of inputs of the harvester.
+fn outputs() -> impl Iterator<Item = &'static str> {
     CircuitSample::NAMES.into_iter().filter(|name| !matches!(*name, "left.voltage" | "right.voltage"))
 }

@@ -9,7 +9,7 @@ use super::system::System;
 use super::times::Driven;
 use super::{Sweep, SweepError};
 use crate::cosim::Gains;
-use fmu_import::{FmiError, Fmu, Status, Value};
+use fmu_import::{FmiError, Fmu, Status, Value, Variable};
 
 /// Computes runs.
 pub enum Engine {
@@ -24,8 +24,6 @@ pub enum Engine {
 /// The model with the settings that all runs share.
 pub struct BuiltIn {
     parameters: Parameters,
-    /// How the varied parameters are set, in their order, and the seed.
-    setters: Vec<Setter>,
 }
 
 impl Engine {
@@ -50,10 +48,10 @@ impl Engine {
         }
         match self {
             Self::BuiltIn(built_in) => {
-                Ok(simulate(sweep, &built_in.parameters(run)).map_err(|error| error.to_string()))
+                Ok(simulate(sweep, &built_in.parameters(sweep, run)).map_err(|error| error.to_string()))
             }
             Self::System(system) => Ok(system.run(sweep, run)),
-            Self::Fmu(fmu) => match run_fmu(fmu, sweep, run) {
+            Self::Fmu(fmu) => match run_fmu(fmu, sweep, run, &sweep.record) {
                 Ok(results) => Ok(Ok(results)),
                 Err(error) if is_final(&error, fmu) => Err(error.into()),
                 Err(error) => Ok(Err(error.to_string())),
@@ -78,31 +76,31 @@ fn is_final(error: &FmiError, fmu: &Fmu) -> bool {
 impl BuiltIn {
     /// The model, if all that `sweep` sets are parameters and it records nothing.
     pub fn new(sweep: &Sweep) -> Option<Self> {
-        let settings = sweep.settings.iter().map(|(variable, _)| variable);
-        let varied = sweep.points.axes().iter().map(|axis| &axis.variable);
-        let varied = varied.chain(sweep.seeds.as_ref().map(|seeds| &seeds.variable));
-        let [set, setters] = [settings.map(Setter::of).collect(), varied.map(Setter::of).collect::<Option<Vec<_>>>()];
-        let (set, setters) = set.zip(setters).filter(|_| sweep.record.is_empty())?;
+        let is_built_in = sweep.record.is_empty() && sweep.variables().all(|variable| Setter::of(variable).is_some());
         let mut parameters = Parameters::default();
-        for (setter, (_, value)) in set.iter().zip(&sweep.settings) {
-            setter.set(&mut parameters, value);
-        }
-        Some(Self { parameters, setters })
+        set(&mut parameters, sweep.settings.iter().map(|(variable, value)| (variable, value)));
+        is_built_in.then_some(Self { parameters })
     }
 
     /// The parameters of run number `number` of its `sweep`.
     pub(crate) fn parameters_of(&self, sweep: &Sweep, number: u64) -> Parameters {
-        self.parameters(&sweep.run(number))
+        self.parameters(sweep, &sweep.run(number))
     }
 
     /// The parameters of `run`.
-    fn parameters(&self, run: &Run) -> Parameters {
+    fn parameters(&self, sweep: &Sweep, run: &Run) -> Parameters {
         let mut parameters = self.parameters;
-        let seed = run.seed.map(Value::Integer);
-        for (setter, value) in self.setters.iter().zip(run.values.iter().chain(&seed)) {
-            setter.set(&mut parameters, value);
-        }
+        set(&mut parameters, sweep.assigned(run));
         parameters
+    }
+}
+
+/// Sets those of `values` that are parameters.
+fn set<'a>(parameters: &mut Parameters, values: impl Iterator<Item = (&'a Variable, &'a Value)>) {
+    for (variable, value) in values {
+        if let Some(setter) = Setter::of(variable) {
+            setter.set(parameters, value);
+        }
     }
 }
 

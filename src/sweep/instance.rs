@@ -7,15 +7,12 @@ use super::plan::{GAINS, Results, Run};
 use super::times::Driven;
 use crate::cosim::Gains;
 
-/// Runs an instance. What a sweep of harvester and circuit has of the circuit is left out.
-pub(super) fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, FmiError> {
+/// Runs an instance and reads `record` at its end. What a sweep of harvester and circuit sets in the circuit is left out.
+pub(super) fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run, record: &[Variable]) -> Result<Results, FmiError> {
     let mut instance = fmu.instantiate("sweep", Logging::default())?;
-    let seed = run.seed.map(Value::Integer);
     let settings = sweep.settings.iter().map(|(variable, value)| (variable, value));
-    let point = sweep.points.axes().iter().map(|axis| &axis.variable).zip(&run.values);
-    let seed = sweep.seeds.iter().map(|seeds| &seeds.variable).zip(&seed);
     let is_there = |variable: &Variable| fmu.description().variable(&variable.name).is_ok();
-    let choices: Vec<_> = settings.chain(point).chain(seed).filter(|(variable, _)| is_there(variable)).collect();
+    let choices: Vec<_> = settings.chain(sweep.assigned(run)).filter(|(variable, _)| is_there(variable)).collect();
     instance.begin_initialization(
         0.0,
         None,
@@ -25,13 +22,9 @@ pub(super) fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run) -> Result<Results, Fm
     )?;
     instance.exit_initialization_mode()?;
     let mut slave = Slave { instance, has_gains: sweep.averages };
-    let end = if sweep.record.is_empty() { sweep.times.window[1] } else { sweep.times.until };
+    let end = if record.is_empty() { sweep.times.window[1] } else { sweep.times.until };
     let averages = sweep.times.drive(&mut slave, end)?;
-    let recorded = sweep
-        .record
-        .iter()
-        .filter(|variable| is_there(variable))
-        .map(|variable| slave.instance.get_by_name(&variable.name));
+    let recorded = record.iter().map(|variable| slave.instance.get_by_name(&variable.name));
     let results =
         Results { averages: averages.filter(|_| sweep.averages), recorded: recorded.collect::<Result<_, _>>()? };
     slave.instance.terminate()?;

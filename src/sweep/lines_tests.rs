@@ -49,6 +49,7 @@ fn sweep(description: &ModelDescription, values: &[&str]) -> Result<Sweep, Sweep
         fmu: None,
         isolation: None,
         settings: Vec::new(),
+        cases: Vec::new(),
         times: Times { until: 1.0, step: None, window: [0.0, 1.0] },
         vary,
         sampling: Sampling::default(),

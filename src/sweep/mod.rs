@@ -7,6 +7,7 @@
 //! files.
 
 mod axis;
+mod cases;
 mod column;
 mod differences;
 mod document;
@@ -30,6 +31,7 @@ mod run;
 mod sampling;
 mod seeds;
 mod setter;
+mod setting;
 mod shard;
 mod sums;
 mod system;
@@ -38,6 +40,7 @@ mod times;
 mod unfinished;
 mod vary;
 
+pub use cases::{AXIS as CASE_AXIS, Case};
 pub use column::{Column, Type};
 pub use electrical::{POWERS, is_electrical};
 pub use engine::{BuiltIn, Engine};

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 use super::axis::Axis;
+use super::cases::{Case, Cases};
 use super::column::{self, Column, Type};
 use super::document::Document;
 use super::electrical::is_electrical;
@@ -11,6 +12,7 @@ use super::lines::LONGEST;
 use super::named_files::NamedFiles;
 use super::points::{MAX_RUNS, Points};
 use super::seeds::{self, Seeds};
+use super::setting::{as_setting, last_of_each, not_varied, typed};
 use super::times::Times;
 use super::{Sampling, SweepError, Vary};
 use crate::cosim::Averages;
@@ -32,6 +34,8 @@ pub struct Request<'a> {
     pub isolation: Option<Bounds>,
     /// Variables that are the same in all runs; the last of a name wins.
     pub settings: Vec<Setting>,
+    /// Cases to vary over, in the order of the values of the axis `case`; none without it.
+    pub cases: Vec<Case>,
     /// Times of a run.
     pub times: Times,
     /// Variables that are not; the last of a name wins.
@@ -48,7 +52,10 @@ impl Request<'_> {
     /// Where `value` of `option` was said, or a value of the variable of that name.
     fn origin(&self, option: &str, value: &str) -> Origin {
         let said = match option {
-            "set" => self.settings.iter().rfind(|setting| setting.name == value).map(|setting| &setting.origin),
+            "set" => {
+                let mut all = self.cases.iter().flat_map(|case| &case.settings).chain(&self.settings);
+                all.rfind(|setting| setting.name == value).map(|setting| &setting.origin)
+            }
             "vary" => self.vary.iter().rfind(|vary| vary.name == value).map(|vary| &vary.origin),
             _ => {
                 let file = self.in_file.iter().find(|(name, _)| *name == option);
@@ -64,6 +71,7 @@ pub struct Sweep {
     name: String,
     /// Variables that are the same in all runs.
     pub(super) settings: Vec<(Variable, Value)>,
+    cases: Cases,
     /// Files among the values.
     pub(super) files: NamedFiles,
     /// Times of a run.
@@ -84,8 +92,9 @@ pub(super) struct Run {
     pub number: u64,
     pub point: u64,
     pub sample: u64,
+    /// By axis.
     pub values: Vec<Value>,
-    pub seed: Option<i32>,
+    pub seed: Option<Value>,
 }
 
 /// Results of one run.
@@ -108,11 +117,18 @@ impl Sweep {
         let Request { description, ref sampling, .. } = *request;
         let (design, samples, seed) = (sampling.design(), sampling.samples(), sampling.seed());
         let vary = last_of_each(&request.vary, |vary| &vary.name);
-        let settings = settings(request, &vary)?;
-        let axes = vary.iter().map(|vary| Axis::new(description, vary, design, seed)).collect::<Result<Vec<_>, _>>()?;
+        let (cases, shared) = Cases::new(description, &request.cases, &vary)?;
+        let settings = not_varied(&[&shared[..], &request.settings].concat(), &vary);
+        let settings =
+            settings.iter().map(|setting| typed(description, setting)).collect::<Result<Vec<_>, SweepError>>()?;
+        let axis = |vary: &Vary| {
+            if cases.is_axis(vary) { Ok(cases.axis(seed)) } else { Axis::new(description, vary, design, seed) }
+        };
+        let axes = vary.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
         let points = Points::new(design, axes, sampling.points)?;
         let set = settings.iter().map(|(variable, value)| (variable.name.as_str(), Some(value)));
-        let given: Vec<_> = set.chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
+        let of_cases = cases.values().map(|(variable, value)| (variable.name.as_str(), Some(value)));
+        let given: Vec<_> = set.chain(of_cases).chain(vary.iter().map(|vary| (vary.name.as_str(), None))).collect();
         let seeds = Seeds::new(description, sampling, &given)?;
         let runs = count_runs(&points, samples, seeds.as_ref())?;
         let record = request.record.iter().map(|name| {
@@ -134,7 +150,8 @@ impl Sweep {
             guid: &description.guid,
             fmu: request.fmu.as_deref(),
             isolation: request.isolation.map(Into::into),
-            settings: settings.iter().map(as_setting).collect(),
+            settings: settings.iter().map(|(variable, value)| as_setting((variable, value))).collect(),
+            cases: cases.documented(),
             times: request.times,
             design,
             vary: &vary,
@@ -148,8 +165,9 @@ impl Sweep {
             sha256: None,
         };
         let (document, name, times) = (document.sealed(), request.name.clone(), request.times);
-        let files = NamedFiles::of(&request.settings, &vary);
-        Ok(Self { name, settings, files, times, points, samples, seeds, record, averages, columns, document })
+        let of_cases = request.cases.iter().flat_map(|case| &case.settings);
+        let files = NamedFiles::of(of_cases.chain(&request.settings), &vary)?;
+        Ok(Self { name, settings, cases, files, times, points, samples, seeds, record, averages, columns, document })
     }
 
     /// How it is called.
@@ -159,9 +177,7 @@ impl Sweep {
 
     /// Whether runs need a circuit: a variable of it, or a power, is set, varied or recorded.
     pub fn is_coupled(&self) -> bool {
-        let set = self.settings.iter().map(|(variable, _)| variable);
-        let varied = self.points.axes().iter().map(|axis| &axis.variable);
-        set.chain(varied).chain(&self.record).any(is_electrical)
+        self.variables().chain(&self.record).any(is_electrical)
     }
 
     /// Number of points.
@@ -194,15 +210,42 @@ impl Sweep {
     pub fn given(&self, number: u64) -> Vec<(&str, Value)> {
         let Run { values, seed, .. } = self.run(number);
         let varied = self.points.axes().iter().map(|axis| axis.variable.name.as_str()).zip(values);
-        let seed = self.seeds.as_ref().map(|seeds| seeds.variable.name.as_str()).zip(seed.map(Value::Integer));
+        let seed = self.seeds.as_ref().map(|seeds| seeds.variable.name.as_str()).zip(seed);
         varied.chain(seed).collect()
     }
 
     /// Inputs of run number `number`.
     pub(super) fn run(&self, number: u64) -> Run {
         let (point, sample) = (number / self.samples, number % self.samples);
-        let seed = self.seeds.as_ref().map(|seeds| seeds.of(point, sample));
+        let seed = self.seeds.as_ref().map(|seeds| Value::Integer(seeds.of(point, sample)));
         Run { number, point, sample, values: self.points.values(point), seed }
+    }
+
+    /// The axes but for that of the cases, each with its place.
+    fn varied(&self) -> impl Iterator<Item = (usize, &Axis)> {
+        self.points.axes().iter().enumerate().filter(|(_, axis)| !self.cases.are_of(axis))
+    }
+
+    /// Variables that the runs set.
+    pub(super) fn variables(&self) -> impl Iterator<Item = &Variable> {
+        let set = self.settings.iter().map(|(variable, _)| variable);
+        let of_cases = self.cases.values().map(|(variable, _)| variable);
+        let varied = self.varied().map(|(_, axis)| &axis.variable);
+        set.chain(of_cases).chain(varied).chain(self.seeds.iter().map(|seeds| &seeds.variable))
+    }
+
+    /// Variables and values that the user wrote down one by one.
+    pub(super) fn written(&self) -> impl Iterator<Item = (&Variable, &Value)> {
+        let set = self.settings.iter().chain(self.cases.values()).map(|(variable, value)| (variable, value));
+        set.chain(self.varied().flat_map(|(_, axis)| axis.listed().iter().map(|value| (&axis.variable, value))))
+    }
+
+    /// What `run` sets on top of the settings of all runs.
+    pub(super) fn assigned<'a>(&'a self, run: &'a Run) -> impl Iterator<Item = (&'a Variable, &'a Value)> {
+        let of_case = self.cases.settings(self.points.axes(), &run.values).iter();
+        let varied = self.varied().map(|(place, axis)| (&axis.variable, &run.values[place]));
+        let seed = self.seeds.iter().map(|seeds| &seeds.variable).zip(&run.seed);
+        of_case.map(|(variable, value)| (variable, value)).chain(varied).chain(seed)
     }
 
     /// The first value of `run` that is out of its bounds.
@@ -224,7 +267,7 @@ impl Sweep {
     fn any_line(&self, run: &Run, outcome: &Result<Results, String>) -> Vec<u8> {
         let mut cells: Vec<String> = [run.number, run.point, run.sample].map(|number| number.to_string()).into();
         cells.extend(run.values.iter().map(column::cell));
-        cells.extend(run.seed.map(|seed| seed.to_string()));
+        cells.extend(run.seed.iter().map(column::cell));
         if let Ok(Results { averages, recorded }) = outcome {
             cells.extend(averages.iter().flat_map(|averages| {
                 let Averages { voltage_gain, power, impacts } = averages;
@@ -236,43 +279,6 @@ impl Sweep {
         cells.push(outcome.as_ref().err().map_or_else(String::new, |reason| column::reason(reason)));
         column::line(cells.iter().map(String::as_str))
     }
-}
-
-/// Items without those whose name comes again: the last one stands, in the place of the first.
-fn last_of_each<T: Clone>(items: &[T], name: impl Fn(&T) -> &str) -> Vec<T> {
-    let mut kept: Vec<T> = Vec::new();
-    for item in items {
-        match kept.iter_mut().find(|other| name(other) == name(item)) {
-            Some(other) => *other = item.clone(),
-            None => kept.push(item.clone()),
-        }
-    }
-    kept
-}
-
-/// Values that are the same in all runs.
-fn settings(request: &Request<'_>, vary: &[Vary]) -> Result<Vec<(Variable, Value)>, SweepError> {
-    let settings = last_of_each(&request.settings, |setting| &setting.name);
-    let is_varied = |setting: &&Setting| vary.iter().any(|vary| vary.name == setting.name);
-    settings.iter().filter(|setting| !is_varied(setting)).map(|setting| typed(request.description, setting)).collect()
-}
-
-fn typed(description: &ModelDescription, setting: &Setting) -> Result<(Variable, Value), SweepError> {
-    let bad = |reason: String| SweepError::option("set", &setting.name, reason);
-    let variable = description.variable(&setting.name).map_err(|error| bad(error.to_string()))?;
-    if !variable.is_settable() {
-        let causality = variable.causality.as_str();
-        let article = if causality.starts_with(['i', 'o']) { "an" } else { "a" };
-        return Err(bad(format!("it is {article} {causality}, which cannot be set")));
-    }
-    let value = Value::parse(description, variable, &setting.value).map_err(|error| bad(error.to_string()))?;
-    Ok((variable.clone(), value))
-}
-
-/// As in the document: one value has one text, however it was written.
-fn as_setting((variable, value): &(Variable, Value)) -> Setting {
-    let text = if let Value::String(text) = value { text.clone() } else { column::cell(value) };
-    Setting::new(&variable.name, text)
 }
 
 /// That the heading can be read again, and the line of any run whose results do not get into it.

@@ -24,7 +24,7 @@ pub(super) struct Seeds {
 
 impl Seeds {
     /// Seeds, if there are several samples, if the variable is named, or if there is noise whose seed nobody set. `given`
-    /// are the variables that have a value of the user's, and that value if it is the same in all runs.
+    /// are the variables that have a value of the user's, and that value unless it is varied.
     pub fn new(
         description: &ModelDescription,
         sampling: &Sampling,
@@ -32,8 +32,7 @@ impl Seeds {
     ) -> Result<Option<Self>, SweepError> {
         let (asked, samples) = (sampling.seed_variable.as_deref(), sampling.samples());
         let name = asked.unwrap_or(SEED_VARIABLE);
-        let noise = given.iter().rfind(|(given, _)| *given == NOISE);
-        let is_noisy = noise.is_some_and(|(_, value)| *value != Some(&Value::Real(0.0)));
+        let is_noisy = given.iter().any(|(given, value)| *given == NOISE && *value != Some(&Value::Real(0.0)));
         let must = samples > 1 || asked.is_some();
         let given = given.iter().find(|(given, _)| *given == name);
         if !must && (given.is_some() || !is_noisy) {

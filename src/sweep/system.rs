@@ -8,7 +8,7 @@ use fmu_import::{Fmu, Value, Variable};
 use videg_circuit::{Release, Settings, formulas, names};
 use videg_model::{Event, ForceTable, Harvester, Parameters, Recording, Setup};
 
-use super::electrical::{POWERS, outputs};
+use super::electrical::POWERS;
 use super::instance::run_fmu;
 use super::plan::{Results, Run};
 use super::setter::Setter;
@@ -37,12 +37,10 @@ enum Recorded {
 /// Runs of harvester and circuit.
 pub struct System {
     base: Inputs,
-    /// How the varied variables are set, in their order, and the seed.
-    setters: Vec<SystemSetter>,
     record: Vec<Recorded>,
     files: Files,
-    /// For recorded variables of the harvester.
-    harvester: Option<Fmu>,
+    /// The FMU and the recorded variables that it has, if there are any.
+    harvester: Option<(Fmu, Vec<Variable>)>,
 }
 
 /// What a run is made from.
@@ -70,13 +68,10 @@ impl System {
     /// # Errors
     /// A file that is none; a variable that cannot be set; the error of `harvester`.
     pub fn new<E: From<SweepError>>(sweep: &Sweep, harvester: impl FnOnce() -> Result<Fmu, E>) -> Result<Self, E> {
-        let setter = |variable: &Variable| {
-            let reason = "a sweep with a circuit cannot set it".to_owned();
-            SystemSetter::of(variable).ok_or_else(|| SweepError::option("set", &variable.name, reason))
-        };
-        let varied = sweep.points.axes().iter().map(|axis| &axis.variable);
-        let varied = varied.chain(sweep.seeds.as_ref().map(|seeds| &seeds.variable));
-        let setters: Vec<_> = varied.map(setter).collect::<Result<_, _>>()?;
+        if let Some(variable) = sweep.variables().find(|variable| SystemSetter::of(variable).is_none()) {
+            let reason = "a sweep with a circuit cannot set it";
+            return Err(SweepError::option("set", &variable.name, reason).into());
+        }
         let mut files = Files::default();
         let mut base = Inputs {
             parameters: Parameters::default(),
@@ -85,30 +80,22 @@ impl System {
             recording: None,
             table: None,
         };
-        for (variable, value) in &sweep.settings {
-            let setter = setter(variable)?;
-            files.read(setter, sweep, value)?;
-            base.set(setter, value, &files);
-        }
-        for (axis, setter) in sweep.points.axes().iter().zip(&setters) {
-            axis.listed().iter().try_for_each(|value| files.read(*setter, sweep, value))?;
-        }
+        sweep.written().try_for_each(|(variable, value)| files.read(variable, sweep, value))?;
+        base.set(sweep.settings.iter().map(|(variable, value)| (variable, value)), &files);
         let record: Vec<_> = sweep.record.iter().map(Recorded::of).collect();
-        let asks = record.iter().any(|it| matches!(it, Recorded::Mechanical));
-        let harvester = if asks { Some(harvester()?) } else { None };
-        Ok(Self { base, setters, record, files, harvester })
+        let mechanical = record.iter().zip(&sweep.record).filter(|(it, _)| matches!(it, Recorded::Mechanical));
+        let mechanical: Vec<_> = mechanical.map(|(_, variable)| variable.clone()).collect();
+        let harvester = if mechanical.is_empty() { None } else { Some((harvester()?, mechanical)) };
+        Ok(Self { base, record, files, harvester })
     }
 
     /// Outcome of `run`; an error says why it failed.
     pub(super) fn run(&self, sweep: &Sweep, run: &Run) -> Result<Results, String> {
         let mut inputs = self.base.clone();
-        let seed = run.seed.map(Value::Integer);
-        for (setter, value) in self.setters.iter().zip(run.values.iter().chain(&seed)) {
-            inputs.set(*setter, value, &self.files);
-        }
+        inputs.set(sweep.assigned(run), &self.files);
         let times = Times { until: sweep.times.window[1], window: sweep.times.window, tolerance: TOLERANCE };
         let outcome = inputs.run(&times).map_err(|error| error.to_string())?;
-        let mechanical = self.harvester.as_ref().map(|fmu| run_fmu(fmu, sweep, run));
+        let mechanical = self.harvester.as_ref().map(|(fmu, record)| run_fmu(fmu, sweep, run, record));
         let mut mechanical =
             mechanical.transpose().map_err(|error| error.to_string())?.map(|results| results.recorded.into_iter());
         let columns = outcome.circuit.columns();
@@ -145,28 +132,28 @@ impl Recorded {
         if let Some(index) = POWERS.iter().position(|power| *power == name) {
             return Self::Power(index);
         }
-        let is_output = outputs().any(|output| output == name);
-        let index = CircuitSample::NAMES.iter().position(|output| *output == name).filter(|_| is_output);
+        // Beside a circuit, the voltages that the harvester takes are those that the circuit gives.
+        let index = CircuitSample::NAMES.iter().position(|output| *output == name);
         index.map_or(Self::Mechanical, Self::Circuit)
     }
 }
 
 impl Files {
     /// Reads the file called `value`, if that is one.
-    fn read(&mut self, setter: SystemSetter, sweep: &Sweep, value: &Value) -> Result<(), SweepError> {
+    fn read(&mut self, variable: &Variable, sweep: &Sweep, value: &Value) -> Result<(), SweepError> {
         let (Value::String(name), Value::String(path)) = (value, &*sweep.files.for_fmu(value)) else { return Ok(()) };
         if name.is_empty() {
             return Ok(());
         }
         let path = Path::new(path);
         let bad = |option: &'static str, reason: String| SweepError::option("set", option, reason);
-        match setter {
-            SystemSetter::Recording => {
+        match SystemSetter::of(variable) {
+            Some(SystemSetter::Recording) => {
                 let recording = videg_data::recording::read(path);
                 let recording = recording.map_err(|error| bad("excitation.file", format!("{name}: {error}")))?;
                 self.recordings.insert(name.clone(), Arc::new(recording));
             }
-            SystemSetter::Table => {
+            Some(SystemSetter::Table) => {
                 let table = videg_data::membrane::read(path);
                 let table = table.map_err(|error| bad("membrane.file", format!("{name}: {error}")))?;
                 self.tables.insert(name.clone(), Arc::new(table));
@@ -178,21 +165,26 @@ impl Files {
 }
 
 impl Inputs {
-    /// Sets a value of the variable's type.
-    fn set(&mut self, setter: SystemSetter, value: &Value, files: &Files) {
-        match (setter, value) {
-            (SystemSetter::Mechanical(setter), value) => setter.set(&mut self.parameters, value),
-            (SystemSetter::Quantity(name, set), Value::Real(number)) => {
-                set(&mut self.circuit, *number);
-                self.given.push(name);
+    /// Sets values of the variables' types.
+    fn set<'a>(&mut self, values: impl Iterator<Item = (&'a Variable, &'a Value)>, files: &Files) {
+        for (variable, value) in values {
+            match (SystemSetter::of(variable), value) {
+                (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.parameters, value),
+                (Some(SystemSetter::Quantity(name, set)), Value::Real(number)) => {
+                    set(&mut self.circuit, *number);
+                    self.given.push(name);
+                }
+                (
+                    Some(SystemSetter::Choice(set)),
+                    Value::Integer(number) | Value::Enumeration { value: number, .. },
+                ) => set(&mut self.circuit, *number),
+                (Some(SystemSetter::Recording), Value::String(name)) => {
+                    self.recording = files.recordings.get(name).cloned();
+                }
+                (Some(SystemSetter::Table), Value::String(name)) => self.table = files.tables.get(name).cloned(),
+                // `System::new` has refused others, and no value of a variable is of another type than the variable.
+                _ => debug_assert!(false, "{} = {value} of type {}", variable.name, value.type_name()),
             }
-            (SystemSetter::Choice(set), Value::Integer(number) | Value::Enumeration { value: number, .. }) => {
-                set(&mut self.circuit, *number);
-            }
-            (SystemSetter::Recording, Value::String(name)) => self.recording = files.recordings.get(name).cloned(),
-            (SystemSetter::Table, Value::String(name)) => self.table = files.tables.get(name).cloned(),
-            // No value of a variable is of another type than the variable.
-            _ => debug_assert!(false, "{value} is of type {}", value.type_name()),
         }
     }
 

@@ -21,6 +21,12 @@ SWEEP = [
 ]
 """What is swept: 1600 runs, a few seconds of one core, so that there is time to kill one that is half done."""
 
+COUPLED = [
+    *("--vary", "case=fig10,fig14,table3-2hz", "--vary", "zener.voltage=2200:2700:6", "--set", "topology=isolated"),
+    *("--set", "excitation.phaseNoise=0.5", "--set", "excitation.noiseHold=1e-3", "--samples", "2", "--until", "4"),
+]
+"""A sweep of harvester and circuit over cases, of 36 runs."""
+
 RESULTS = ["sweep.csv", "sweep.parquet", "sweep.json"]
 
 
@@ -86,6 +92,14 @@ def undivided(tmp_path_factory) -> Path:
     """The folder of the sweep that one process runs."""
     folder = tmp_path_factory.mktemp("undivided")
     subprocess.run([VIDEG, "sweep", *SWEEP, "--output", folder], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def undivided_coupled(tmp_path_factory) -> Path:
+    """The same of the sweep of harvester and circuit."""
+    folder = tmp_path_factory.mktemp("undivided-coupled")
+    subprocess.run([VIDEG, "sweep", *COUPLED, "--output", folder], check=True, stdout=subprocess.DEVNULL)
     return folder
 
 

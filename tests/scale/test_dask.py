@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from conftest import SWEEP, VIDEG, end, same_bytes, wait_for
+from conftest import COUPLED, SWEEP, VIDEG, end, same_bytes, wait_for
 
 SCRIPT = "dask/sweep.py"
 
@@ -19,6 +19,13 @@ def test_shards_on_workers_are_the_undivided_sweep(run, undivided, tmp_path):
     assert same_bytes(tmp_path, undivided)
     result = json.loads(ended.stdout)
     assert (result["shards"], result["workers"], result["runs"], result["failed"]) == (7, 2, 1600, 0)
+
+
+def test_shards_of_harvester_and_circuit_are_the_undivided_sweep(run, undivided_coupled, tmp_path):
+    ended = run(SCRIPT, "--output", tmp_path, "--workers", 2, "--shards", 5, "--", *COUPLED)
+    assert ended.returncode == 0, ended.stderr
+    assert same_bytes(tmp_path, undivided_coupled)
+    assert json.loads(ended.stdout)["runs"] == 36
 
 
 def test_tasks_are_as_long_as_the_measured_rate_says(run, undivided, tmp_path):

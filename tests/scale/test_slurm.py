@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import harness
-from conftest import SWEEP, VIDEG, same_bytes, wait_for
+from conftest import COUPLED, SWEEP, VIDEG, same_bytes, wait_for
 
 SUBMIT = "slurm/submit.sh"
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
@@ -62,6 +62,13 @@ def test_an_array_is_the_undivided_sweep(run, cluster, undivided, tmp_path):
     assert submitted.returncode == 0, submitted.stderr
     wait_for(lambda: finished(cluster, tmp_path))
     assert same_bytes(tmp_path, undivided), [log.read_text() for log in (tmp_path / "log").iterdir()]
+
+
+def test_an_array_of_harvester_and_circuit_is_the_undivided_sweep(run, cluster, undivided_coupled, tmp_path):
+    submitted = run(SUBMIT, "--shards", 3, "--output", tmp_path, "--videg", VIDEG, "--", *COUPLED, SLURM_CONF=cluster)
+    assert submitted.returncode == 0, submitted.stderr
+    wait_for(lambda: finished(cluster, tmp_path))
+    assert same_bytes(tmp_path, undivided_coupled), [log.read_text() for log in (tmp_path / "log").iterdir()]
 
 
 def test_a_task_that_failed_goes_on_when_it_is_submitted_again(run, cluster, undivided, tmp_path):

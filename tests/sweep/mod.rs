@@ -1,6 +1,7 @@
 //! `videg sweep` through the binary: the same bytes however a sweep is interrupted, divided or computed, and what it
 //! says to bad input.
 
+mod cases;
 mod checksums;
 mod coupled;
 mod request;
