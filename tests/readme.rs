@@ -94,7 +94,7 @@ fn three_findings(findings: &[Value], powers: &[[f64; 3]; 3], circuits: &[Circui
     };
     let stepping = 1e3 * findings.iter().find(is_stepping).unwrap()["videg"].as_f64().unwrap();
     let ([slow, fast, _], [slow_heavy, fast_heavy, _]) = (powers[0], powers[2]);
-    let surplus = |circuit: &Circuit| 1e3 * circuit.energy["surplus"].as_f64().unwrap();
+    let surplus = |circuit: &Circuit| 1e3 * circuit.result["energy"]["surplus"].as_f64().unwrap();
     let (loss, gain) = (-surplus(&circuits[0]), surplus(circuits.last().unwrap()));
     format!(
         "- **The power of Table 3 at 2 Hz is an artefact of the time step.** The ball rests on a membrane for a part of each cycle.\n  \
@@ -109,11 +109,11 @@ fn three_findings(findings: &[Value], powers: &[[f64; 3]; 3], circuits: &[Circui
     )
 }
 
-/// A circuit of the energy table.
+/// A circuit of the tables of power and energy.
 struct Circuit {
     label: String,
     load: &'static str,
-    energy: Value,
+    result: Value,
 }
 
 /// The best load at 2100 V in the map of `reproduce tuning`.
@@ -128,19 +128,32 @@ fn circuits() -> Vec<Circuit> {
     let circuit = |(circuit, load): (&Value, &'static str)| {
         let label = circuit.get("label").or(circuit.get("circuit")).unwrap().as_str().unwrap().to_owned();
         let load = if label.contains("storage") { "none" } else { load };
-        Circuit { label, load, energy: circuit["energy"].clone() }
+        Circuit { label, load, result: circuit.clone() }
     };
     all.map(circuit).collect()
+}
+
+/// What a user gains in each of the circuits.
+fn power_table(circuits: &[Circuit]) -> String {
+    let mut table = String::from(
+        "| circuit | load resistance | load power, uW | supply power, uW | **net power, uW** |\n|---|---|---|---|---|\n",
+    );
+    for Circuit { label, load, result } in circuits {
+        let [load_power, supply_power, net_power] =
+            ["load_power", "supply_power", "net_power"].map(|key| 1e6 * result[key].as_f64().unwrap());
+        writeln!(table, "| {label} | {load} | {load_power:.2} | {supply_power:.2} | **{net_power:.2}** |").unwrap();
+    }
+    table
 }
 
 fn energy_table(circuits: &[Circuit]) -> String {
     let mut table = String::from(
         "| circuit | load resistance | W, Eq. (13) | supply | Zener | load | converted | surplus |\n|---|---|---|---|---|---|---|---|\n",
     );
-    for Circuit { label, load, energy } in circuits {
+    for Circuit { label, load, result } in circuits {
         write!(table, "| {label} | {load}").unwrap();
         for key in ["eq13", "supply", "zener", "load", "converted", "surplus"] {
-            write!(table, " | {:.3}", 1e3 * energy[key].as_f64().unwrap()).unwrap();
+            write!(table, " | {:.3}", 1e3 * result["energy"][key].as_f64().unwrap()).unwrap();
         }
         table.push_str(" |\n");
     }
@@ -181,6 +194,7 @@ fn the_tables_are_what_the_commands_say() {
     // Table 2 and the powers of Table 3, without the emulated stepping.
     let quantities = ["<U>, Eq. (15)", "P, Eq. (14)"];
     let short: Vec<_> = findings.iter().filter(|it| quantities.contains(&text(it, "quantity"))).collect();
+    check("README.md", "power", &power_table(&circuits));
     check("README.md", "paper", &paper_table(&short));
     check("README.md", "findings", &three_findings(&findings, &powers, &circuits));
     check("docs/results/paper.md", "paper", &paper_table(&all));
