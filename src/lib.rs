@@ -32,6 +32,7 @@
 //! - [`paper`] reproduces every table and figure of the paper;
 //! - [`dynamics`] finds what the motion of a case is like for long: bifurcations, periodic orbits, basins;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
+//! - [`map`] maps the net power over two variables, with its best point and the limits of the film;
 //! - [`cli`] is the command-line tool.
 //!
 //! Beside it: [`videg_report`] draws figures and writes HTML reports, [`videg_input`] reads files that a user gives, [`videg_system`] has
@@ -52,6 +53,7 @@ pub mod coupled;
 pub mod crosscheck;
 pub mod dynamics;
 pub mod export;
+pub mod map;
 pub mod ngspice;
 pub mod package;
 pub mod paper;

@@ -29,11 +29,12 @@ const PACKAGES: [(&str, &[&str]); 12] = [
 const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 16] = [
+const DOWNWARDS: [&str; 17] = [
     "cli",
     "paper",
     "dynamics",
     "crosscheck",
+    "map",
     "sweep",
     "package",
     "simulate",

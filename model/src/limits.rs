@@ -129,20 +129,32 @@ impl Membrane {
     /// finding of Huang, Shian, Diebold, Suo and Clarke 2012, Applied Physics Letters 101, 122905. Tension is lost where
     /// the Maxwell stress eps E^2 is above the elastic one, sigma = L/2 dW/dL of a Gent or Ogden film, mu (L^2 - L^-4) else.
     pub fn excesses(&self, deflection: f64, voltage: f64, time: f64) -> impl Iterator<Item = Excess> {
+        // Each step asks: no power is taken where even the unstretched film stands the field.
+        let breakdown =
+            |stretch, field| if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY };
+        let above = self.bounded(deflection, voltage, breakdown).into_iter().filter(|(_, value, bound)| value > bound);
+        above.map(move |(limit, value, bound)| Excess { limit, value, bound, time })
+    }
+
+    /// How much of its limits a film takes at `deflection`, m, under `voltage`, V: area ratio, electric field, Maxwell stress, and
+    /// deflection of a measured membrane, each over its bound. Above 1 a limit is exceeded.
+    pub fn over_limits(&self, deflection: f64, voltage: f64) -> [f64; 4] {
+        self.bounded(deflection, voltage, |stretch, _| breakdown_field(stretch)).map(|(_, value, bound)| value / bound)
+    }
+
+    /// Each quantity that has a limit, and its bound; that of the field as `breakdown` says it for a stretch and a field, V/m.
+    fn bounded(&self, deflection: f64, voltage: f64, breakdown: impl Fn(f64, f64) -> f64) -> [(Limit, f64, f64); 4] {
         let (stretch, field) = (self.stretch(deflection), self.field(deflection, voltage).abs());
         let tension = match self.material() {
             Some(material) => (Limit::OwnTension, material.stress(stretch.ln())),
             None => (Limit::Tension, elastic_stress(stretch)),
         };
-        let exceeding = [
+        [
             (Limit::Area, self.area_ratio(deflection), (RUPTURE_STRETCH / self.prestretch).powi(2)),
-            // Each step asks: no power is taken where even the unstretched film stands the field.
-            (Limit::Field, field, if field > BREAKDOWN_UNSTRETCHED { breakdown_field(stretch) } else { f64::INFINITY }),
+            (Limit::Field, field, breakdown(stretch, field)),
             (tension.0, self.permittivity * field * field, tension.1),
             (Limit::Measured, deflection, self.table().map_or(f64::INFINITY, ForceTable::end)),
-        ];
-        let above = exceeding.into_iter().filter(|(_, value, bound)| value > bound);
-        above.map(move |(limit, value, bound)| Excess { limit, value, bound, time })
+        ]
     }
 }
 
@@ -239,6 +251,22 @@ mod tests {
         assert_eq!(exceeded(&membrane, 2.1e-3, 0.0), [Limit::Measured]);
         let text = membrane.excesses(2.5e-3, 0.0, 1.0).next().unwrap().to_string();
         assert!(text.starts_with("deflection 0.0025 m at 1.000000 s is above 0.002 m, the last point of"), "{text}");
+    }
+
+    #[test]
+    fn what_a_film_takes_of_its_limits_is_above_1_where_they_are_exceeded() {
+        let table = ForceTable::new(vec![0.0, 2e-3, 4e-3], vec![0.0, 0.1, 0.3], None).unwrap();
+        let measured = Parameters { membrane_law: MembraneLaw::Table, ..Parameters::default() };
+        let gent = Parameters { membrane_law: MembraneLaw::Gent, ..Parameters::default() };
+        for membrane in [Membrane::new(&gent), Membrane::new(measured.with_table(Some(&table)))] {
+            for (k, j) in (0..40).flat_map(|k| (0..40).map(move |j| (k, j))) {
+                let (deflection, voltage) = (5e-4 * f64::from(k), 1e3 * f64::from(j));
+                let above = membrane.over_limits(deflection, voltage).into_iter().filter(|share| *share > 1.0);
+                let excesses = membrane.excesses(deflection, voltage, 0.0);
+                let shares: Vec<f64> = excesses.map(|excess| excess.value / excess.bound).collect();
+                assert_eq!(above.collect::<Vec<_>>(), shares, "{deflection} m, {voltage} V");
+            }
+        }
     }
 
     #[test]

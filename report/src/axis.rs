@@ -149,6 +149,11 @@ impl Axis {
         &self.ticks
     }
 
+    /// Labelled ticks of a linear axis in data units.
+    pub(super) fn tick_values(&self) -> Vec<f64> {
+        self.ticks.iter().map(|tick| tick * 10_f64.powi(self.exponent)).collect()
+    }
+
     /// Finer lines in drawing units: 2 to 9 times each decade, where there are few of them.
     pub(super) fn light_ticks(&self) -> Vec<f64> {
         if !self.log || !(1.0..=6.0).contains(&(self.high - self.low)) {

@@ -43,6 +43,11 @@ fn check_panel(panel: &Panel) -> Result {
         return Err("a drawing to scale has no logarithmic axes".to_owned());
     }
     panel.map.iter().try_for_each(check_map)?;
+    let cells = panel.map.as_ref().map_or(0, |map| map.values.len());
+    if let Some(hatch) = panel.hatches.iter().find(|hatch| hatch.values.len() != cells || !hatch.above.is_finite()) {
+        let (label, values) = (&hatch.label, hatch.values.len());
+        return Err(format!("hatch `{label}`: {values} values above {} for a map of {cells} cells", hatch.above));
+    }
     check_limits(panel)?;
     check_logarithms(panel)
 }
@@ -145,6 +150,8 @@ mod tests {
             (panel().map(map(&[1.0], &[0.0, 1.0])), "1 is none of the 1 kinds"),
             (panel().map(map(&[1.0], &[0.5, 0.0])), "0.5 is none"),
             (panel().map(map(&[0.0], &[0.0, 0.0])).log_x(), "logarithmic x axis"),
+            (panel().hatched("slack", &[1.0], 0.5), "hatch `slack`: 1 values above 0.5 for a map of 0 cells"),
+            (panel().map(map(&[1.0], &[0.0; 2])).hatched("", &[1.0; 2], f64::NAN), "2 values above NaN for a map of 2"),
             (panel().band("range", &back, 0), "x of band `range`: 0.5 follows 1"),
             (panel().band("", &reversed, 0), "2 to 1 at x = 1"),
             (panel().bars(&reversed, 0), "2 to 1 at x = 1"),

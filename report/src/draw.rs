@@ -12,6 +12,7 @@ use plotters::style::text_anchor::HPos;
 use super::canvas::{Canvas, Chart, FINE_GRID, GRID, INK, failed, stroke, text, units, write};
 use super::cells::ramp_markup;
 use super::error::ReportError;
+use super::isolines;
 use super::labels::{draw_axis_labels, draw_bar_labels, draw_header};
 use super::layout::{PanelPlan, Plan};
 use super::marks::{clouds, draw_areas, draw_lines, draw_traces, draw_whiskers};
@@ -68,7 +69,7 @@ fn draw_ground(canvas: &Canvas, panel: &PanelPlan) -> Result<String, ReportError
     draw_mesh(&mut chart, panel)?;
     let place = |x, y| chart.backend_coord(&(panel.x.scaled(x), panel.y.scaled(y)));
     let Some(cells) = &panel.cells else { return Ok(String::new()) };
-    let markup = cells.markup((&panel.x, &panel.y), place);
+    let markup = cells.markup((&panel.x, &panel.y), place) + &isolines::markup(panel);
     let Some(ramp) = cells.ramp.filter(|_| panel.bar.is_some()) else { return Ok(markup) };
     let top = panel.top + panel.header;
     let (left, right) = (panel.frame.1 + BAR_GAP, panel.frame.1 + BAR_GAP + BAR_WIDTH);

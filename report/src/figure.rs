@@ -59,6 +59,8 @@ pub struct Panel<'a> {
     pub(super) bands: Vec<Band<'a>>,
     pub(super) bars: Vec<Bars<'a>>,
     pub(super) map: Option<HeatMap<'a>>,
+    pub(super) contours: bool,
+    pub(super) hatches: Vec<Hatch<'a>>,
     pub(super) log_x: bool,
     pub(super) log_y: bool,
     pub(super) equal_aspect: bool,
@@ -127,6 +129,18 @@ impl<'a> Panel<'a> {
         Self { map: Some(map), ..self }
     }
 
+    /// Draws labelled lines of equal value over the map of a quantity, at the ticks of its colour bar.
+    pub fn contours(self) -> Self {
+        Self { contours: true, ..self }
+    }
+
+    /// Hatches the part of the map where another quantity is above a bound: `values` has one of it for each cell, in their order. An empty
+    /// label keeps it out of the legend.
+    pub fn hatched(mut self, label: impl Into<String>, values: &'a [f64], above: f64) -> Self {
+        self.hatches.push(Hatch { label: label.into(), values, above });
+        self
+    }
+
     /// Makes the x axis logarithmic: values of 0 and below leave a gap.
     pub fn log_x(self) -> Self {
         Self { log_x: true, ..self }
@@ -150,6 +164,15 @@ pub(super) struct Band<'a> {
     /// x, lower and upper y, by ascending x.
     pub limits: &'a [(f64, f64, f64)],
     pub color: usize,
+}
+
+/// A part of a map.
+#[derive(Debug, Clone)]
+pub(super) struct Hatch<'a> {
+    pub label: String,
+    /// One a cell.
+    pub values: &'a [f64],
+    pub above: f64,
 }
 
 /// Vertical bars.
@@ -267,6 +290,8 @@ pub enum Style {
     Dots,
     /// A cross at each point.
     Crosses,
+    /// A large dot with a white edge at each point, which stands out from a map.
+    Pins,
     /// Straight dashed lines from point to point.
     Dashed,
 }
@@ -274,6 +299,6 @@ pub enum Style {
 impl Style {
     /// Whether the points stand for themselves, without a line that joins them.
     pub(super) fn is_marks(self) -> bool {
-        matches!(self, Self::Markers | Self::Dots | Self::Crosses)
+        matches!(self, Self::Markers | Self::Dots | Self::Crosses | Self::Pins)
     }
 }

@@ -1,16 +1,19 @@
 //! Words around the frames, on the canvas of the plotting library.
 
+use plotters::drawing::DrawingAreaErrorKind;
 use plotters::element::{Circle, Cross, DashedPathElement, PathElement, Rectangle};
 use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, FontStyle, FontTransform};
+use plotters::style::{Color, FontStyle, FontTransform, RGBColor};
 
 use super::canvas::{Canvas, INK, failed, ink, stroke, text, units, write};
 use super::error::ReportError;
 use super::layout::PanelPlan;
 use super::legend::Entry;
-use super::marks::{CROSS, DASH, MARKER, OPACITY};
+use super::marks::{CROSS, DASH, MARKER, OPACITY, PIN};
 use super::metrics::{BAR_GAP, BAR_WIDTH, EDGE, LABEL_ROW, LEGEND_GAP, LEGEND_KEY, ROW, TEXT_SIZE, X_LABEL_DROP};
 use super::trace::Shape;
+
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// Title and legend.
 pub(super) fn draw_header(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {
@@ -38,10 +41,27 @@ fn draw_key(canvas: &Canvas, entry: &Entry, middle: f64) -> Result<(), ReportErr
         Shape::Marker => canvas.draw(&Circle::new(center, units(MARKER + 0.6), color.filled())),
         Shape::Dot => canvas.draw(&Circle::new(center, units(1.3), color.filled())),
         Shape::Cross => canvas.draw(&Cross::new(center, units(CROSS + 0.4), stroke(color, 1.2))),
+        Shape::Pin => draw_pin(canvas, center, color),
+        Shape::Hatch => draw_hatch(canvas, area),
         Shape::Area => canvas.draw(&Rectangle::new(area, color.mix(OPACITY).filled())),
         Shape::Cell => canvas.draw(&Rectangle::new(cell, color.filled())),
     }
     .map_err(failed)
+}
+
+fn draw_pin(canvas: &Canvas, center: (i32, i32), color: RGBColor) -> Drawn {
+    canvas.draw(&Circle::new(center, units(PIN), color.filled()))?;
+    canvas.draw(&Circle::new(center, units(PIN), stroke(INK, 0.6)))
+}
+
+/// A box with slanting lines.
+fn draw_hatch(canvas: &Canvas, corners: [(i32, i32); 2]) -> Drawn {
+    let [(left, top), (right, bottom)] = corners;
+    let tall = bottom - top;
+    for x in (left..=right - tall).step_by(units(5.0).unsigned_abs() as usize) {
+        canvas.draw(&PathElement::new([(x, bottom), (x + tall, top)], stroke(INK, 0.8)))?;
+    }
+    canvas.draw(&Rectangle::new(corners, stroke(INK, 0.9)))
 }
 
 pub(super) fn draw_axis_labels(canvas: &Canvas, panel: &PanelPlan) -> Result<(), ReportError> {

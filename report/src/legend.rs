@@ -35,13 +35,14 @@ pub(super) fn legend<'f>(panel: &'f Panel<'f>, traces: &[Trace], (left, right): 
 fn entries<'f>(panel: &'f Panel<'f>, traces: &[Trace]) -> Vec<(&'f str, Key)> {
     let series = panel.series.iter().zip(traces).map(|(s, t)| (s.label.as_str(), t.key));
     let bands = panel.bands.iter().map(|band| (band.label.as_str(), Key::new(Shape::Area, band.color)));
+    let hatches = panel.hatches.iter().map(|hatch| (hatch.label.as_str(), Key::HATCH));
     let lines = panel.lines.iter().map(|line| (line.label.as_str(), Key::REFERENCE));
     let kinds = match panel.map.as_ref().map(|map| &map.scale) {
         Some(Scale::Kinds(names)) => names.as_slice(),
         _ => &[],
     };
     let kinds = kinds.iter().enumerate().map(|(index, name)| (name.as_str(), Key::new(Shape::Cell, index)));
-    series.chain(bands).chain(lines).chain(kinds).filter(|entry| !entry.0.is_empty()).collect()
+    series.chain(bands).chain(hatches).chain(lines).chain(kinds).filter(|entry| !entry.0.is_empty()).collect()
 }
 
 /// Words of a label in as few lines of at most `length` characters as possible.

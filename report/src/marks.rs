@@ -1,7 +1,7 @@
 //! Content of a frame, on the canvas of the plotting library.
 
 use plotters::element::{Circle, Cross, DashedPathElement, EmptyElement, PathElement, Polygon};
-use plotters::style::{Color, ShapeStyle};
+use plotters::style::{Color, ShapeStyle, WHITE};
 
 use super::canvas::{Chart, UNITS, failed, ink, stroke, units};
 use super::cells::dots_markup;
@@ -15,6 +15,7 @@ type Point = (f64, f64);
 /// Radii and lengths in px.
 pub(super) const MARKER: f64 = 1.8;
 pub(super) const CROSS: f64 = 2.2;
+pub(super) const PIN: f64 = 3.6;
 const DOT: f64 = 0.8;
 const CAP: f64 = 3.0;
 pub(super) const DASH: (f64, f64) = (5.0, 3.0);
@@ -58,13 +59,20 @@ pub(super) fn draw_traces(chart: &mut Chart, panel: &PanelPlan) -> Result<(), Re
 fn draw_part(chart: &mut Chart, points: Vec<Point>, key: Key) -> Result<(), ReportError> {
     let style = stroke(ink(key), 1.2);
     match (key.shape, &points[..]) {
-        (Shape::Dot | Shape::Area | Shape::Cell, _) => Ok(()),
+        (Shape::Dot | Shape::Area | Shape::Hatch | Shape::Cell, _) => Ok(()),
         (Shape::Marker, _) => {
             let dots = points.into_iter().map(|at| Circle::new(at, units(MARKER), style.filled()));
             chart.draw_series(dots).map(drop)
         }
         (Shape::Cross, _) => {
             chart.draw_series(points.into_iter().map(|at| Cross::new(at, units(CROSS), style))).map(drop)
+        }
+        (Shape::Pin, _) => {
+            let rings = [(PIN + 1.6, WHITE), (PIN, ink(key))];
+            rings.into_iter().try_for_each(|(radius, color)| {
+                let pins = points.iter().map(|at| Circle::new(*at, units(radius), color.filled()));
+                chart.draw_series(pins).map(drop)
+            })
         }
         // A value between two gaps is a dot, not an invisible line.
         (_, &[only]) => chart.draw_series([Circle::new(only, units(1.0), style.filled())]).map(drop),

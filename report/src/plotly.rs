@@ -59,10 +59,11 @@ fn panel_json(figure: &Figure, plan: &Plan, index: usize) -> Value {
 fn panel_traces(planned: &PanelPlan) -> Vec<Value> {
     let (panel, space) = (planned.panel, planned.space);
     let map = panel.map.iter().flat_map(map_traces);
+    let lines = panel.map.iter().flat_map(|map| line_traces(planned, map));
     let bands = panel.bands.iter().map(|band| band_trace(band, space));
     let series = panel.series.iter().map(|series| series_trace(series, space));
     let bars = panel.bars.iter().map(bars_trace);
-    map.chain(bands).chain(series).chain(bars).collect()
+    map.chain(lines).chain(bands).chain(series).chain(bars).collect()
 }
 
 /// The trace on the axes of a panel.
@@ -90,6 +91,10 @@ fn series_trace(series: &Series, space: Space) -> Value {
         Style::Dashed => ("lines", "line", json!({ "color": color, "width": 1.5, "dash": "dash" })),
         Style::Markers => ("markers", "marker", mark("circle", 5.0)),
         Style::Dots => ("markers", "marker", mark("circle", 2.0)),
+        Style::Pins => {
+            let edge = json!({ "color": "#fff", "width": 1.5 });
+            ("markers", "marker", json!({ "color": color, "symbol": "circle", "size": 10, "line": edge }))
+        }
         Style::Crosses => ("markers", "marker", mark("x", 6.0)),
     };
     trace["mode"] = mode.into();
@@ -161,7 +166,6 @@ fn bars_trace(bars: &Bars) -> Value {
 
 /// The map; of kinds, an entry of the legend for each.
 fn map_traces(map: &HeatMap) -> Vec<Value> {
-    let round = |values: &[f64], digits| -> Vec<Value> { values.iter().map(|&value| short(value, digits)).collect() };
     let rows: Vec<Vec<Value>> = map.values.chunks(map.xs.len().max(1)).map(|row| round(row, DIGITS.1)).collect();
     let mut trace = json!({
         "type": "heatmap", "x": round(map.xs, DIGITS.0), "y": round(map.ys, DIGITS.0), "z": rows, "hoverongaps": false,
@@ -196,6 +200,36 @@ fn map_traces(map: &HeatMap) -> Vec<Value> {
     }
     traces.insert(0, trace);
     traces
+}
+
+/// Contours at the ticks of the colour bar, and hatched parts of the map, which are shaded in a chart.
+fn line_traces(planned: &PanelPlan, map: &HeatMap) -> Vec<Value> {
+    let contour = |values: &[f64], contours: Value| {
+        let rows: Vec<Vec<Value>> = values.chunks(map.xs.len().max(1)).map(|row| round(row, DIGITS.1)).collect();
+        json!({
+            "type": "contour", "x": round(map.xs, DIGITS.0), "y": round(map.ys, DIGITS.0), "z": rows, "hoverinfo": "skip",
+            "contours": contours, "showscale": false, "showlegend": false, "line": { "color": "#222", "width": 1 },
+        })
+    };
+    let hatches = planned.panel.hatches.iter().map(|hatch| {
+        let mut trace = contour(hatch.values, json!({ "type": "constraint", "operation": ">", "value": hatch.above }));
+        (trace["name"], trace["showlegend"]) = (words(&hatch.label).into(), (!hatch.label.is_empty()).into());
+        trace["fillcolor"] = "rgba(34,34,34,0.3)".into();
+        trace
+    });
+    let bar = planned.bar.as_ref().filter(|_| planned.panel.contours);
+    let contours = bar.and_then(|bar| Some((bar.axis.tick_values().first().copied()?, bar.axis.tick_values())));
+    let contours = contours.map(|(first, ticks)| {
+        let step = ticks.get(1).map_or(1.0, |next| next - first);
+        let last = ticks.last().copied().unwrap_or(first);
+        let levels = json!({ "coloring": "none", "showlabels": true, "start": first, "end": last, "size": step });
+        contour(map.values, levels)
+    });
+    hatches.chain(contours).collect()
+}
+
+fn round(values: &[f64], digits: usize) -> Vec<Value> {
+    values.iter().map(|&value| short(value, digits)).collect()
 }
 
 /// A number with that many digits after the first; a gap becomes null.

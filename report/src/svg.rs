@@ -76,6 +76,7 @@ fn cleaned<'a>(figure: &Figure<'a>) -> Figure<'a> {
         panel.y_label = clean(&panel.y_label);
         panel.series.iter_mut().for_each(|series| series.label = clean(&series.label));
         panel.lines.iter_mut().for_each(|line| line.label = clean(&line.label));
+        panel.hatches.iter_mut().for_each(|hatch| hatch.label = clean(&hatch.label));
         panel.bands.iter_mut().for_each(|band| band.label = clean(&band.label));
         match panel.map.as_mut().map(|map| &mut map.scale) {
             Some(Scale::Quantity(label)) => *label = clean(label),

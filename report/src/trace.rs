@@ -35,12 +35,16 @@ pub(super) enum Shape {
     Marker,
     Dot,
     Cross,
+    Pin,
     Area,
+    Hatch,
     Cell,
 }
 
 impl Key {
     pub(super) const REFERENCE: Self = Self { shape: Shape::Dashes, color: None };
+
+    pub(super) const HATCH: Self = Self { shape: Shape::Hatch, color: None };
 
     pub(super) fn new(shape: Shape, color: usize) -> Self {
         Self { shape, color: Some(color) }
@@ -53,6 +57,7 @@ impl Key {
             Style::Markers => Shape::Marker,
             Style::Dots => Shape::Dot,
             Style::Crosses => Shape::Cross,
+            Style::Pins => Shape::Pin,
         };
         Self::new(shape, series.color.unwrap_or(0))
     }

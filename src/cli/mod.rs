@@ -20,6 +20,8 @@ mod fmu_check;
 mod format;
 mod interruption;
 mod isolation;
+mod map;
+mod map_report;
 mod message;
 mod options;
 mod output;
@@ -63,6 +65,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Run many simulations over parameters and seeds, on all cores; resumes interrupted sweeps, merges shards
     Sweep(Box<sweep::Arguments>),
+    /// Map the net power over two variables of harvester and circuit, with its best point and the limits of the film
+    Map(Box<map::Arguments>),
     /// Bifurcation diagram, Poincare section, Lyapunov exponent, periodic orbits and basins of attraction of any case
     Dynamics(dynamics::Arguments),
     /// Reproduce the tables and figures of the paper as data, pictures and one report
@@ -105,6 +109,7 @@ impl Verb {
             Self::Crosscheck(arguments) => crosscheck::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Sweep(arguments) => sweep::run(arguments, &interruption),
+            Self::Map(arguments) => map::run(arguments, &interruption),
             Self::Dynamics(arguments) => dynamics::run(arguments),
             Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
             Self::Export(arguments) => export::run(arguments),

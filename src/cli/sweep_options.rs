@@ -17,32 +17,32 @@ pub struct What {
     /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table;
     /// or several case files, over which the sweep goes
     #[arg(value_name = "FILE.toml")]
-    files: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
     /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
     /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
-    case: Option<String>,
+    pub case: Option<String>,
     /// Set a parameter or input of harvester or circuit in all runs; may be repeated
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
-    settings: Vec<String>,
+    pub settings: Vec<String>,
     /// Vary a parameter or input of harvester or circuit: name=from:to:count for a grid, name=from:to for the other designs, with log: before
     /// from for equal ratios; name=a,b,c for any type; case=fig14,my.toml for cases; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
-    vary: Vec<String>,
+    pub vary: Vec<String>,
     #[command(flatten)]
     pub sampling: Sampling,
     /// End of a run, s [default: 100]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    until: Option<f64>,
+    pub until: Option<f64>,
     /// Communication step, s [default: from edge to edge of the window; of other FMUs their own, or 1/1000 of the run]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    step: Option<f64>,
+    pub step: Option<f64>,
     /// Averaging window, s [default: 50,100, or the second half of a shorter run]
     #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
-    window: Option<Window>,
+    pub window: Option<Window>,
     /// Record a variable at the end of each run, or `net_power`, `load_power`, `supply_power` over the window; may be repeated
     #[arg(long, value_name = "VARIABLE")]
-    record: Vec<String>,
+    pub record: Vec<String>,
 }
 
 impl What {

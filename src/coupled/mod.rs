@@ -4,6 +4,9 @@
 //! The harvester goes from knot to knot of C(t): begins, peaks and ends of pulses. Between two knots the circuit gets C(t) as straight
 //! lines, as many as keep their distance from C(t) below a bound; at the knots C(t) is exact, and the circuit is exact on each line.
 
+mod film;
+mod impacts;
+
 use std::collections::HashMap;
 
 use thiserror::Error;
@@ -13,6 +16,8 @@ use videg_model::{
 };
 
 use crate::cosim::{Averages, CircuitSample, Gains, Powers};
+pub use film::{Film, OVER_LIMITS, Watch};
+pub use impacts::Impacts;
 
 /// Bound of the distance of the straight lines from C(t), over C(t), unless another is asked for.
 pub const TOLERANCE: f64 = 1e-3;
@@ -65,6 +70,19 @@ pub struct Results {
 /// # Errors
 /// Parameters that harvester or circuit refuse; electrostatic feedback; more events than can be resolved.
 pub fn run<'a>(setup: impl Into<Setup<'a>>, settings: &Settings, times: &Times) -> Result<Results, CoupledError> {
+    run_watched(setup, settings, times, &mut ())
+}
+
+/// The same, while `watch` looks at the films.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_watched<'a>(
+    setup: impl Into<Setup<'a>>,
+    settings: &Settings,
+    times: &Times,
+    watch: &mut impl Watch,
+) -> Result<Results, CoupledError> {
     let setup = setup.into();
     if setup.parameters.electrostatic_feedback {
         return Err(CoupledError::Feedback);
@@ -72,21 +90,28 @@ pub fn run<'a>(setup: impl Into<Setup<'a>>, settings: &Settings, times: &Times) 
     let harvester = Harvester::new(setup, 0.0)?;
     let circuit = Circuit::new(settings.parameters(), capacitance(&harvester))?;
     let pulses = SharedPulses::of(setup.parameters);
-    Coupled { harvester, circuit, pulses, tolerance: times.tolerance, samples: Vec::new(), lines: 0 }.run(times)
+    let tolerance = times.tolerance;
+    let (samples, deflections) = (Vec::new(), Vec::new());
+    Coupled { harvester, circuit, pulses, tolerance, samples, deflections, watch, lines: 0 }.run(times)
 }
 
-struct Coupled {
+struct Coupled<'w, W> {
     harvester: Harvester,
     circuit: Circuit,
     pulses: Option<SharedPulses>,
     tolerance: f64,
     /// C(t) of a piece, F.
     samples: Vec<[f64; 2]>,
+    /// Of the same, m, if they are watched.
+    deflections: Vec<[f64; 2]>,
+    watch: &'w mut W,
     lines: u64,
 }
 
-impl Coupled {
+impl<W: Watch> Coupled<'_, W> {
     fn run(mut self, times: &Times) -> Result<Results, CoupledError> {
+        self.watch.begin(self.harvester.membrane());
+        self.watch.look(deflections(&self.harvester), self.circuit.voltage());
         let [from, to] = times.window;
         let before = self.at(from)?;
         let after = self.at(to)?;
@@ -120,13 +145,21 @@ impl Coupled {
         let is_flat = SIDES.into_iter().all(|side| self.is_flat(side));
         let count = if is_flat { 1 } else { self.count(end)? };
         self.samples.clear();
-        self.samples.push(capacitance(&self.harvester));
+        self.deflections.clear();
+        self.sample();
         for k in 1..=count {
             let next = if k == count { end } else { start + (end - start) * (f64::from(k) / f64::from(count)) };
             self.harvester.advance(next)?;
-            self.samples.push(capacitance(&self.harvester));
+            self.sample();
         }
         self.give(end - start)
+    }
+
+    fn sample(&mut self) {
+        self.samples.push(capacitance(&self.harvester));
+        if W::LOOKS {
+            self.deflections.push(deflections(&self.harvester));
+        }
     }
 
     /// Whether the membrane at `side` is flat now, and stays so until the next knot.
@@ -144,7 +177,7 @@ impl Coupled {
     /// second difference, so that the lines lie as much above C(t) as below: the error of energies is of the fourth order then.
     /// Lines that the circuit can take as one are given as one.
     fn give(&mut self, length: f64) -> Result<(), CoupledError> {
-        let Self { circuit, samples, lines, .. } = self;
+        let Self { circuit, samples, deflections, watch, lines, .. } = self;
         let step = length / (samples.len() - 1) as f64;
         let mut before = samples[0];
         for k in 1..samples.len() - 1 {
@@ -157,6 +190,9 @@ impl Coupled {
             let goes_on = |k: usize| circuit.is_path_independent(samples[k + 1]) && !turns(&samples[start..=k + 1]);
             let end = (start + 1..samples.len() - 1).find(|k| !goes_on(*k)).unwrap_or(samples.len() - 1);
             circuit.advance((end - start) as f64 * step, samples[end])?;
+            if W::LOOKS {
+                watch.look(deflections[end], circuit.voltage());
+            }
             *lines += 1;
             start = end;
         }
@@ -187,19 +223,27 @@ impl Coupled {
         if self.circuit.is_path_independent(last) {
             self.harvester.advance(end)?;
             self.lines += 1;
-            return Ok(self.circuit.advance(length, last)?);
+            self.circuit.advance(length, last)?;
+            let peak = if rises { pulse.peak } else { 0.0 };
+            self.watch.look(at(side, peak), self.circuit.voltage());
+            return Ok(());
         }
         let count = lines(6.0 * (peak - rest) / rest, self.tolerance);
         let Some(shared) = &mut self.pulses else { return Ok(()) };
-        let deflections = shared.deflections(count);
+        let shares = shared.deflections(count);
         self.samples.clear();
-        self.samples.extend(deflections.iter().map(|share| {
+        self.samples.extend(shares.iter().map(|share| {
             let mut both = [rest; 2];
             both[side.index()] = membrane.capacitance(pulse.peak * share);
             both
         }));
+        if W::LOOKS {
+            self.deflections.clear();
+            self.deflections.extend(shares.iter().map(|share| at(side, pulse.peak * share)));
+        }
         if !rises {
             self.samples.reverse();
+            self.deflections.reverse();
         }
         self.harvester.advance(end)?;
         self.give(length)
@@ -265,6 +309,17 @@ impl SharedPulses {
 
 fn capacitance(harvester: &Harvester) -> [f64; 2] {
     SIDES.map(|side| harvester.capacitance(side))
+}
+
+fn deflections(harvester: &Harvester) -> [f64; 2] {
+    SIDES.map(|side| harvester.deflection(side).value)
+}
+
+/// `deflection`, m, of the membrane at `side`, while the other one is flat.
+fn at(side: Side, deflection: f64) -> [f64; 2] {
+    let mut both = [0.0; 2];
+    both[side.index()] = deflection;
+    both
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Circuits driven by one run of the harvester, and their mean power.
 
-use videg_circuit::{Ledger, Release, Settings, Topology, formulas};
+use videg_circuit::{Ledger, Release, Settings, Topology};
 
 use super::{PaperError, Study};
 use crate::cosim::{
     CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, ImpactLog, Master, Observer, Row,
 };
+use crate::coupled::Impacts;
 use crate::scenario::{Request, Setting};
 
 /// A run of a case of the paper that drives circuits.
@@ -24,20 +25,14 @@ pub struct Drive {
 /// Results of a [`Drive`].
 #[derive(Debug, Clone)]
 pub struct Driven {
-    /// Length of the window, s.
-    pub time: f64,
     /// Averages of the circuits over the window, in their order.
     pub power: Vec<Power>,
     /// Highest voltages of the membranes in the window, V, in the order of the circuits.
     pub peaks: Vec<f64>,
-    /// `C_3` / `C_2` of each impact in the window.
-    pub ratios: Vec<f64>,
+    /// Those in the window.
+    pub impacts: Impacts,
     /// P, Eq. (14), W, over the window.
     pub eq14: f64,
-    /// `C_2`, F.
-    pub rest_capacitance: f64,
-    /// `U_in`, V.
-    pub bias_voltage: f64,
 }
 
 /// Mean power in a circuit, W.
@@ -87,14 +82,12 @@ impl Drive {
         let mut recorder = WindowRecorder { from, start: None, peaks: vec![0.0; circuits.len()] };
         let outcome = master.run(&mut [&mut log, &mut recorder])?;
         let ends = recorder.start.iter().flatten().zip(&outcome.circuits);
+        let ratios = log.impacts.iter().filter(|impact| impact.time > from).map(|impact| impact.ratio).collect();
         Ok(Driven {
-            time: to - from,
             power: ends.map(|(start, end)| Power::between(start, &end.ledger, to - from)).collect(),
             peaks: recorder.peaks,
-            ratios: log.impacts.iter().filter(|impact| impact.time > from).map(|impact| impact.ratio).collect(),
+            impacts: Impacts { ratios, time: to - from, rest_capacitance: rest_capacitance[0], bias_voltage },
             eq14: outcome.mechanics.average_power_eq13,
-            rest_capacitance: rest_capacitance[0],
-            bias_voltage,
         })
     }
 }
@@ -123,37 +116,6 @@ impl Coupled {
         let slaves = slaves.collect::<Result<_, _>>()?;
         let coupling = Coupling { tolerance: Some(tolerance), ..Coupling::default() };
         Ok(Self { master: Master::new(harvester, slaves, &scenario, coupling)?, rest_capacitance, bias_voltage })
-    }
-}
-
-impl Driven {
-    /// Net gain, W, of the impacts in the window by the closed form of a quick release at `voltage`, V, from a node
-    /// that holds `idle` further capacitances `C_2`: (`C_3` `U_in` - `C_2` `U_r`) (`U_r` - `U_in`) each.
-    pub fn quick_release(&self, voltage: f64, idle: f64) -> f64 {
-        let c2 = self.rest_capacitance;
-        let gain = |ratio: &f64| {
-            formulas::release_net_gain(self.bias_voltage, voltage, c2 * (1.0 + idle), c2 * (ratio + idle))
-        };
-        self.ratios.iter().map(gain).sum::<f64>() / self.time
-    }
-
-    /// Highest `U_DE4` of an impact in the window, V, Eq. (12).
-    pub fn highest_voltage(&self) -> f64 {
-        self.bias_voltage * self.ratios.iter().copied().fold(1.0, f64::max)
-    }
-
-    /// Largest net gain, W, that each impact in the window by itself allows on isolated membranes: constant charge up
-    /// to `U_DE4`, then slow discharge at `C_2`.
-    pub fn largest_gain(&self) -> f64 {
-        let c2 = self.rest_capacitance;
-        let gain = |ratio: &f64| formulas::largest_net_gain(self.bias_voltage, c2, ratio * c2);
-        self.ratios.iter().map(gain).sum::<f64>() / self.time
-    }
-
-    /// The voltage, V, with the largest net gain of a quick release.
-    pub fn best_voltage(&self, idle: f64) -> f64 {
-        let ratio = formulas::best_release_ratio(self.ratios.clone());
-        formulas::best_release_voltage(self.bias_voltage, 1.0 + idle, ratio + idle)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::cosim::CosimError;
 use crate::dynamics::DynamicsError;
+use crate::map::MapError;
 use crate::scenario::ScenarioError;
 use fmu_import::FmiError;
 use videg_report::ReportError;
@@ -22,6 +23,12 @@ pub enum PaperError {
     Report(#[from] ReportError),
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    #[error(transparent)]
+    Map(#[from] MapError),
+    #[error("cannot make a temporary folder: {0}")]
+    Folder(std::io::Error),
+    #[error("stopped before it was complete")]
+    Stopped,
     /// An impact is not followed by another one, so that there is no cycle to be drawn.
     #[error("{case}: the impact at {time} s has no rest before it, or no next one, within {within} s")]
     NoCycle { case: &'static str, time: f64, within: f64 },

@@ -105,8 +105,8 @@ fn deflection(membrane: &Membrane, area: f64) -> f64 {
 fn counts(study: &Study<'_>, case: &'static str) -> Result<Vec<Count>, PaperError> {
     let drive = Drive { case, settings: Vec::new(), window: WINDOW, tolerance: TOLERANCE };
     let ahead = drive.run(study, &[])?;
-    let best = ahead.best_voltage(0.0);
-    let bearable = bearable_voltage(case, ahead.highest_voltage() / BIAS);
+    let best = ahead.impacts.best_voltage(0.0);
+    let bearable = bearable_voltage(case, ahead.impacts.highest_voltage() / BIAS);
     let kinds = [
         ("net gain, paper's circuit, 1 Gohm", Topology::SharedNode, Release::Zener, BIAS, 1e9),
         (NO_LOAD, Topology::SharedNode, Release::Zener, BIAS, 1e4),
@@ -115,7 +115,7 @@ fn counts(study: &Study<'_>, case: &'static str) -> Result<Vec<Count>, PaperErro
     ];
     let circuits = kinds.map(|(_, topology, release, voltage, load)| circuit(topology, release, voltage, load));
     let driven = drive.run(study, &circuits)?;
-    let eq14 = Count { name: "Eq. (14)", power: driven.eq14, voltage: driven.highest_voltage() };
+    let eq14 = Count { name: "Eq. (14)", power: driven.eq14, voltage: driven.impacts.highest_voltage() };
     let net = kinds.iter().zip(driven.power.iter().zip(&driven.peaks));
     let net = net.map(|(kind, (power, peak))| Count { name: kind.0, power: power.surplus(), voltage: *peak });
     let lost = Count { name: LOST, power: loss(study, case)?, voltage: f64::NAN };

@@ -82,7 +82,7 @@ impl Axis {
         let share = if index == 0 { 0.0 } else { index as f64 / (self.len() - 1) as f64 };
         match &self.values {
             Values::List(values) => pick(values, index),
-            Values::Reals(range) => Value::Real(between(range, share)),
+            Values::Reals(range) => Value::Real(range.at(share)),
             Values::Integers { from, to, .. } => {
                 let (from, to) = (i64::from(*from), i64::from(*to));
                 let steps = i64::try_from(self.len()).unwrap_or(i64::MAX) - 1;
@@ -96,7 +96,7 @@ impl Axis {
     pub fn quantile(&self, share: f64) -> Value {
         match &self.values {
             Values::List(values) => pick(values, part(share, values.len() as u64)),
-            Values::Reals(range) => Value::Real(between(range, share)),
+            Values::Reals(range) => Value::Real(range.at(share)),
             Values::Integers { from, to, .. } => {
                 let (from, to) = (i64::from(*from), i64::from(*to));
                 let count = from.abs_diff(to) + 1;
@@ -149,18 +149,6 @@ fn pick(values: &[Value], index: u64) -> Value {
 /// Between two numbers of 32 bits: it is one.
 fn narrow(value: i64) -> i32 {
     i32::try_from(value).unwrap_or(i32::MAX)
-}
-
-/// The number a `share` of the way; the ends are met exactly.
-fn between(range: &Range, share: f64) -> f64 {
-    let Range { from, to, .. } = *range;
-    if share == 0.0 || share == 1.0 {
-        return if share == 0.0 { from } else { to };
-    }
-    match range.scale {
-        Scale::Linear => from + (to - from) * share,
-        Scale::Log => from * (to / from).powf(share),
-    }
 }
 
 fn check_range(range: &Range, design: Design) -> Result<(), String> {

@@ -4,6 +4,7 @@ use fmu_import::{Causality, FmiError, Kind, ModelDescription, Variability, Varia
 use videg_circuit::Settings;
 
 use crate::cosim::CircuitSample;
+use crate::coupled::OVER_LIMITS;
 
 /// Mean powers over the averaging window, W, that runs with a circuit have.
 pub const POWERS: [&str; 3] = ["net_power", "load_power", "supply_power"];
@@ -15,27 +16,32 @@ pub const POWERS: [&str; 3] = ["net_power", "load_power", "supply_power"];
 pub fn with_circuit(harvester: ModelDescription) -> Result<ModelDescription, FmiError> {
     let document = include_bytes!("../../modelDescription/HarvestingCircuit.xml");
     let circuit = ModelDescription::parse(document, "modelDescription/HarvestingCircuit.xml")?;
-    let powers = POWERS.map(|name| Variable {
+    let powers = POWERS.map(|name| output(name, "W", "Mean over the averaging window"));
+    let limits = OVER_LIMITS.map(|name| output(name, "1", "Most that the run takes of a limit of the film, over it"));
+    // C(t) comes from the harvester.
+    let of_circuit = circuit.variables.into_iter().filter(|variable| !variable.is_input());
+    Ok(harvester.with(of_circuit.chain(powers).chain(limits), circuit.enumerations))
+}
+
+fn output(name: &str, unit: &str, description: &str) -> Variable {
+    Variable {
         name: name.to_owned(),
         value_reference: u32::MAX,
-        description: Some("Mean over the averaging window".to_owned()),
+        description: Some(description.to_owned()),
         causality: Causality::Output,
         variability: Variability::Continuous,
         initial: None,
         declared_type: None,
-        kind: Kind::Real { unit: Some("W".into()), start: None, min: None, max: None },
-    });
-    // C(t) comes from the harvester.
-    let of_circuit = circuit.variables.into_iter().filter(|variable| !variable.is_input());
-    Ok(harvester.with(of_circuit.chain(powers), circuit.enumerations))
+        kind: Kind::Real { unit: Some(unit.into()), start: None, min: None, max: None },
+    }
 }
 
-/// Whether a variable of `system_description` is one of the circuit, or a power.
+/// Whether a variable of `system_description` is one of the circuit, a power, or of what a run takes of the film's limits.
 pub fn is_electrical(variable: &Variable) -> bool {
     let name = variable.name.as_str();
     let quantities = Settings::QUANTITIES.iter().map(|it| it.name);
     let mut names = quantities.chain(Settings::CHOICES.iter().map(|it| it.name)).chain(outputs());
-    POWERS.contains(&name) || names.any(|known| known == name)
+    POWERS.contains(&name) || OVER_LIMITS.contains(&name) || names.any(|known| known == name)
 }
 
 /// Outputs of the circuit alone: the names of the others are those of inputs of the harvester.

@@ -12,6 +12,7 @@ mod column;
 mod differences;
 mod document;
 mod electrical;
+mod elsewhere;
 mod engine;
 mod error;
 mod file;
@@ -52,7 +53,7 @@ pub use run::{Options, Report, run};
 pub use sampling::{Design, Sampling};
 pub use seeds::SEED_VARIABLE;
 pub use shard::Shard;
-pub use system::System;
+pub use system::{DrivenImpacts, System};
 pub use times::Times;
 pub use vary::{Range, Scale, Spread, Vary};
 

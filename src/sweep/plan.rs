@@ -180,6 +180,11 @@ impl Sweep {
         self.variables().chain(&self.record).any(is_electrical)
     }
 
+    /// Averaging window, s.
+    pub fn window(&self) -> [f64; 2] {
+        self.times.window
+    }
+
     /// Number of points.
     pub fn points(&self) -> u64 {
         self.points.count()

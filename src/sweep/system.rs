@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fmu_import::{Fmu, Value, Variable};
-use videg_circuit::{Release, Settings, formulas, names};
-use videg_model::{Event, ForceTable, Harvester, Parameters, Recording, Setup};
+use videg_circuit::{Release, Settings, Topology, names};
+use videg_model::{ContactLaw, ForceTable, Parameters, Recording, Setup};
 
 use super::electrical::POWERS;
 use super::instance::run_fmu;
@@ -14,7 +14,7 @@ use super::plan::{Results, Run};
 use super::setter::Setter;
 use super::{Sweep, SweepError};
 use crate::cosim::{CircuitRequest, CircuitSample};
-use crate::coupled::{self, TOLERANCE, Times};
+use crate::coupled::{self, Film, Impacts, OVER_LIMITS, TOLERANCE, Times};
 
 /// How a variable is set.
 #[derive(Clone, Copy)]
@@ -30,6 +30,8 @@ enum SystemSetter {
 enum Recorded {
     Power(usize),
     Circuit(usize),
+    /// How much is taken of a limit of the film.
+    OverLimit(usize),
     /// A variable of the harvester, which its FMU tells.
     Mechanical,
 }
@@ -38,9 +40,20 @@ enum Recorded {
 pub struct System {
     base: Inputs,
     record: Vec<Recorded>,
+    /// Whether the films are looked at.
+    watches: bool,
     files: Files,
     /// The FMU and the recorded variables that it has, if there are any.
     harvester: Option<(Fmu, Vec<Variable>)>,
+}
+
+/// Impacts of a run, and the circuit that they drive.
+#[derive(Debug, Clone)]
+pub struct DrivenImpacts {
+    /// Of the averaging window.
+    pub impacts: Impacts,
+    /// How the circuit joins the membranes.
+    pub topology: Topology,
 }
 
 /// What a run is made from.
@@ -86,15 +99,34 @@ impl System {
         let mechanical = record.iter().zip(&sweep.record).filter(|(it, _)| matches!(it, Recorded::Mechanical));
         let mechanical: Vec<_> = mechanical.map(|(_, variable)| variable.clone()).collect();
         let harvester = if mechanical.is_empty() { None } else { Some((harvester()?, mechanical)) };
-        Ok(Self { base, record, files, harvester })
+        let watches = record.iter().any(|it| matches!(it, Recorded::OverLimit(_)));
+        Ok(Self { base, record, watches, files, harvester })
+    }
+
+    /// Impacts of sample number `sample` at these `values` of the varied variables, all of them Real; none under the compliant law, which
+    /// has no closed forms. An error says why the run failed.
+    pub fn impacts_at(&self, sweep: &Sweep, values: &[f64], sample: u64) -> Result<Option<DrivenImpacts>, String> {
+        let inputs = self.inputs(sweep, &sweep.run_at(values, sample));
+        if inputs.parameters.contact_law != ContactLaw::Impulsive {
+            return Ok(None);
+        }
+        let impacts = Impacts::of(inputs.setup(), sweep.times.window).map_err(|error| error.to_string())?;
+        Ok(Some(DrivenImpacts { impacts, topology: inputs.circuit.circuit.topology }))
+    }
+
+    fn inputs(&self, sweep: &Sweep, run: &Run) -> Inputs {
+        let mut inputs = self.base.clone();
+        inputs.set(sweep.assigned(run), &self.files);
+        inputs
     }
 
     /// Outcome of `run`; an error says why it failed.
     pub(super) fn run(&self, sweep: &Sweep, run: &Run) -> Result<Results, String> {
-        let mut inputs = self.base.clone();
-        inputs.set(sweep.assigned(run), &self.files);
+        let inputs = self.inputs(sweep, run);
         let times = Times { until: sweep.times.window[1], window: sweep.times.window, tolerance: TOLERANCE };
-        let outcome = inputs.run(&times).map_err(|error| error.to_string())?;
+        let mut film = self.watches.then(Film::default);
+        let outcome = inputs.run(&times, film.as_mut()).map_err(|error| error.to_string())?;
+        let over_limits = film.map_or([f64::NAN; OVER_LIMITS.len()], |film| film.over_limits());
         let mechanical = self.harvester.as_ref().map(|(fmu, record)| run_fmu(fmu, sweep, run, record));
         let mut mechanical =
             mechanical.transpose().map_err(|error| error.to_string())?.map(|results| results.recorded.into_iter());
@@ -103,6 +135,7 @@ impl System {
         let value = |recorded: &Recorded| match recorded {
             Recorded::Power(index) => Value::Real(powers[*index]),
             Recorded::Circuit(index) => Value::Real(columns[*index]),
+            Recorded::OverLimit(index) => Value::Real(over_limits[*index]),
             Recorded::Mechanical => mechanical.as_mut().and_then(Iterator::next).unwrap_or(Value::Real(f64::NAN)),
         };
         Ok(Results { recorded: self.record.iter().map(value).collect(), averages: Some(outcome.averages) })
@@ -131,6 +164,9 @@ impl Recorded {
         let name = variable.name.as_str();
         if let Some(index) = POWERS.iter().position(|power| *power == name) {
             return Self::Power(index);
+        }
+        if let Some(index) = OVER_LIMITS.iter().position(|limit| *limit == name) {
+            return Self::OverLimit(index);
         }
         // Beside a circuit, the voltages that the harvester takes are those that the circuit gives.
         let index = CircuitSample::NAMES.iter().position(|output| *output == name);
@@ -188,24 +224,19 @@ impl Inputs {
         }
     }
 
-    fn run(&self, times: &Times) -> Result<coupled::Results, coupled::CoupledError> {
-        let setup = self.parameters.with_recording(self.recording.as_deref()).with_table(self.table.as_deref());
+    fn setup(&self) -> Setup<'_> {
+        self.parameters.with_recording(self.recording.as_deref()).with_table(self.table.as_deref())
+    }
+
+    fn run(&self, times: &Times, film: Option<&mut Film>) -> Result<coupled::Results, coupled::CoupledError> {
+        let setup = self.setup();
         let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
         let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
-        let ratio = if chooses { best_ratio(setup, times.until)? } else { 1.0 };
-        coupled::run(setup, &request.resolve(self.parameters.bias_voltage, ratio), times)
-    }
-}
-
-/// `C_3` / `C_2` for which a voltage of release is chosen, from the impacts up to `until`, s.
-fn best_ratio(setup: Setup<'_>, until: f64) -> Result<f64, coupled::CoupledError> {
-    let mut harvester = Harvester::new(setup, 0.0)?;
-    let membrane = harvester.membrane().clone();
-    let mut ratios = Vec::new();
-    harvester.advance_with(until, |event| {
-        if let Event::Peak(peak) = event {
-            ratios.push(membrane.capacitance(peak.deflection) / membrane.rest_capacitance());
+        let ratio = if chooses { Impacts::of(setup, [0.0, times.until])?.best_ratio() } else { 1.0 };
+        let settings = request.resolve(self.parameters.bias_voltage, ratio);
+        match film {
+            Some(film) => coupled::run_watched(setup, &settings, times, film),
+            None => coupled::run(setup, &settings, times),
         }
-    })?;
-    Ok(formulas::best_release_ratio(ratios))
+    }
 }

@@ -48,6 +48,20 @@ pub struct Range {
     pub scale: Scale,
 }
 
+impl Range {
+    /// The number a `share` of the way, 0 to 1; the ends are met exactly.
+    pub fn at(&self, share: f64) -> f64 {
+        let Self { from, to, .. } = *self;
+        if share == 0.0 || share == 1.0 {
+            return if share == 0.0 { from } else { to };
+        }
+        match self.scale {
+            Scale::Linear => from + (to - from) * share,
+            Scale::Log => from * (to / from).powf(share),
+        }
+    }
+}
+
 /// How numbers are spread.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -60,6 +74,11 @@ pub enum Scale {
 }
 
 impl Vary {
+    /// The variable called `name` over these values.
+    pub fn new(name: &str, spread: Spread) -> Self {
+        Self { name: name.to_owned(), spread, origin: Origin::Option }
+    }
+
     /// Reads `name=from:to`, `name=from:to:count`, either of them after `log:`, or `name=a,b,c`.
     ///
     /// # Errors
