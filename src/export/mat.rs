@@ -1,11 +1,8 @@
 //! MATLAB's file format, level 5: matrices one after the other, uncompressed.
 
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
 
-use videg_system::atomic_file;
-
-use super::{ExportError, Table};
+use super::Table;
 
 /// Types of data elements.
 const INT8: u32 = 1;
@@ -19,25 +16,18 @@ const CHARACTERS: u32 = 4;
 const NUMBERS: u32 = 6;
 
 /// Writes `table`: a column vector for each of its columns, its name with `_` for dots, and the texts `header` and `units`.
-pub(super) fn write(path: &Path, table: &Table) -> Result<Vec<PathBuf>, ExportError> {
-    let filled = atomic_file::fill(path, |file| -> io::Result<()> {
-        let mut out = BufWriter::new(file);
-        let text = concat!("MATLAB 5.0 MAT-file, made by videg ", env!("CARGO_PKG_VERSION"));
-        write!(out, "{text:<124}")?;
-        // The version, and the order of bytes.
-        out.write_all(&[0x00, 0x01, b'I', b'M'])?;
-        for column in &table.columns {
-            let values: Vec<u8> = column.values.iter().flat_map(|value| value.to_le_bytes()).collect();
-            matrix(&mut out, &identifier(&column.name), NUMBERS, [column.values.len(), 1], DOUBLE, &values)?;
-        }
-        let units: Vec<_> = table.columns.iter().map(|column| format!("{} [{}]", column.name, column.unit)).collect();
-        characters(&mut out, "header", &table.header.join("\n"))?;
-        characters(&mut out, "units", &units.join(", "))?;
-        matrix(&mut out, "rest_capacitance", NUMBERS, [1, 1], DOUBLE, &table.rest.to_le_bytes())?;
-        out.flush()
-    });
-    filled.map_err(|cause| ExportError::Write { path: path.to_owned(), cause })?;
-    Ok(vec![path.to_owned()])
+pub(super) fn write(out: &mut impl Write, table: &Table) -> io::Result<()> {
+    let text = concat!("MATLAB 5.0 MAT-file, made by videg ", env!("CARGO_PKG_VERSION"));
+    write!(out, "{text:<124}")?;
+    // The version, and the order of bytes.
+    out.write_all(&[0x00, 0x01, b'I', b'M'])?;
+    for column in &table.columns {
+        let values: Vec<u8> = column.values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        matrix(out, &identifier(&column.name), NUMBERS, [column.values.len(), 1], DOUBLE, &values)?;
+    }
+    characters(out, "header", &table.header.join("\n"))?;
+    characters(out, "units", &table.units())?;
+    matrix(out, "rest_capacitance", NUMBERS, [1, 1], DOUBLE, &table.rest.to_le_bytes())
 }
 
 /// The name of a variable of the FMU as one of MATLAB: `left_capacitance`.

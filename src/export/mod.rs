@@ -4,12 +4,14 @@ mod data;
 mod mat;
 mod spice;
 
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use fmu_import::{Fmu, Kind, nearest_name};
 use serde::Serialize;
 use thiserror::Error;
+use videg_system::atomic_file::{self, AtomicFile};
 
 use crate::cosim::{CircuitRequest, CosimError, HarvesterFmu};
 use crate::ngspice::{CapacitanceTable, NgspiceError};
@@ -146,6 +148,22 @@ impl Table {
     fn rows(&self) -> usize {
         self.columns.first().map_or(0, |time| time.values.len())
     }
+
+    /// Names of the columns with their units.
+    fn units(&self) -> String {
+        let units: Vec<_> = self.columns.iter().map(|column| format!("{} [{}]", column.name, column.unit)).collect();
+        units.join(", ")
+    }
+}
+
+/// Writes the file at `path`.
+fn fill(path: &Path, write: impl FnOnce(&mut BufWriter<&mut AtomicFile>) -> io::Result<()>) -> Result<(), ExportError> {
+    let filled = atomic_file::fill(path, |file| {
+        let mut out = BufWriter::new(file);
+        write(&mut out)?;
+        out.flush()
+    });
+    filled.map_err(|cause| ExportError::Write { path: path.to_owned(), cause })
 }
 
 /// Most values of a table: 160 MB.
@@ -195,11 +213,14 @@ pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Exported, E
         columns: std::iter::once(time).chain(columns).collect(),
         rest,
     };
-    let files = match format {
-        Format::Csv => data::csv(path, &table),
-        Format::Parquet => data::parquet(path, &table),
-        Format::Mat => mat::write(path, &table),
-        Format::Ngspice | Format::Ltspice | Format::Qspice | Format::Kicad => spice::write(path, format, &table),
+    let mut files = vec![path.to_owned()];
+    match format {
+        Format::Csv => fill(path, |out| data::csv(out, &table)),
+        Format::Parquet => fill(path, |out| data::parquet(out, &table).map_err(io::Error::other)),
+        Format::Mat => fill(path, |out| mat::write(out, &table)),
+        Format::Ngspice | Format::Ltspice | Format::Qspice | Format::Kicad => {
+            spice::write(path, format, &table).map(|beside| files.extend(beside))
+        }
     }?;
     let (rows, until) = (table.rows(), scenario.until);
     let warnings = warnings.into_iter().chain(harvester.warnings()).collect();

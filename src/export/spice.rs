@@ -4,24 +4,18 @@
 //! simulators make I = C dV/dt of it and lose V dC/dt.
 
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use videg_system::atomic_file;
-
-use super::{ExportError, Format, Table};
-use crate::ngspice::PICO;
+use super::{ExportError, Format, Table, fill};
+use crate::ngspice::{PICO, write_rows};
 
 /// Points of a source on a line.
 const POINTS: usize = 4;
 const SIDES: [&str; 2] = ["left", "right"];
 
-/// Writes the subcircuits of `table`, and for ngspice the table that they read beside them.
-pub(super) fn write(path: &Path, format: Format, table: &Table) -> Result<Vec<PathBuf>, ExportError> {
-    let fail = |path: &Path| {
-        let path = path.to_owned();
-        move |cause| ExportError::Write { path, cause }
-    };
-    let mut files = vec![path.to_owned()];
+/// Writes the subcircuits of `table`, and for ngspice the table that they read beside them; the path of the latter.
+pub(super) fn write(path: &Path, format: Format, table: &Table) -> Result<Option<PathBuf>, ExportError> {
     let tab = path.with_extension("tab");
     let mut text = String::new();
     for line in table.header.iter().map(String::as_str).chain(notes(format).iter().copied()) {
@@ -31,11 +25,12 @@ pub(super) fn write(path: &Path, format: Format, table: &Table) -> Result<Vec<Pa
         subcircuit(&mut text, format, table, side, &tab);
     }
     if format == Format::Ngspice {
-        atomic_file::fill(&tab, |file| tabulate(&mut std::io::BufWriter::new(file), table)).map_err(fail(&tab))?;
-        files.push(tab);
+        let [time, left, right] = [0, 1, 2].map(|column| &table.columns[column].values);
+        let rows = time.iter().zip(left).zip(right).map(|((time, left), right)| (*time, [*left, *right]));
+        fill(&tab, |out| write_rows(rows, out))?;
     }
-    atomic_file::write(path, text).map_err(fail(path))?;
-    Ok(files)
+    fill(path, |out| out.write_all(text.as_bytes()))?;
+    Ok((format == Format::Ngspice).then_some(tab))
 }
 
 /// How the file is used, and what it relies on.
@@ -89,15 +84,4 @@ fn subcircuit(text: &mut String, format: Format, table: &Table, side: usize, tab
         _ => writeln!(text, "Cvar p n Q='(V(c)-{start:e})*1e-12*V(p,n)'"),
     };
     let _ = writeln!(text, ".ends deg_{}", SIDES[side]);
-}
-
-/// The table as ngspice's `filesource` reads it. A last row beyond the end keeps the capacitances where the last step may overshoot.
-fn tabulate(out: &mut impl std::io::Write, table: &Table) -> std::io::Result<()> {
-    let [time, left, right] = [0, 1, 2].map(|column| &table.columns[column].values);
-    let rows = time.iter().zip(left).zip(right).map(|((time, left), right)| (*time, *left, *right));
-    let beyond = rows.clone().next_back().map(|(time, left, right)| (time + 1.0, left, right));
-    for (time, left, right) in rows.chain(beyond) {
-        writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO)?;
-    }
-    out.flush()
 }

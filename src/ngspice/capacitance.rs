@@ -28,7 +28,8 @@ impl CapacitanceTable {
     pub fn new(time: &[f64], left: &[f64], right: &[f64]) -> Result<Self, NgspiceError> {
         let fail = |row, reason| Err(NgspiceError::Table { row, reason });
         if time.len() != left.len() || time.len() != right.len() {
-            let lengths = format!("{} times, {} left, {} right: must be as many", time.len(), left.len(), right.len());
+            let lengths =
+                format!("{} times, {} left, {} right: the numbers must be equal", time.len(), left.len(), right.len());
             return fail(0, lengths);
         }
         let mut table = Self::default();
@@ -95,7 +96,7 @@ impl CapacitanceTable {
         [&self.left, &self.right].map(|column| column.first().copied().unwrap_or_default())
     }
 
-    /// Largest ratio of a capacitance to that at 0 s, at least 1: by so much may the voltage rise.
+    /// Largest ratio of a capacitance to that at 0 s, at least 1: the bound of the rise in voltage.
     pub fn growth(&self) -> f64 {
         let [left, right] = self.initial();
         self.rows().map(|(_, c)| (c[0] / left).max(c[1] / right)).fold(1.0, f64::max)
@@ -134,15 +135,26 @@ impl CapacitanceTable {
         ends
     }
 
-    /// Writes the table as ngspice's `filesource` reads it: time in s, left and right in pF. A last row beyond the end
-    /// keeps the capacitances where the last step of ngspice may overshoot.
-    pub(super) fn write(&self, mut out: impl Write) -> std::io::Result<()> {
-        let beyond = self.rows().last().map(|(time, capacitance)| (time + 1.0, capacitance));
-        for (time, [left, right]) in self.rows().chain(beyond) {
-            writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO)?;
-        }
-        out.flush()
+    /// Writes the table as ngspice reads it.
+    pub(super) fn write(&self, out: impl Write) -> std::io::Result<()> {
+        write_rows(self.rows(), out)
     }
+}
+
+/// Writes time, s, and capacitances (left, right), F, as ngspice's `filesource` reads them: time in s, left and right in pF. A last
+/// row beyond the end keeps the capacitances where the last step of ngspice may overshoot.
+pub(crate) fn write_rows(rows: impl Iterator<Item = (f64, [f64; 2])>, mut out: impl Write) -> std::io::Result<()> {
+    let mut last = None;
+    let mut write =
+        |(time, [left, right]): (f64, [f64; 2])| writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO);
+    for row in rows {
+        write(row)?;
+        last = Some(row);
+    }
+    if let Some((time, capacitance)) = last {
+        write((time + 1.0, capacitance))?;
+    }
+    out.flush()
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ mod user_netlist;
 mod waveforms;
 
 pub use capacitance::CapacitanceTable;
-pub(crate) use capacitance::PICO;
+pub(crate) use capacitance::{PICO, write_rows};
 pub use capacitor::{CapacitorTest, Deviation};
 pub use elements::{Elements, Role};
 pub use error::{Complaints, NgspiceError};
