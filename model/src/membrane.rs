@@ -1,8 +1,8 @@
 //! A pre-stretched membrane that a ball presses in at its centre, as a spring and a variable capacitor.
 
-pub(crate) mod course;
 mod elasticity;
 mod film;
+pub(crate) mod loading;
 pub(crate) mod material;
 mod pchip;
 mod spring;

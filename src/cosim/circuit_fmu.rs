@@ -29,8 +29,8 @@ pub struct FmuCircuit {
     outputs: Vec<u32>,
     /// At the communication point.
     sample: CircuitSample,
-    books: Books,
-    saved: (SavedState, CircuitSample, Books),
+    membranes: MembraneEnergy,
+    saved: (SavedState, CircuitSample, MembraneEnergy),
     probes: Vec<String>,
     probe_references: Vec<u32>,
     probed: Vec<f64>,
@@ -39,7 +39,7 @@ pub struct FmuCircuit {
 
 /// Energies of the membranes from C(t) and U(t), for an FMU that does not tell them.
 #[derive(Debug, Clone, Copy, Default)]
-struct Books {
+struct MembraneEnergy {
     /// F
     capacitance: [f64; 2],
     /// V
@@ -50,10 +50,10 @@ struct Books {
     mechanical: f64,
 }
 
-impl Books {
+impl MembraneEnergy {
     fn new(capacitance: [f64; 2], voltage: [f64; 2]) -> Self {
-        let books = Self { capacitance, voltage, ..Self::default() };
-        Self { initial: books.energy(), ..books }
+        let membranes = Self { capacitance, voltage, ..Self::default() };
+        Self { initial: membranes.energy(), ..membranes }
     }
 
     fn energy(&self) -> f64 {
@@ -156,16 +156,16 @@ impl FmuCircuit {
             inputs,
             outputs,
             sample: CircuitSample::default(),
-            books: Books::default(),
-            saved: (SavedState::default(), CircuitSample::default(), Books::default()),
+            membranes: MembraneEnergy::default(),
+            saved: (SavedState::default(), CircuitSample::default(), MembraneEnergy::default()),
             probes: Vec::new(),
             probe_references: Vec::new(),
             probed: Vec::new(),
             notes: Vec::new(),
         };
         let sample = circuit.read()?;
-        circuit.books = Books::new(capacitance, sample.voltage);
-        circuit.sample = circuit.books.complete(sample);
+        circuit.membranes = MembraneEnergy::new(capacitance, sample.voltage);
+        circuit.sample = circuit.membranes.complete(sample);
         Ok(circuit)
     }
 
@@ -245,8 +245,8 @@ impl CircuitSlave for FmuCircuit {
         self.instance.do_step(time, step)?;
         self.instance.get_real(&self.probe_references, &mut self.probed)?;
         let sample = self.read()?;
-        self.books.add(end, sample.voltage);
-        self.sample = self.books.complete(sample);
+        self.membranes.add(end, sample.voltage);
+        self.sample = self.membranes.complete(sample);
         Ok(())
     }
 
@@ -263,12 +263,12 @@ impl CircuitSlave for FmuCircuit {
     }
 
     fn save(&mut self) -> Result<(), CosimError> {
-        (self.saved.1, self.saved.2) = (self.sample, self.books);
+        (self.saved.1, self.saved.2) = (self.sample, self.membranes);
         self.saved.0.save(&self.instance)
     }
 
     fn restore(&mut self) -> Result<(), CosimError> {
-        (self.sample, self.books) = (self.saved.1, self.saved.2);
+        (self.sample, self.membranes) = (self.saved.1, self.saved.2);
         self.saved.0.restore(&mut self.instance)
     }
 }

@@ -74,7 +74,7 @@ pub struct CouplingSummary {
 }
 
 impl CouplingSummary {
-    /// The warning about a coupling that makes or loses so much energy that its surplus deserves no trust.
+    /// The warning about a coupling whose error in energy makes the surplus meaningless.
     pub(super) fn warning(&self) -> Option<String> {
         /// In units of the energy moved.
         const LARGEST_RESIDUAL: f64 = 1e-2;
@@ -92,7 +92,7 @@ impl CouplingSummary {
 
 /// Steps of a run, and the work of the mechanics as both sides sum it, J.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Books {
+pub(super) struct CouplingWork {
     /// Steps taken.
     pub steps: u64,
     /// Steps tried and undone.
@@ -105,8 +105,8 @@ pub(super) struct Books {
     pub moved: f64,
 }
 
-impl Books {
-    /// Books a step.
+impl CouplingWork {
+    /// Adds the work of a step.
     pub(super) fn add(&mut self, by_circuit: f64, by_harvester: f64) {
         self.circuit += by_circuit;
         self.harvester += by_harvester;

@@ -1,7 +1,7 @@
 //! The master: one harvester, any number of circuits.
 
 use super::adaptive::StepControl;
-use super::coupling::Books;
+use super::coupling::CouplingWork;
 use super::signal::{Curve, Line};
 use super::{
     Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, ElementEnergy, EnergyBalance, Gains,
@@ -61,7 +61,7 @@ pub struct Master {
     scenario: Scenario,
     coupling: Coupling,
     control: Option<StepControl>,
-    books: Books,
+    work: CouplingWork,
 }
 
 /// A communication point with the data for the next step.
@@ -105,8 +105,8 @@ impl Master {
         }
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
         let control = coupling.tolerance.map(|tolerance| StepControl::new(tolerance, scenario.step));
-        let (scenario, books) = (scenario.clone(), Books::default());
-        Ok(Self { harvester, circuits, schedule, scenario, coupling, control, books })
+        let (scenario, work) = (scenario.clone(), CouplingWork::default());
+        Ok(Self { harvester, circuits, schedule, scenario, coupling, control, work })
     }
 
     /// Runs to the end, showing each communication point to `observers`.
@@ -150,7 +150,7 @@ impl Master {
             voltage_gain: point.harvester.voltage_gain(),
             energy_eq13: point.harvester.energy_eq13(),
         };
-        let coupling = self.books.summary(&self.coupling);
+        let coupling = self.work.summary(&self.coupling);
         let balance = energies
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
@@ -190,7 +190,7 @@ impl Master {
         let knot = from.harvester.next_knot();
         let Some(mut control) = self.control else {
             let knot = if self.coupling.method == Method::Plain { f64::INFINITY } else { knot };
-            self.books.steps += 1;
+            self.work.steps += 1;
             return self.step(from, self.schedule.next(from.time, knot));
         };
         self.save()?;
@@ -203,10 +203,10 @@ impl Master {
             let shortest = next <= self.schedule.within(from.time, 0.0, knot);
             if control.accepts(to.step, error) || shortest {
                 self.control = Some(control);
-                self.books.steps += 1;
+                self.work.steps += 1;
                 return Ok(to);
             }
-            self.books.rejected += 1;
+            self.work.rejected += 1;
             self.restore()?;
         }
     }
@@ -264,7 +264,7 @@ impl Master {
             (Some(before), Some(after)) => after - before,
             _ => (0..2).map(|j| capacitance(from, to, j).work(&to.voltage[j])).sum(),
         };
-        self.books.add(after.ledger.mechanical - before.ledger.mechanical, by_harvester);
+        self.work.add(after.ledger.mechanical - before.ledger.mechanical, by_harvester);
     }
 
     fn save(&mut self) -> Result<(), CosimError> {

@@ -62,7 +62,7 @@ pub struct Basins {
 }
 
 impl Basins {
-    /// Basins over `count` displacements between the membranes and as many relative velocities up to `fastest`, m/s, either way. The
+    /// Basins over `count` displacements between the membranes and `count` relative velocities from -`fastest` to `fastest`, m/s. The
     /// cylinder starts as the parameters say.
     ///
     /// # Errors

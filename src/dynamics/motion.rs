@@ -26,8 +26,8 @@ impl Flash {
         Self { displacement, velocity, cylinder, gain }
     }
 
-    /// These parameters with a start from here. Only a suspended cylinder goes on where it is: of another the relative motion does
-    /// not depend on it.
+    /// These parameters with this motion as the start. The position of the cylinder counts only if it is suspended: otherwise the
+    /// relative motion does not depend on it.
     pub fn start(&self, mut parameters: Parameters) -> Parameters {
         let p = &mut parameters;
         if p.is_suspended() && p.excitation_kind == ExcitationKind::Force {

@@ -53,11 +53,6 @@ impl Problem {
         self.files.setup(parameters)
     }
 
-    /// The value in the parameters themselves; NaN if none varies.
-    pub fn own_value(&self) -> f64 {
-        self.varied.as_ref().map_or(f64::NAN, |varied| (varied.quantity.get)(&self.parameters))
-    }
-
     /// Checks that the excitation is periodic.
     pub(super) fn check_periodic(&self) -> Result<(), DynamicsError> {
         let name = "excitation.phaseNoise";

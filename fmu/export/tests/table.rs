@@ -107,9 +107,8 @@ fn words(row: &V) -> String {
             (spec.start.and_then(|start| spec.of.item(start)).map(str::to_owned), (spec.get)(&it).to_string())
         }
     };
-    assert_eq!(start.is_some(), row.kind().has_start());
+    assert!(row.initial() != Some(Initial::Exact) || start.is_some());
     let start = start.or(row.initial().map(|initial| initial.as_str().to_owned()));
-    assert!(row.initial() != Some(Initial::Exact) || row.kind().has_start());
     let (causality, variability) = (row.causality().as_str(), row.variability().as_str());
     format!("{}: {} {causality} {variability} {start:?} {value}", row.name(), row.kind().type_name())
 }

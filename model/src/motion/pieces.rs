@@ -12,7 +12,7 @@ use super::suspended::{self, Oscillation, Series, Suspension};
 use super::{Motion, Start};
 
 /// What stays the same from piece to piece of a suspended cylinder.
-struct Course {
+struct Constants {
     load: Load,
     harmonic: Harmonic,
     /// Spring and damper over the mass that moves.
@@ -24,7 +24,7 @@ struct Course {
     relative: f64,
 }
 
-impl Course {
+impl Constants {
     fn new(motion: &Motion, drive: &Drive) -> Self {
         let load = motion.cylinder.load;
         let suspension = load.suspension.over(load.share);
@@ -112,19 +112,19 @@ impl Motion {
             return;
         }
         let present = self.begin_of_piece();
-        let course = Course::new(self, &present.drive);
+        let constants = Constants::new(self, &present.drive);
         let (mut piece, mut is_ahead) = self.search.piece.map_or((present, false), |piece| (piece, true));
         while piece.cylinder.time <= until {
             let start = piece.cylinder.time;
-            let end = course.end_of(&piece);
+            let end = constants.end_of(&piece);
             if end <= start && end < piece.drive.recorded.end {
                 self.search.exhausted = true; // times have no digits for so short a piece
                 break;
             }
             let is_last = limit.is_some_and(|limit| limit <= end);
             let end = limit.map_or(end, |limit| limit.min(end));
-            let terms = course.terms(&piece, end - start);
-            self.search_piece(&course.leg(&piece), &terms, (start, end));
+            let terms = constants.terms(&piece, end - start);
+            self.search_piece(&constants.leg(&piece), &terms, (start, end));
             if self.search.found.is_some() {
                 break;
             }
@@ -132,7 +132,7 @@ impl Motion {
                 self.search.found = limit.map(|time| Prediction::NoiseSample { time });
                 break;
             }
-            (piece, is_ahead) = (self.piece_after_series(&course, &piece, &terms, end), true);
+            (piece, is_ahead) = (self.piece_after_series(&constants, &piece, &terms, end), true);
         }
         self.search.piece = is_ahead.then_some(piece);
     }
@@ -185,16 +185,16 @@ impl Motion {
     }
 
     /// The piece that begins at `time`, s, where this one ends, with these terms.
-    fn piece_after_series(&self, course: &Course, piece: &Piece, terms: &Series, time: f64) -> Piece {
+    fn piece_after_series(&self, constants: &Constants, piece: &Piece, terms: &Series, time: f64) -> Piece {
         let Piece { cylinder: Start { time: start, position, velocity }, relative: [dz, rate], damped, drive } = *piece;
         let length = time - start;
         let [farther, faster] = suspended::change(terms, length);
-        let by_ball = course.relative * length;
+        let by_ball = constants.relative * length;
         let moved = [dz + (length * (rate + 0.5 * by_ball) + farther), rate + (by_ball + faster)];
         Piece {
             cylinder: Start { time, position: position + (velocity * length + farther), velocity: velocity + faster },
             relative: if self.ball.is_carried() { [dz, 0.0] } else { moved },
-            damped: damped + suspended::damped_energy(course.load.suspension.damping, terms, length),
+            damped: damped + suspended::damped_energy(constants.load.suspension.damping, terms, length),
             drive: self.drive_from(&drive, start, time),
         }
     }
@@ -253,9 +253,9 @@ impl Motion {
         let end = self.end_of_piece();
         if self.flight.piece().is_some() {
             let present = self.begin_of_piece();
-            let course = Course::new(self, &present.drive);
-            let terms = course.terms(&present, end - present.cylinder.time);
-            return self.piece_after_series(&course, &present, &terms, end);
+            let constants = Constants::new(self, &present.drive);
+            let terms = constants.terms(&present, end - present.cylinder.time);
+            return self.piece_after_series(&constants, &present, &terms, end);
         }
         let mut piece = self.piece_after(&self.cylinder, &self.flight, end);
         self.pass_to(&mut piece, time);

@@ -8,7 +8,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::membrane::Membrane;
-use crate::membrane::course::Course;
+use crate::membrane::loading::Loading;
 use crate::motion::side::Side;
 use crate::numerics::roots::convex_root;
 use crate::numerics::series::hypergeometric;
@@ -161,7 +161,7 @@ pub(crate) struct Running {
 #[derive(Debug)]
 struct Own {
     membrane: Shared<Membrane>,
-    course: OnceLock<Course>,
+    loading: OnceLock<Loading>,
 }
 
 impl PartialEq for Running {
@@ -173,17 +173,18 @@ impl PartialEq for Running {
 
 impl Running {
     pub(crate) fn new(membrane: &Shared<Membrane>, pulse: Pulse) -> Self {
-        let own = (!membrane.is_power()).then(|| Arc::new(Own { membrane: membrane.clone(), course: OnceLock::new() }));
+        let own =
+            (!membrane.is_power()).then(|| Arc::new(Own { membrane: membrane.clone(), loading: OnceLock::new() }));
         Self { pulse, own }
     }
 
-    fn course(&self) -> Option<&Course> {
-        let Own { membrane, course } = self.own.as_deref()?;
-        Some(course.get_or_init(|| Course::new(membrane, self.pulse.peak)))
+    fn loading(&self) -> Option<&Loading> {
+        let Own { membrane, loading } = self.own.as_deref()?;
+        Some(loading.get_or_init(|| Loading::new(membrane, self.pulse.peak)))
     }
 
     fn loading_time(&self, shape: &PulseShape) -> f64 {
-        self.course().map_or_else(|| shape.loading_time(&self.pulse), Course::time)
+        self.loading().map_or_else(|| shape.loading_time(&self.pulse), Loading::time)
     }
 
     /// Whether the membrane is flat again at `time`, s.
@@ -205,9 +206,9 @@ impl Running {
     }
 
     fn at(&self, shape: &PulseShape, time: f64) -> Deflection {
-        match self.course() {
+        match self.loading() {
             None => shape.at(&self.pulse, time),
-            Some(course) => shape.follow(&self.pulse, course.time(), time, |fraction| course.at(fraction)),
+            Some(loading) => shape.follow(&self.pulse, loading.time(), time, |fraction| loading.at(fraction)),
         }
     }
 }

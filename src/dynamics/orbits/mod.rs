@@ -2,18 +2,18 @@
 //! multipliers, and their branches over a parameter by pseudo-arclength continuation.
 //!
 //! The section is stroboscopic: a round is a whole number of periods of the excitation, so the map has the dimension of the state
-//! whatever the order of impacts, and resting needs no map of its own. Its phase is the middle of the orbit's longest flight, where the map
+//! for any order of impacts, and resting needs no map of its own. Its phase is the middle of the orbit's longest flight, where the map
 //! is smooth: at an impact the state jumps, and a section at a fixed phase would fail for orbits with an impact there.
 
 mod arc;
 mod branch;
+mod cycle;
 mod flow;
 mod marks;
 mod multipliers;
 mod orbit;
 mod pattern;
 mod search;
-mod survey;
 
 pub use branch::{Branch, End};
 pub use flow::{Change, Flow, Point, State};
@@ -47,8 +47,8 @@ pub fn orbits(problem: &Problem, search: &Search, observer: &dyn Progress) -> Re
     search.at_on_all_cores(Flow::new(&alone), f64::NAN, observer)
 }
 
-/// Branches of orbits over the parameter that varies, those found first being first. If the observer stops it, those that are
-/// complete.
+/// Branches of orbits over the parameter that varies, in the order in which they are found. If the observer stops the search, the
+/// branches that are complete.
 ///
 /// # Errors
 /// As [`orbits`]; nothing varies.

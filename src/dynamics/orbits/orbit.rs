@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use videg_model::{Impact, ModelError};
 
+use super::cycle::Cycle;
 use super::flow::{Change, Flow, Point, State};
 use super::multipliers::Multipliers;
 use super::pattern::{Pattern, leading};
-use super::survey::Survey;
 
 /// Most steps of Newton's method.
 const STEPS: u32 = 20;
@@ -77,14 +77,14 @@ impl Orbit {
     /// The orbit through `point`, which comes back after `period` periods.
     pub(super) fn measured(flow: Flow<'_>, point: &Point, period: u32) -> Option<Self> {
         let period = shortest(flow, point, period).ok()?;
-        let found = Survey::along(flow, point, period).ok()??;
+        let found = Cycle::along(flow, point, period).ok()??;
         let (elapsed, state) = found.middle;
         let point = Point { value: point.value, phase: (point.phase + elapsed) % 1.0, state };
         // Once more from there: times of impacts count from the new beginning.
-        let survey = Survey::along(flow, &point, period).ok()??;
+        let cycle = Cycle::along(flow, &point, period).ok()??;
         let change = flow.change(&point, f64::from(period)).ok()?;
         let multipliers = Multipliers::of(&change.by_state)?;
-        let least_speed = leading(&survey.impacts).iter().map(|impact| impact.speed).fold(f64::INFINITY, f64::min);
+        let least_speed = leading(&cycle.impacts).iter().map(|impact| impact.speed).fold(f64::INFINITY, f64::min);
         let flashes = (0..period).map(|k| {
             let elapsed = f64::from(k) + (1.0 - point.phase) % 1.0;
             flow.after(&point, elapsed, |_| {}).map(|state| [state[0], state[1]])
@@ -92,12 +92,12 @@ impl Orbit {
         let flashes = flashes.collect::<Result<_, _>>().ok()?;
         Some(Self {
             period,
-            pattern: Pattern::of(&survey.impacts),
-            impacts: survey.impacts,
+            pattern: Pattern::of(&cycle.impacts),
+            impacts: cycle.impacts,
             multipliers,
             least_speed,
-            least_gap: survey.least_gap,
-            voltage_gain: survey.voltage_gain,
+            least_gap: cycle.least_gap,
+            voltage_gain: cycle.voltage_gain,
             flashes,
             change,
             elapsed,

@@ -44,11 +44,11 @@ impl fmt::Display for Pattern {
     }
 }
 
-/// The impacts, and of those by which the ball comes to rest on a membrane the first alone, which then says so.
+/// The impacts. Of a row of impacts that ends at rest on a membrane only the first stays, and `rests` is set there.
 pub(super) fn leading(impacts: &[Impact]) -> Vec<Impact> {
     let mut kept: Vec<Impact> = Vec::new();
     let mut rows = impacts.chunk_by(|a, b| a.side == b.side && !a.rests).collect::<Vec<_>>();
-    // The last row goes on with the first.
+    // The orbit is closed: the first row continues the last one.
     if let [first, .., last] = rows[..]
         && first[0].side == last[0].side
         && !last[last.len() - 1].rests

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use fastrand::Rng;
 use videg_model::ModelError;
 
+use super::cycle::Cycle;
 use super::flow::{Flow, Point, State};
 use super::orbit::Orbit;
-use super::survey::Survey;
 use crate::dynamics::DynamicsError;
 use crate::progress::Progress;
 use crate::threads;
@@ -165,8 +165,8 @@ impl Search {
 
 /// The motion through `point` in the middle of its longest flight: Newton's method cannot begin where the ball rests.
 fn in_flight(flow: Flow<'_>, point: Point, period: u32) -> Point {
-    match Survey::along(flow, &point, period) {
-        Ok(Some(Survey { middle: (elapsed, state), .. })) => {
+    match Cycle::along(flow, &point, period) {
+        Ok(Some(Cycle { middle: (elapsed, state), .. })) => {
             Point { phase: (point.phase + elapsed) % 1.0, state, ..point }
         }
         _ => point,

@@ -152,17 +152,6 @@ impl<M> Kind<M> {
         }
     }
 
-    /// Whether the type has a start value.
-    pub const fn has_start(&self) -> bool {
-        match self {
-            Self::Real(s) => s.start.is_some(),
-            Self::Integer(s) => s.start.is_some(),
-            Self::Boolean(s) => s.start.is_some(),
-            Self::String(s) => s.start.is_some(),
-            Self::Enumeration(s) => s.start.is_some(),
-        }
-    }
-
     /// Writes the start value into a model, if there is one.
     pub(crate) fn apply_start(&self, model: &mut M) {
         match self {

@@ -23,7 +23,7 @@ const SMALLEST: f64 = 1e-60;
 
 /// The way of a membrane to one largest deflection.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Course {
+pub(crate) struct Loading {
     membrane: Shared<Membrane>,
     /// delta, m.
     peak: f64,
@@ -33,17 +33,17 @@ pub(crate) struct Course {
     pieces: Vec<[f64; 2]>,
 }
 
-impl Course {
+impl Loading {
     /// The way of `membrane` to the deflection `peak`, m.
     pub(crate) fn new(membrane: &Shared<Membrane>, peak: f64) -> Self {
         let peak = peak.clamp(SMALLEST, membrane.deepest());
         let speed = (2.0 * membrane.work(peak) / membrane.mass).sqrt();
-        let mut course = Self { membrane: membrane.clone(), peak, speed, pieces: vec![[0.0; 2]] };
+        let mut loading = Self { membrane: membrane.clone(), peak, speed, pieces: vec![[0.0; 2]] };
         // About the time that a spring takes.
         let tolerance = TOLERANCE * FRAC_PI_2 * peak / speed;
-        let kinks = course.kinks();
-        course.divide(&kinks, tolerance);
-        course
+        let kinks = loading.kinks();
+        loading.divide(&kinks, tolerance);
+        loading
     }
 
     /// Time from the begin to the largest deflection, s.

@@ -1,4 +1,4 @@
-//! A look along a motion: its impacts, the longest flight, and how near the ball comes to a membrane without meeting it.
+//! A motion over whole periods: its impacts, its longest flight, and its smallest gap at a turning point.
 
 use videg_model::{Event, Harvester, Impact, ModelError};
 
@@ -13,7 +13,7 @@ const MOST_IMPACTS: usize = 1000;
 
 /// What a motion over whole periods is like.
 #[derive(Debug, Clone)]
-pub struct Survey {
+pub struct Cycle {
     /// Impacts; their times are in periods since the excitation had the phase `excitation.phase`.
     pub impacts: Vec<Impact>,
     /// Smallest distance, m, from a membrane at which the ball turns without meeting it; infinite if it turns nowhere.
@@ -24,7 +24,7 @@ pub struct Survey {
     pub voltage_gain: f64,
 }
 
-impl Survey {
+impl Cycle {
     /// Follows the motion from `point` over `periods`. None if it has too many impacts.
     pub fn along(flow: Flow<'_>, point: &Point, periods: u32) -> Result<Option<Self>, ModelError> {
         let (period, half) = (flow.period(point.value), flow.problem().at(point.value).travel() / 2.0);
@@ -61,7 +61,7 @@ impl Survey {
     }
 }
 
-/// Middle of the longest row, the last one being followed by the first again; none without any.
+/// Middle of the longest row of flights; the row is a ring, in which the first one follows the last. None without a flight.
 fn middle_of_longest(flights: &[bool]) -> Option<f64> {
     let count = flights.len();
     if flights.iter().all(|flies| *flies) {
