@@ -404,12 +404,12 @@ const fn as_real(count: u64) -> f64 {
 }
 
 /// Parameters of the paper and of contacts that last.
-const PARAMETERS: &[V] = reals(0, 22);
-const CHOICES: &[V] = choices(0, 6);
+const PARAMETERS: &[V] = reals("cylinder.mass", "biasVoltage");
+const CHOICES: &[V] = choices("excitation.seed", "contact.reaction");
 
 /// How the cylinder is held and driven, and gravity and friction.
-const MOUNT_PARAMETERS: &[V] = reals(22, 28);
-const MOUNT_CHOICES: &[V] = choices(6, 7);
+const MOUNT_PARAMETERS: &[V] = reals("cylinder.inclination", "excitation.acceleration");
+const MOUNT_CHOICES: &[V] = choices("excitation.kind", "excitation.kind");
 
 /// The recorded part of the excitation.
 static RECORDING_FILE: [V; 1] = [V::string_parameter(
@@ -419,11 +419,11 @@ static RECORDING_FILE: [V; 1] = [V::string_parameter(
 )
 .longest(LONGEST)
 .access(|slave| slave.files.excitation.to_string(), |slave, file| Arc::make_mut(&mut slave.files).excitation = file.into())];
-const RECORDING_PARAMETERS: &[V] = reals(28, 30);
-const RECORDING_CHOICES: &[V] = choices(7, 8);
+const RECORDING_PARAMETERS: &[V] = reals("excitation.fileScale", "excitation.fileOffset");
+const RECORDING_CHOICES: &[V] = choices("excitation.fileRepeat", "excitation.fileRepeat");
 
 /// The membrane of the user's own.
-const FILM_CHOICES: &[V] = choices(8, 9);
+const FILM_CHOICES: &[V] = choices("membrane.law", "membrane.law");
 static MEMBRANE_FILE: [V; 1] = [V::string_parameter(
     ForceTable::VARIABLE,
     "",
@@ -431,10 +431,10 @@ static MEMBRANE_FILE: [V; 1] = [V::string_parameter(
 )
 .longest(LONGEST)
 .access(|slave| slave.files.membrane.to_string(), |slave, file| Arc::make_mut(&mut slave.files).membrane = file.into())];
-const FILM_PARAMETERS: &[V] = reals(30, 38);
+const FILM_PARAMETERS: &[V] = reals("membrane.shearModulus", "membrane.ogdenExponent3");
 
 /// The viscosity of a film, and what follows from it.
-const VISCOUS_PARAMETERS: &[V] = reals(38, 40);
+const VISCOUS_PARAMETERS: &[V] = reals("membrane.viscousModulus", "membrane.relaxationTime");
 static EFFECTIVE_RESTITUTION: [V; 1] = [V::output(
     "impact.effectiveRestitution",
     "1",

@@ -92,9 +92,9 @@ const SEED: Choice<Harvester> = Choice::SEED;
 /// Every real parameter of the model.
 static REALS: [V; Parameters::TABLE.len()] = real_rows(Quantity::TABLE);
 
-/// Real parameters number `from` to `to`. They are in the table by the release that they came with.
-pub(super) const fn reals(from: usize, to: usize) -> &'static [V] {
-    REALS.split_at(to).0.split_at(from).1
+/// Real parameters from the `first` to the `last` of these names. They are in the table by the release that they came with.
+pub(super) const fn reals(first: &str, last: &str) -> &'static [V] {
+    rows(&REALS, first, last)
 }
 
 /// Parameters that choose or count, in the order of the model.
@@ -115,9 +115,31 @@ static CHOICES: [V; Parameters::CHOICES.len()] = [
     enumeration(&Choice::MEMBRANE_LAW, &MEMBRANE_LAW),
 ];
 
-/// Choices number `from` to `to`, likewise.
-pub(super) const fn choices(from: usize, to: usize) -> &'static [V] {
-    CHOICES.split_at(to).0.split_at(from).1
+/// Choices from the `first` to the `last` of these names.
+pub(super) const fn choices(first: &str, last: &str) -> &'static [V] {
+    rows(&CHOICES, first, last)
+}
+
+const fn rows(table: &'static [V], first: &str, last: &str) -> &'static [V] {
+    table.split_at(place(table, last) + 1).0.split_at(place(table, first)).1
+}
+
+/// Place of the row called `name`. A name that no row has does not compile.
+const fn place(table: &[V], name: &str) -> usize {
+    let mut place = 0;
+    while !is_same(table[place].name(), name) {
+        place += 1;
+    }
+    place
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut same = 0;
+    while same < a.len() && same < b.len() && a[same] == b[same] {
+        same += 1;
+    }
+    same == a.len() && same == b.len()
 }
 
 #[cfg(test)]
