@@ -1,4 +1,4 @@
-//! The outputs of a circuit, whatever solves it.
+//! The outputs of a circuit; they are the same for every solver.
 
 use videg_circuit::{Circuit, Ledger};
 

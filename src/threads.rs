@@ -1,6 +1,6 @@
 //! Work shared among threads: results in order, the first error in order, and progress. A system short of threads gives
-//! fewer of them, which only takes longer; for that reason, and because results are handed on while the work goes on, these
-//! few lines stand here in place of a library's thread pool.
+//! fewer of them, and the work takes longer. A thread pool of a library would fail then, and would return results only at the end; so
+//! these few lines replace it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -63,8 +63,8 @@ impl<R, E, T> Queue<R, E, T> {
     }
 }
 
-/// Does `work` for each of `numbers` on several threads, this one among them; `take` gets the results in order, as many at a
-/// time as are there, while the work goes on. If the work is stopped, all that was begun is finished and taken.
+/// Does `work` for each of `numbers` on several threads, this one among them. During the work `take` gets the results in order, all that
+/// are ready at a time. If the work is stopped, items that have begun are finished and taken.
 ///
 /// # Errors
 /// The first error in the order of the numbers; the results before it are taken.
@@ -226,7 +226,7 @@ mod tests {
             if number.is_multiple_of(17) {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            // Eight ahead of those that are handed on, of which some are being taken.
+            // Work is at most eight ahead of the results given to `take`, which may have some of them still.
             assert!(number < taken.load(Ordering::SeqCst) + 16, "{number} is too far ahead");
             Ok::<_, ()>(number)
         };

@@ -89,9 +89,9 @@ impl Sampler<'_> {
     }
 }
 
-/// Appends to `table` the last of `points` and as many of those before as it takes to be within `tolerance` of all of
-/// them, the first being in the table already: from each point kept to the farthest one that a chord reaches. A chord
-/// may reach as far as the slopes that pass all points in between (within the tolerance) leave room for.
+/// Appends to `table` the last of `points` and those before it that keep straight lines within `tolerance` of all points. The table
+/// already has the first point. From each point in the table a line goes to the farthest point for which some slope passes all points
+/// in between within the tolerance.
 fn thin(points: &[Point], tolerance: [f64; 2], table: &mut CapacitanceTable) -> Result<(), NgspiceError> {
     let mut anchor = 0;
     while anchor + 1 < points.len() {

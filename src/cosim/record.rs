@@ -8,8 +8,8 @@ use crate::progress::Progress;
 use crate::scenario::Scenario;
 use videg_system::atomic_file::{AtomicFile, partial};
 
-/// Writes every communication point to a CSV file as the run goes on, so that memory does not grow with it. Columns
-/// are called as the FMU variables are, units are SI. The file gets its name when it is complete; a run that ends
+/// Writes every communication point to a CSV file during the run, so that memory does not grow with its length. Columns
+/// have the names of the FMU variables, units are SI. The file gets its name when it is complete; a run that ends
 /// early leaves it under another one ([`videg_system::atomic_file::partial`]).
 pub struct CsvRecorder {
     path: PathBuf,

@@ -1,4 +1,4 @@
-//! A folder for somebody who has ngspice and nothing else: netlists, tables, scripts that sum up, expected values.
+//! A folder that needs ngspice only: netlists, tables, scripts that sum up, expected values.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@
 //! - a [`Stop`] is a run of ngspice that ended too early: its results until then are valid;
 //! - [`ReleaseSweep`] follows the net gain over load and voltage of release.
 //!
-//! [`files`] writes data and figures, [`export`] a folder for somebody who has ngspice and nothing else.
+//! [`files`] writes data and figures, [`export`] a folder that needs ngspice only.
 
 mod capacitor;
 mod check;

@@ -161,7 +161,7 @@ pub enum Role {
     Load,
     /// Release elements that burn their voltage.
     Zener,
-    /// Diodes, and whatever else.
+    /// Diodes and all other elements.
     Diode,
     /// Leakage of the films.
     Leakage,

@@ -54,7 +54,7 @@ pub fn read(path: &Path, is_trusted: bool) -> Result<Vec<Card>, NetlistError> {
     let root = folder.canonicalize().map_err(|cause| failed(path, &cause))?;
     let mut reader = Reader { root, is_trusted, left: LARGEST, cards: Vec::new() };
     let lines = reader.lines(path)?;
-    // The first line is the title, whatever it says.
+    // The first line is always the title.
     reader.take(&Rc::from(path), lines.into_iter().skip(1), 0)?;
     Ok(reader.cards)
 }

@@ -69,7 +69,7 @@ fn a_description_of_another_model_is_refused() {
 
 #[test]
 fn without_libraries_the_error_says_where_it_looked_and_why_nothing_was_built() {
-    // A target that nobody builds, lest its libraries lie about.
+    // A target that no other test builds, so that no library of it exists.
     let targets = vec!["i586-pc-windows-msvc".to_owned()];
     let options = Options { build: false, targets, ..Options::default() };
     let error = build_all(&options).unwrap_err();

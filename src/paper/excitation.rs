@@ -70,8 +70,8 @@ impl Cylinder {
     }
 }
 
-/// Velocity of the ball, m/s, in the `index`-th of `count` starts so close to each other that nobody could tell them
-/// apart: evenly spaced over 1e-6 m/s about 0. A chaotic motion forgets them within seconds.
+/// Velocity of the ball, m/s, in the `index`-th of `count` starts that no measurement tells apart: evenly spaced over 1e-6 m/s about
+/// 0. A chaotic motion forgets them within seconds.
 pub fn nudge(index: usize, count: usize) -> f64 {
     1e-6 * ((index as f64 + 0.5) / count as f64 - 0.5)
 }
