@@ -31,6 +31,7 @@ fn median_gain_without_noise() -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_voltage_gain_falls_with_the_intensity_of_the_noise_as_in_fig_17() {
     // A single run with noise deviates by as much as the mean: a heavy tail of runs in which elastic impacts gain energy.
     let none = median_gain_without_noise();
