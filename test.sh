@@ -28,7 +28,7 @@ export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
 # What the stage slow is made of.
 readonly SLOW_STAGES=(unit-slow scale conformance browser book)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
-readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers release coverage)
+readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers miri release coverage)
 
 usage() {
     cat <<'EOF'
@@ -60,6 +60,8 @@ Only when named:
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
   fuzz         each fuzz target for 20 s, from inputs that the stage unit replays anyway; needs a nightly compiler
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
+  miri         unit tests of the model, and the tests of the exporter, in the interpreter Miri, which sees undefined behaviour; needs a
+               nightly compiler
   release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
                licences of the dependencies; installs mingw and builds cargo-deny
   coverage     lines of model, circuit and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
@@ -309,6 +311,16 @@ stage_portability() {
 stage_sanitizers() {
     has_nightly || fail "no nightly compiler, which sanitizers need (rustup toolchain install nightly)"
     run tests/sanitizers/run.sh
+}
+
+# Under Miri tests take some thousand times as long: long ones have fewer cases there, or are left out with a reason. Some read files, so
+# they are not isolated; some compare bits, so Miri must not vary the last digit of powers and logarithms.
+stage_miri() {
+    has_nightly || fail "no nightly compiler, which Miri needs (rustup toolchain install nightly)"
+    cargo +nightly miri --version >/dev/null 2>&1 || run rustup component add miri rust-src --toolchain nightly
+    export MIRIFLAGS="-Zmiri-disable-isolation -Zmiri-deterministic-floats" PROPTEST_CASES=4
+    run cargo +nightly miri test --locked -p videg-model --lib
+    run cargo +nightly miri test --locked -p fmu-abi -p fmu-export --lib --tests
 }
 
 stage_release() {

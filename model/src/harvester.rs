@@ -4,7 +4,9 @@ mod differences;
 mod events;
 mod inputs;
 mod integrator;
+// Thousands of hold intervals of safe code, too many for Miri.
 #[cfg(test)]
+#[cfg(not(miri))]
 mod noise_tests;
 mod outputs;
 mod predicted;

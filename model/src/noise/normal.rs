@@ -140,6 +140,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "two million samples of safe code")]
     fn samples_have_the_moments_of_a_standard_normal() {
         for seed in [7, -1] {
             let samples = samples(seed, 0, MANY);
@@ -153,6 +154,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "two million samples of safe code")]
     fn samples_fill_the_tails_as_a_standard_normal_does() {
         let samples = samples(11, 0, MANY);
         // erfc(z / sqrt 2): P(|xi| > z).
@@ -167,6 +169,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "two million samples of safe code")]
     fn samples_do_not_depend_on_each_other() {
         let samples = samples(5, 0, MANY + 1024);
         // Neighbours, those that come from the same counter or bits, those of other columns, and of the next group.
@@ -180,6 +183,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "two million samples of safe code")]
     fn samples_of_other_seeds_are_independent() {
         let [a, b, c] = [1, 2, -1].map(|seed| samples(seed, 0, MANY));
         for (a, b) in [(&a, &b), (&a, &c), (&b, &c)] {

@@ -273,7 +273,8 @@ mod tests {
 
     #[test]
     fn functions_that_start_flat_are_not_searched_for_ever() {
-        for exponent in 1..12 {
+        // Few where Miri interprets them.
+        for exponent in 1..if cfg!(miri) { 2 } else { 12 } {
             let rising = fit(|x| 1e-6 * (x + 1.0).powi(exponent));
             assert_eq!(rising.first_fall(1.0), None);
             let falling = fit(|x| (x + 1.0).powi(exponent) * (0.5 - x));
