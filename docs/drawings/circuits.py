@@ -18,9 +18,10 @@ TITLES = {"zener": "a Zener diode into a load", "switch": "a switch into a load"
 
 
 class Schematic:
-    """Elements of schemdraw between given points, and labels beside them."""
+    """Elements of schemdraw between given points, and labels beside them; as a template, labels have places for values."""
 
-    def __init__(self) -> None:
+    def __init__(self, is_template: bool = False) -> None:
+        self.is_template = is_template
         self.drawing = schemdraw.Drawing(show=False)
         self.labels: list[str] = []
 
@@ -42,6 +43,10 @@ class Schematic:
         x, y = point
         self.labels.append(text(UNIT * x, -UNIT * y, words, anchor, colour))
 
+    def value(self, name) -> str:
+        """What stands behind a symbol."""
+        return f" = {{{{ v.{name} }}}}" if self.is_template else ""
+
     def current(self, start, end, words, offset, anchor="middle") -> None:
         """An arrow in the direction of a positive current."""
         self.drawing += elm.Line(arrow="->", lw=1.4, arrowwidth=0.2, arrowlength=0.28).at(start).to(end).color(BLUE)
@@ -60,7 +65,7 @@ class Schematic:
         x, y = top
         self.put(elm.SourceV(), (x, y - DROP), top)
         self.ground((x, y - DROP))
-        self.label((x - 0.7, y - DROP / 2 - 0.15), "$U_in$", "end")
+        self.label((x - 0.7, y - DROP / 2 - 0.15), "$U_in$" + self.value("supply"), "end")
         self.current((x + 0.75, y - DROP / 2 - 0.45), (x + 0.75, y - DROP / 2 + 0.45), "$I_in$", (0.2, -0.15), "start")
 
     def load(self, top, release) -> None:
@@ -75,7 +80,7 @@ class Schematic:
         else:
             self.put(elm.ResistorIEC(), top, (x, y - DROP))
         self.ground((x, y - DROP))
-        self.label((x + 0.55, y - DROP / 2 - 0.15), "$U_out$" if release == "storage" else "$R$", "start")
+        self.label((x + 0.55, y - DROP / 2 - 0.15), "$U_out$" + self.value("release") if release == "storage" else "$R$" + self.value("load"), "start")
         self.current((x - 0.65, y - DROP / 2 + 0.45), (x - 0.65, y - DROP / 2 - 0.45), "$I_out$", (-0.2, -0.15), "end")
 
     def release(self, release, start, end, node, one_way) -> None:
@@ -83,19 +88,23 @@ class Schematic:
         middle = ((start[0] + end[0]) / 2, start[1])
         if release == "switch":
             self.put(elm.Switch(), start, end)
-            self.label((middle[0], middle[1] + 0.75), f"${node}$ > $U_z$")
+            self.label((middle[0], middle[1] + 0.75), f"${node}$ > $U_z$" + self.value("release"))
         elif release == "storage":
             self.put(elm.Diode(), start, end)
         elif one_way:
             self.put(elm.Zener().reverse(), start, middle)
             self.put(elm.Diode(), middle, end)
-            self.label(((start[0] + middle[0]) / 2, middle[1] + 0.6), "$U_z$")
+            self.label(((start[0] + middle[0]) / 2, middle[1] + 0.6), "$U_z$" + self.value("release"))
         else:
             self.put(elm.Zener().reverse(), start, end)
-            self.label((middle[0], middle[1] + 0.6), "$U_z$")
+            self.label((middle[0], middle[1] + 0.6), "$U_z$" + self.value("release"))
 
     def svg(self, title, box) -> str:
-        """Lengths of `box` are in units: left, top, width, height."""
+        """Lengths of `box` are in units: left, top, width, height. Values take more room at both sides."""
+        left, top, width, height = box
+        if self.is_template:
+            self.label((3.4, top - height - 0.25), "{{ v.membranes }}", colour=RED)
+            box = (left - 2.1, top, width + 5.2, height + 0.6)
         drawn = self.drawing.get_imagedata("svg").decode()
         body = re.sub(r"^.*?<svg[^>]*>|</svg>\s*$", "", drawn, flags=re.DOTALL)
         body = body.replace("stroke-dasharray:-;", "").replace(" />", "/>\n")
@@ -105,9 +114,9 @@ class Schematic:
         return card((left, -top, width, height), title, body.strip() + "\n" + "\n".join(self.labels))
 
 
-def shared_node(release: str) -> str:
+def shared_node(release: str, is_template: bool = False) -> str:
     """Both membranes on one node, Fig. 8(a)."""
-    it, out = Schematic(), (8.0, 0)
+    it, out = Schematic(is_template), (8.0, 0)
     it.supply((0, 0))
     it.put(elm.Diode(), (0, 0), (2.4, 0))
     it.line((2.4, 0), (4.4, 0))
@@ -119,9 +128,9 @@ def shared_node(release: str) -> str:
     return it.svg(f"Both membranes on one node, {TITLES[release]}", (-2.0, 1.9, 11.8, 5.9))
 
 
-def isolated(release: str) -> str:
+def isolated(release: str, is_template: bool = False) -> str:
     """Each membrane with a charging diode and a release element of its own."""
-    it, high, out = Schematic(), 4.2, (8.0, 0)
+    it, high, out = Schematic(is_template), 4.2, (8.0, 0)
     it.supply((0, 0))
     it.line((0, 0), (0, high))
     it.dot((0, 0))
@@ -137,7 +146,14 @@ def isolated(release: str) -> str:
     return it.svg(f"Isolated membranes, {TITLES[release]}", (-2.0, high + 1.4, 11.8, high + 5.1))
 
 
+LAYOUTS = {"shared": shared_node, "isolated": isolated}
+
+
 def drawings() -> dict[str, str]:
     """File names and contents."""
-    layouts = {"shared": shared_node, "isolated": isolated}
-    return {f"circuit-{name}-{release}.svg": draw(release) for name, draw in layouts.items() for release in TITLES}
+    return {f"circuit-{name}-{release}.svg": draw(release) for name, draw in LAYOUTS.items() for release in TITLES}
+
+
+def templates() -> dict[str, str]:
+    """The same with places for the values of a run."""
+    return {f"circuit-{name}-{release}.svg": draw(release, True) for name, draw in LAYOUTS.items() for release in TITLES}

@@ -48,23 +48,36 @@ def film(x, y, radius, deflection, ball) -> str:
     )
 
 
+def body(left, right, y, radius) -> list[str]:
+    """The cylinder and the frames of its membranes, in section."""
+    walls = [rectangle(left + 12, y + side, right - left - 24, 10, "#9aa5b1") for side in (-radius - 10, radius)]
+    frames = [rectangle(x, y + side, 24, 12, "#d5dae0") for x in (left - 12, right - 12) for side in (-radius - 11, radius - 1)]
+    return [*walls, *frames]
+
+
+def flat(x, y, radius) -> str:
+    """A membrane without ball."""
+    return line(x, y - radius - 4, x, y + radius + 4, f"stroke:{RED};stroke-width:4")
+
+
+def round_ball(x, y, radius) -> str:
+    return f'<circle cx="{x:g}" cy="{y:g}" r="{radius}" fill="#a9cbe8" stroke="#333"/>'
+
+
 def device() -> str:
     """The cylinder with its membranes, and the ball while it presses the left one in."""
     left, right, y, radius, ball, deflection = 108, 332, 104, 36, 21, 24
     middle, centre, low = (left + right) / 2, left - deflection + ball, y + radius + 32
-    walls = [rectangle(left + 12, y + side, right - left - 24, 10, "#9aa5b1") for side in (-radius - 10, radius)]
-    frames = [rectangle(x, y + side, 24, 12, "#d5dae0") for x in (left - 12, right - 12) for side in (-radius - 11, radius - 1)]
     parts = [
         TIPS,
         helper(left, y - radius, left, low + 6),
         helper(left - deflection, y, left - deflection, low + 6),
         helper(centre, y, centre, 200),
         helper(middle, y - radius, middle, 200),
-        *walls,
-        *frames,
-        f'<circle cx="{centre:g}" cy="{y}" r="{ball}" fill="#a9cbe8" stroke="#333"/>',
+        *body(left, right, y, radius),
+        round_ball(centre, y, ball),
         film(left, y, radius, deflection, ball),
-        line(right, y - radius - 4, right, y + radius + 4, f"stroke:{RED};stroke-width:4"),
+        flat(right, y, radius),
         text(centre, y + 6, "$m$"),
         force(centre + ball + 3, y, centre + ball + 60, y),
         text(centre + ball + 34, y - 10, "$f(x)$", colour=BLUE),
@@ -83,6 +96,60 @@ def device() -> str:
         text(right + 58, 199, "$z$", "start"),
     ]
     return card((0, 0, 424.8, 212.4), "The device: a shaken cylinder with a ball between two membranes", "\n".join(parts))
+
+
+def spring(x, y) -> str:
+    """A spring and a damper side by side, from a wall at `x` to a plate."""
+    coil = " ".join(f"L {x + 12 + 7 * k},{y - 12 + (6 if k % 2 else -6)}" for k in range(1, 8))
+    return (
+        line(x, y - 26, x, y + 26, "stroke:#222;stroke-width:3")
+        + f'<path d="M {x},{y - 12} L {x + 12},{y - 12} {coil} L {x + 68},{y - 12} L {x + 80},{y - 12}" fill="none" stroke="#222" stroke-width="1.6"/>'
+        + f'<path d="M {x},{y + 14} L {x + 44},{y + 14} M {x + 44},{y + 8} L {x + 44},{y + 20} M {x + 52},{y + 6} L {x + 30},{y + 6} M {x + 52},{y + 22} '
+        f'L {x + 30},{y + 22} M {x + 52},{y + 6} L {x + 52},{y + 22} M {x + 52},{y + 14} L {x + 80},{y + 14}" fill="none" stroke="#222" stroke-width="1.6"/>'
+        + line(x + 80, y - 26, x + 80, y + 26, "stroke:#222;stroke-width:2")
+    )
+
+
+def values() -> str:
+    """The device as a template with the values of a run: what it does not have is left out."""
+    left, right, y, radius, ball = 196, 424, 98, 40, 22
+    middle, foot = (left + right) / 2, 290
+    dimension = y + radius + 52
+    parts = [
+        TIPS,
+        *body(left, right, y, radius),
+        round_ball(middle, y, ball),
+        flat(left, y, radius),
+        flat(right, y, radius),
+        text(middle, y + 6, "$m$"),
+        text(middle, y - radius - 20, "$M$ = {{ v.mass }}"),
+        text(middle, y + radius + 32, "$m$ = {{ v.ball_mass }}, $r_b$ = {{ v.ball_radius }}"),
+        force(30, y - radius - 5, left - 26, y - radius - 5),
+        text(96, y - radius - 15, "{{ v.drive }}", colour=BLUE),
+        text(30, y - radius + 17, "{{ v.amplitude }}", "start", BLUE),
+        text(30, y - radius + 38, "{{ v.frequency }}", "start", BLUE),
+        text(left - 22, y + radius - 2, "$C_left(t)$", "end", RED),
+        text(right + 24, y - radius + 2, "$C_right(t)$", "start", RED),
+        text(right + 24, y - radius + 26, "$R_2$ = {{ v.radius }}", "start"),
+        text(right + 24, y - radius + 50, "$h_2$ = {{ v.thickness }}", "start"),
+        text(right + 24, y - radius + 74, "{{ v.contact }}", "start"),
+        helper(left + 12, y + radius, left + 12, dimension + 6),
+        helper(right - 12, y + radius, right - 12, dimension + 6),
+        length(left + 12, dimension, right - 12, dimension),
+        text(middle, dimension + 22, "$d$ = {{ v.length }}, free travel $s$ = {{ v.travel }}"),
+        "{%- if let Some(rates) = v.suspension %}",
+        spring(30, foot),
+        text(122, foot - 6, "$k$ = {{ rates.0 }}", "start"),
+        text(122, foot + 20, "$c$ = {{ rates.1 }}", "start"),
+        "{%- endif %}",
+        "{%- if let Some(slope) = v.slope %}",
+        helper(330, foot + 22, 420, foot + 22),
+        '<line x1="330" y1="{{ slope.end.1 }}" x2="{{ slope.end.0 }}" y2="{{ slope.end.2 }}" style="stroke:#222;stroke-width:3"/>',
+        text(432, foot - 6, "$β$ = {{ slope.angle }}", "start"),
+        text(432, foot + 20, "$g$ = {{ slope.gravity }}, $μ$ = {{ slope.friction }}", "start"),
+        "{%- endif %}",
+    ]
+    return card((0, 0, 620, "{{ v.height }}"), "The device with the values of the run, not to scale", "\n".join(parts))
 
 
 def membrane() -> str:
@@ -122,3 +189,8 @@ def membrane() -> str:
 def drawings() -> dict[str, str]:
     """File names and contents."""
     return {"device.svg": device(), "membrane.svg": membrane()}
+
+
+def templates() -> dict[str, str]:
+    """Drawings with places for the values of a run."""
+    return {"device.svg": values()}

@@ -1,4 +1,4 @@
-"""Draws the pictures of `docs/figures`: `.venv/bin/python docs/drawings/draw.py`."""
+"""Draws the pictures of `docs/figures` and the templates of those in reports: `.venv/bin/python docs/drawings/draw.py`."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import circuits
 import device
 import netlists
 
-FOLDER = Path(__file__).resolve().parents[1] / "figures"
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def drawings() -> dict[str, str]:
@@ -14,7 +14,15 @@ def drawings() -> dict[str, str]:
     return device.drawings() | circuits.drawings() | netlists.drawings()
 
 
+def templates() -> dict[str, str]:
+    """The same of the drawings into which a report writes the values of its run."""
+    return device.templates() | circuits.templates()
+
+
+FOLDERS = {ROOT / "docs" / "figures": drawings, ROOT / "src" / "cli" / "drawings": templates}
+
 if __name__ == "__main__":
-    FOLDER.mkdir(exist_ok=True)
-    for name, svg in drawings().items():
-        (FOLDER / name).write_text(svg)
+    for folder, draw in FOLDERS.items():
+        folder.mkdir(exist_ok=True)
+        for name, svg in draw().items():
+            (folder / name).write_text(svg)

@@ -4,7 +4,7 @@ use askama::Template;
 use serde::de::IgnoredAny;
 
 use super::error::ReportError;
-use super::page::{Report, Section};
+use super::page::{Block, Illustration, Report, Section};
 use super::policy::{CHART_LIBRARY, PAGE_SCRIPT, policy};
 use super::table::Table;
 
@@ -22,6 +22,72 @@ struct Page<'a> {
     scripts: Option<(&'static str, &'static str)>,
 }
 
+impl<'a> Page<'a> {
+    fn blocks(&self, section: &'a Section) -> Blocks<'a> {
+        Blocks { section, page: self.report, ids: self.ids }
+    }
+}
+
+/// What stands under a heading.
+#[derive(Template)]
+#[template(path = "blocks.html")]
+struct Blocks<'a> {
+    section: &'a Section,
+    page: &'a Report,
+    ids: &'a [String],
+}
+
+impl<'a> Blocks<'a> {
+    fn of(&self, section: &'a Section) -> Self {
+        Self { section, page: self.page, ids: self.ids }
+    }
+
+    fn picture(&self, figure: &'a Illustration) -> Picture<'a> {
+        Picture { heading: &self.section.heading, figure, id: self.figure_id(figure) }
+    }
+
+    fn figure_id(&self, figure: &Illustration) -> String {
+        let mut all = self.page.sections.iter().flat_map(Section::illustrations);
+        format!("figure-{}", all.position(|other| std::ptr::eq(other, figure)).unwrap_or_default() + 1)
+    }
+
+    /// The first figure of each other section: its id, its box, and id and heading of the section.
+    fn thumbnails(&self) -> Vec<(String, &'a str, &'a str, &'a str)> {
+        let others =
+            self.page.sections.iter().zip(self.ids).filter(|(section, _)| !std::ptr::eq(*section, self.section));
+        let first = |(section, id): (&'a Section, &'a String)| {
+            let figure = *section.illustrations().first()?;
+            let view = figure.svg.split_once("viewBox=\"")?.1.split('"').next()?;
+            Some((self.figure_id(figure), view, id.as_str(), section.heading.as_str()))
+        };
+        others.filter_map(first).collect()
+    }
+}
+
+/// A figure with its caption.
+#[derive(Template)]
+#[template(path = "picture.html")]
+struct Picture<'a> {
+    heading: &'a str,
+    figure: &'a Illustration,
+    id: String,
+}
+
+impl Picture<'_> {
+    /// The figure, with a name for what is drawn, without its title and its description, so that a thumbnail can show it again.
+    fn svg(&self) -> String {
+        let svg = self.figure.svg.trim();
+        let tag = svg.find('>').map_or(0, |end| end + 1);
+        let begin = ["title", "desc"].into_iter().fold(tag, |begin, name| {
+            let is_next = svg[begin..].trim_start().starts_with(&format!("<{name}>"));
+            let end = format!("</{name}>");
+            svg[begin..].find(&end).filter(|_| is_next).map_or(begin, |place| begin + place + end.len())
+        });
+        let drawn = svg[begin..].strip_suffix("</svg>").unwrap_or_default();
+        format!("{}<g id=\"{}\">{drawn}</g></svg>", &svg[..begin], self.id)
+    }
+}
+
 /// Renders a report as one HTML file that needs nothing else.
 ///
 /// All text is escaped; figures are copied and therefore have to be passive SVG. Only a report with a
@@ -37,7 +103,7 @@ pub fn render_html(report: &Report) -> Result<String, ReportError> {
         let section_error = |reason| ReportError::Section { section: section.heading.clone(), reason };
         check(section, &ids).map_err(section_error)
     })?;
-    let has_charts = report.sections.iter().flat_map(|section| &section.figures).any(|figure| figure.chart.is_some());
+    let has_charts = report.sections.iter().flat_map(Section::illustrations).any(|figure| figure.chart.is_some());
     let scripts = has_charts.then(|| (CHART_LIBRARY.as_str(), PAGE_SCRIPT));
     let page = Page { report, ids: &ids, style: include_str!("page.css"), policy: policy(has_charts), scripts };
     Ok(page.render()? + "\n")
@@ -59,8 +125,8 @@ fn section_ids(report: &Report) -> Result<Vec<String>, ReportError> {
 }
 
 fn check(section: &Section, ids: &[String]) -> Result<(), String> {
-    section.tables.iter().try_for_each(|table| check_table(table, ids))?;
-    let faulty = section.figures.iter().find_map(|figure| {
+    section.tables().into_iter().try_for_each(|table| check_table(table, ids))?;
+    let faulty = section.illustrations().into_iter().find_map(|figure| {
         let is_json = |chart: &String| serde_json::from_str::<IgnoredAny>(chart).is_ok();
         let has_data = figure.chart.as_ref().is_none_or(is_json);
         fault(&figure.svg).or((!has_data).then_some("the data of its chart are not JSON"))
@@ -70,10 +136,10 @@ fn check(section: &Section, ids: &[String]) -> Result<(), String> {
 
 fn check_table(table: &Table, ids: &[String]) -> Result<(), String> {
     let columns = table.columns.len();
-    if let Some((row, number)) = table.rows.iter().zip(1..).find(|(row, _)| row.len() != columns) {
-        return Err(format!("table row {number} has {} cells for {columns} columns", row.len()));
+    if let Some((row, number)) = table.rows.iter().zip(1..).find(|(row, _)| row.cells.len() != columns) {
+        return Err(format!("table row {number} has {} cells for {columns} columns", row.cells.len()));
     }
-    let mut targets = table.rows.iter().flatten().filter_map(|cell| cell.target.as_ref());
+    let mut targets = table.rows.iter().flat_map(|row| &row.cells).filter_map(|cell| cell.target.as_ref());
     match targets.find(|target| !ids.contains(target)) {
         Some(target) => Err(format!("a link leads to `{target}`, but no section has this id")),
         None => Ok(()),
@@ -101,6 +167,7 @@ fn fault(svg: &str) -> Option<&'static str> {
 mod tests {
     use super::super::drawing::Drawing;
     use super::super::figure::{Figure, Panel, Series};
+    use super::super::page::KeyNumber;
     use super::super::table::{Cell, Column, Tone};
     use super::*;
 
@@ -139,19 +206,24 @@ mod tests {
     #[test]
     fn content_appears_in_order() {
         let table = Table::new([Column::words("quantity"), Column::numbers("J")]).row(["load", "1"]);
-        let section = Section::new("Energy").text("Words.").table(table).figure(SVG, "Caption.");
-        let html = page(section.warning("Beware.")).unwrap();
+        let section =
+            Section::new("Energy").warning("Beware.").keys([KeyNumber::new("net", "2.5", "mW").note("a gain").main()]);
+        let inner = Section::new("Why").text("Words.").table(table);
+        let html = page(section.folded(inner).figure(SVG, "Caption.")).unwrap();
         let marks = [
             "<h1>Run</h1>",
             "What it shows.",
-            "videg cosim",
             "<h2>Energy</h2>",
             "Beware.",
+            "<dt>net</dt>",
+            "a gain",
+            "<summary>Why</summary>",
             "Words.",
             "<th scope=\"col\" class=\"number\">J</th>",
             "<td class=\"number\">1</td>",
             "<svg",
             "Caption.",
+            "videg cosim",
             "Generated by videg 0.1.0.",
         ];
         let places: Vec<usize> = marks.iter().map(|m| html.find(m).expect(m)).collect();
@@ -211,6 +283,22 @@ mod tests {
         assert!(lively.contains("default-src 'none'; script-src 'sha256-"));
         assert_eq!(lively.matches("id=\"chart-library\"").count(), 1);
         assert_eq!(lively.matches(">Look closer</button>").count(), 2);
+    }
+
+    #[test]
+    fn what_is_folded_is_checked_as_well_and_thumbnails_show_what_is_there() {
+        let folded = |inner: Section| page(Section::new("S").folded(Section::new("F").folded(inner)));
+        let ragged = Table::new([Column::words("a")]).row(["1", "2"]);
+        assert!(folded(Section::new("I").table(ragged)).is_err());
+        assert!(folded(Section::new("I").figure("<img>", "")).is_err());
+        let report = Report::new("", "")
+            .section(Section::new("Summary").thumbnails())
+            .section(Section::new("Words"))
+            .section(Section::new("Two").id("two").text("").folded(Section::new("F").figures([(SVG, ""), (SVG, "")])));
+        let html = render_html(&report).unwrap();
+        assert_eq!(html.matches("<use ").count(), 1);
+        assert!(html.contains("<a href=\"#two\"") && html.contains("<use href=\"#figure-1\"/>"));
+        assert!(html.contains("</title><g id=\"figure-1\"></g></svg>") && html.contains("<g id=\"figure-2\">"));
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub struct Report {
     pub(super) lead: String,
     pub(super) command: String,
     pub(super) generated_by: String,
+    pub(super) is_paired: bool,
     pub(super) sections: Vec<Section>,
 }
 
@@ -30,6 +31,11 @@ impl Report {
         Self { generated_by: program.into(), ..self }
     }
 
+    /// Puts two sections with one figure each side by side, where there is room.
+    pub fn paired(self) -> Self {
+        Self { is_paired: true, ..self }
+    }
+
     /// Adds a section at the end.
     pub fn section(mut self, section: Section) -> Self {
         self.sections.push(section);
@@ -37,16 +43,29 @@ impl Report {
     }
 }
 
-/// One heading and what stands under it: notes, text, tables, figures, in this order.
+/// One heading and what stands under it, in the order in which it was added.
 #[derive(Debug, Clone, Default)]
 #[must_use]
 pub struct Section {
     pub(super) heading: String,
-    pub(super) text: Vec<String>,
     pub(super) id: String,
-    pub(super) tables: Vec<Table>,
-    pub(super) figures: Vec<Illustration>,
-    pub(super) notes: Vec<Note>,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// A part of a section.
+#[derive(Debug, Clone)]
+pub(super) enum Block {
+    Text(String),
+    Note(Note),
+    Keys(Vec<KeyNumber>),
+    Table(Table),
+    Figure(Illustration),
+    /// Figures side by side where there is room.
+    Grid(Vec<Illustration>),
+    /// What a reader opens to see; its heading is the line to click on.
+    Folded(Section),
+    /// Small pictures of all figures of the page below, which lead to their sections.
+    Thumbnails,
 }
 
 impl Section {
@@ -55,46 +74,128 @@ impl Section {
         Self { heading: heading.into(), ..Self::default() }
     }
 
-    /// Adds a paragraph of plain text.
-    pub fn text(mut self, paragraph: impl Into<String>) -> Self {
-        self.text.push(paragraph.into());
+    fn with(mut self, block: Block) -> Self {
+        self.blocks.push(block);
         self
     }
 
-    /// Sets the name that links lead to, instead of a number: small letters, digits, `.`, `-` and `_`.
+    /// Adds a paragraph of plain text.
+    pub fn text(self, paragraph: impl Into<String>) -> Self {
+        self.with(Block::Text(paragraph.into()))
+    }
+
+    /// Sets the name that links lead to, instead of a number: small letters, digits, `.`, `-` and `_`. A folded section has none.
     pub fn id(self, id: impl Into<String>) -> Self {
         Self { id: id.into(), ..self }
     }
 
+    /// Adds numbers in big type, the main one first.
+    pub fn keys(self, numbers: impl IntoIterator<Item = KeyNumber>) -> Self {
+        self.with(Block::Keys(numbers.into_iter().collect()))
+    }
+
     /// Adds a table.
-    pub fn table(mut self, table: Table) -> Self {
-        self.tables.push(table);
-        self
+    pub fn table(self, table: Table) -> Self {
+        self.with(Block::Table(table))
     }
 
     /// Adds a figure: the output of [`render_svg`](super::render_svg) and a caption.
-    pub fn figure(mut self, svg: impl Into<String>, caption: impl Into<String>) -> Self {
-        self.figures.push(Illustration { svg: svg.into(), chart: None, caption: caption.into() });
-        self
+    pub fn figure(self, svg: impl Into<String>, caption: impl Into<String>) -> Self {
+        self.with(Block::Figure(Illustration::still(svg, caption)))
     }
 
     /// Adds a figure that a reader can look into: the page then carries the script of the charts, some 4.7 MB.
-    pub fn drawing(mut self, drawing: Drawing, caption: impl Into<String>) -> Self {
-        let Drawing { svg, chart } = drawing;
-        self.figures.push(Illustration { svg, chart: Some(chart), caption: caption.into() });
-        self
+    pub fn drawing(self, drawing: Drawing, caption: impl Into<String>) -> Self {
+        self.with(Block::Figure(Illustration::interactive(drawing, caption)))
+    }
+
+    /// Adds still figures with their captions side by side, where there is room.
+    pub fn figures<S: Into<String>>(self, figures: impl IntoIterator<Item = (S, S)>) -> Self {
+        let stills = figures.into_iter().map(|(svg, caption)| Illustration::still(svg, caption));
+        self.with(Block::Grid(stills.collect()))
+    }
+
+    /// Adds figures to look into likewise.
+    pub fn drawings<S: Into<String>>(self, drawings: impl IntoIterator<Item = (Drawing, S)>) -> Self {
+        let drawings = drawings.into_iter().map(|(drawing, caption)| Illustration::interactive(drawing, caption));
+        self.with(Block::Grid(drawings.collect()))
+    }
+
+    /// Adds a part that a reader opens by its heading.
+    pub fn folded(self, inner: Section) -> Self {
+        self.with(Block::Folded(inner))
+    }
+
+    /// Adds small pictures of all figures in the other sections of the page, which lead there.
+    pub fn thumbnails(self) -> Self {
+        self.with(Block::Thumbnails)
     }
 
     /// Adds a remark.
-    pub fn note(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(Note { is_warning: false, text: text.into() });
-        self
+    pub fn note(self, text: impl Into<String>) -> Self {
+        self.with(Block::Note(Note { is_warning: false, text: text.into() }))
     }
 
     /// Adds a warning.
-    pub fn warning(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(Note { is_warning: true, text: text.into() });
-        self
+    pub fn warning(self, text: impl Into<String>) -> Self {
+        self.with(Block::Note(Note { is_warning: true, text: text.into() }))
+    }
+
+    /// All figures, those of folded parts included.
+    pub(super) fn illustrations(&self) -> Vec<&Illustration> {
+        self.blocks.iter().flat_map(Block::illustrations).collect()
+    }
+
+    /// All tables likewise.
+    pub(super) fn tables(&self) -> Vec<&Table> {
+        self.blocks.iter().flat_map(Block::tables).collect()
+    }
+}
+
+impl Block {
+    fn illustrations(&self) -> Vec<&Illustration> {
+        match self {
+            Self::Figure(figure) => vec![figure],
+            Self::Grid(figures) => figures.iter().collect(),
+            Self::Folded(inner) => inner.illustrations(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn tables(&self) -> Vec<&Table> {
+        match self {
+            Self::Table(table) => vec![table],
+            Self::Folded(inner) => inner.tables(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// A number in big type.
+#[derive(Debug, Clone, Default)]
+#[must_use]
+pub struct KeyNumber {
+    pub(super) label: String,
+    pub(super) value: String,
+    pub(super) unit: String,
+    pub(super) note: String,
+    pub(super) is_main: bool,
+}
+
+impl KeyNumber {
+    /// What it is, its value and its unit; an empty unit takes no space.
+    pub fn new(label: impl Into<String>, value: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { label: label.into(), value: value.into(), unit: unit.into(), ..Self::default() }
+    }
+
+    /// Adds a short line below.
+    pub fn note(self, note: impl Into<String>) -> Self {
+        Self { note: note.into(), ..self }
+    }
+
+    /// Makes it the answer of the page: larger than the others.
+    pub fn main(self) -> Self {
+        Self { is_main: true, ..self }
     }
 }
 
@@ -106,6 +207,16 @@ pub(super) struct Illustration {
     /// The data of an interactive chart, see [`Drawing::chart`].
     pub chart: Option<String>,
     pub caption: String,
+}
+
+impl Illustration {
+    fn still(svg: impl Into<String>, caption: impl Into<String>) -> Self {
+        Self { svg: svg.into(), chart: None, caption: caption.into() }
+    }
+
+    fn interactive(Drawing { svg, chart }: Drawing, caption: impl Into<String>) -> Self {
+        Self { svg, chart: Some(chart), caption: caption.into() }
+    }
 }
 
 /// A remark, set off from the text.

@@ -5,7 +5,15 @@
 #[must_use]
 pub struct Table {
     pub(super) columns: Vec<Column>,
-    pub(super) rows: Vec<Vec<Cell>>,
+    pub(super) rows: Vec<Row>,
+}
+
+/// A row of a table.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    pub cells: Vec<Cell>,
+    /// Whether it stands out from the others.
+    pub is_marked: bool,
 }
 
 impl Table {
@@ -15,8 +23,17 @@ impl Table {
     }
 
     /// Adds a row at the bottom.
-    pub fn row<C: Into<Cell>>(mut self, cells: impl IntoIterator<Item = C>) -> Self {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
+    pub fn row<C: Into<Cell>>(self, cells: impl IntoIterator<Item = C>) -> Self {
+        self.with(cells, false)
+    }
+
+    /// Adds a row that stands out from the others.
+    pub fn marked<C: Into<Cell>>(self, cells: impl IntoIterator<Item = C>) -> Self {
+        self.with(cells, true)
+    }
+
+    fn with<C: Into<Cell>>(mut self, cells: impl IntoIterator<Item = C>, is_marked: bool) -> Self {
+        self.rows.push(Row { cells: cells.into_iter().map(Into::into).collect(), is_marked });
         self
     }
 }

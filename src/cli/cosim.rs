@@ -12,13 +12,14 @@ use super::options::RunOptions;
 use super::picture::{Electrical, Probe};
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading, mechanics};
-use super::{Exit, cosim_report, excitation, output, packaging, picture, time_series};
+use super::{Exit, cosim_report, output, packaging, parameter_table, picture, time_series};
 use crate::cosim::{
-    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, EnergyBalance, ForeignCircuit,
-    LabelledCircuit, Mapping, Method, NetlistCircuit, Options, Powers, Results,
+    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, Device, EnergyBalance,
+    ForeignCircuit, LabelledCircuit, Mapping, Method, NetlistCircuit, Options, Powers, Results,
 };
 use crate::ngspice::UserNetlist;
 use crate::scenario::Scenario;
+use videg_report::Section;
 use videg_system::atomic_file;
 
 /// Default values of the circuit. They differ from the start values of its FMU.
@@ -168,8 +169,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         _ => Electrical::Paper,
     };
     let svg = picture::cosim(&results.trace, &scenario, drawn)?.svg;
-    let report = cosim_report::report(&scenario, &results, svg.clone());
-    let html = videg_report::render_html(&excitation::described(report, &harvester, &scenario)?)?;
+    let device = Device::of(&harvester, &scenario)?;
+    let of_user = |section: Section| match solver {
+        CircuitSolver::Foreign(user) => {
+            let set = [&user.mapping.settings[..], scenario.changes()].concat();
+            parameter_table::with_fmu(section, user.fmu.description(), &set)
+        }
+        _ => section,
+    };
+    let report = cosim_report::report(&scenario, &results, &device, svg.clone(), of_user)?;
+    let html = videg_report::render_html(&report)?;
     let files = run_output::write(&folder, &[csv], &svg, &html)?;
     let (first, comparison) = results.circuits.split_first().context("a co-simulation without a circuit")?;
     let output = Output {

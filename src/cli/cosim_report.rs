@@ -1,11 +1,11 @@
 //! The energy table of a co-simulation, the reasons why its rows differ, and the HTML report.
 
 use super::format::{Sheet, significant};
-use super::run_output;
-use crate::cosim::{CouplingSummary, EnergyBalance, LabelledCircuit, Powers, Results};
+use super::{drawn, energy_flow, excitation, parameter_table, run_output};
+use crate::cosim::{CouplingSummary, Device, EnergyBalance, LabelledCircuit, Powers, Results};
 use crate::ngspice::Role;
 use crate::scenario::Scenario;
-use videg_report::{Report, Section};
+use videg_report::{KeyNumber, Report, Section};
 
 /// Why the rows of the energy table differ (derived in the design notes of Eq. (13)).
 pub const EXPLANATION: [&str; 10] = [
@@ -184,29 +184,73 @@ fn coupling_line(coupling: &CouplingSummary) -> String {
 }
 
 /// Caption of the figure.
-pub const FIGURE_CAPTION: &str = "(a) Relative displacement, (b) capacitances and (c) membrane voltages in the last seconds \
-    of the run; (d) energies of the first circuit since its start.";
-const OWN_CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) membrane voltages and waveforms of the \
-    circuit in the last seconds of the run; last panel: energies since its start.";
+pub const FIGURE_CAPTION: &str = "The last seconds of the run: (a) relative displacement, (b) capacitances, (c) membrane voltages, (d) energies of \
+    the circuit, which grow in steps at the impacts; (e) the same energies since the start of the run.";
+const OWN_CAPTION: &str = "The last seconds of the run: (a) relative displacement, (b) capacitances, (c) membrane voltages, then waveforms \
+    and energies of the circuit; last panel: energies since the start of the run.";
 
-/// The HTML report.
-pub fn report(scenario: &Scenario, results: &Results, svg: String) -> Report {
-    let mechanics = run_output::mechanics(scenario, &results.mechanics);
+/// The numbers that a user looks for first.
+fn keys(scenario: &Scenario, results: &Results, device: &Device) -> Vec<KeyNumber> {
+    let Some((first, others)) = results.circuits.split_first() else { return Vec::new() };
+    let [from, to] = scenario.window;
+    let Powers { net_power, load_power, supply_power } = first.powers;
+    let largest = [net_power, load_power, supply_power]
+        .into_iter()
+        .filter(|power| !power.is_nan())
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let [load, supply] = if is_netlist(results) { ["gain", "cost"] } else { ["load power", "supply power"] };
+    let note = format!("{}: mean over {from} to {to} s; load - supply + change of what is stored", first.label);
+    let mut keys = vec![
+        run_output::power("net power", net_power, largest).note(note).main(),
+        run_output::power(load, load_power, largest),
+        run_output::power(supply, supply_power, largest),
+    ];
+    let best = others.iter().max_by(|a, b| a.powers.net_power.total_cmp(&b.powers.net_power));
+    if let Some(best) = best.filter(|best| best.powers.net_power > net_power) {
+        let power = best.powers.net_power;
+        keys.push(
+            run_output::power("best net power compared", power, power.abs().max(largest)).note(best.label.clone()),
+        );
+    }
+    keys.extend([
+        run_output::voltage_gain(scenario, &results.mechanics),
+        run_output::impact_rate(scenario, &results.mechanics, device),
+    ]);
+    keys
+}
+
+/// The HTML report; its end is that of `circuit`, the parameters of the user's circuit, or nothing.
+pub fn report(
+    scenario: &Scenario,
+    results: &Results,
+    device: &Device,
+    svg: String,
+    circuit: impl FnOnce(Section) -> Section,
+) -> anyhow::Result<Report> {
     let caption = if results.is_foreign { OWN_CAPTION } else { FIGURE_CAPTION };
-    let section = Section::new("Where the energy goes");
+    let answer = run_output::result(&results.warnings)
+        .keys(keys(scenario, results, device))
+        .figure(svg, caption)
+        .table(powers(scenario, results).html())
+        .table(run_output::mechanics(scenario, &results.mechanics).html())
+        .folded(Section::new("Why P of Eq. (14) is not among the powers").text(NO_GAIN));
+    let names = if is_netlist(results) { &energy_flow::NETLIST } else { &energy_flow::PAPER };
+    let flow = energy_flow::section(&results.flows, device, scenario.window, names)?;
+    let energies = flow.unwrap_or_else(|| Section::new("Energy flow"));
     let energies = if is_netlist(results) {
-        section.text(closure(results)).table(elements(results).html())
+        energies.table(elements(results).html()).text(closure(results))
     } else {
-        section.text(explanation(results, " ")).table(energies(results).html())
+        let why = if results.is_foreign { "What the energies are" } else { "Why the circuits differ" };
+        energies.table(self::energies(results).html()).folded(Section::new(why).text(explanation(results, " ")))
     };
-    run_output::report(format!("Co-simulation of {}", scenario.name), scenario)
-        .section(
-            run_output::result(&results.warnings)
-                .table(powers(scenario, results).html())
-                .table(mechanics.html())
-                .text(NO_GAIN),
-        )
-        .section(energies)
-        .section(Section::new("Coupling").text(coupling_lines(results)))
-        .section(Section::new("Motion, capacitances, voltages and energies").figure(svg, caption))
+    let parameters = parameter_table::section(device, scenario);
+    let parameters = match &results.asked {
+        Some(asked) => parameter_table::with_circuit(parameters, asked, scenario),
+        None => circuit(parameters),
+    };
+    let report = run_output::report(format!("Co-simulation of {}", scenario.name), scenario).section(answer);
+    let drawn = drawn::section(device, results.asked.as_ref())?;
+    let report = drawn.into_iter().fold(report, Report::section).section(energies).section(parameters);
+    let report = excitation::described(report, device, scenario.until)?;
+    Ok(report.section(Section::new("Coupling").text(coupling_lines(results))))
 }

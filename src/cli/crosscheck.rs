@@ -11,7 +11,7 @@ use super::options::RunOptions;
 use super::progress::TaskBar;
 use super::run_output::{self, RunOutput, file_list, heading};
 use super::{Exit, crosscheck_report as page, output, packaging};
-use crate::cosim::{Charges, CircuitSample, CircuitSummary, Energies};
+use crate::cosim::{Charges, CircuitSample, CircuitSummary, Device, Energies};
 use crate::crosscheck::{
     self, ComparedCircuit, Crosscheck, Options, QuantityCheck, ReleaseSweep, Repeat, Solver, Stop, export, files,
 };
@@ -107,7 +107,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let found = crosscheck::run(&inputs, &TaskBar::new(&scenario.name))?;
     let (mut written, figures) = files::write(&folder, &found)?;
     let html = folder.join("report.html");
-    output::write(&html, page::html(&found, figures)?)?;
+    output::write(&html, page::html(&found, &Device::of(&fmu, &scenario)?, figures)?)?;
     written.extend([html, folder.join("result.json")]);
     if let Some(folder) = &arguments.export {
         written.extend(export::write(folder, &found)?);

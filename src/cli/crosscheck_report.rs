@@ -1,11 +1,11 @@
 //! The tables of a crosscheck, as text and in the HTML report.
 
 use super::format::{Sheet, significant};
-use super::{output, run_output};
-use crate::cosim::Energies;
+use super::{drawn, output, parameter_table, run_output};
+use crate::cosim::{Device, Energies};
 use crate::crosscheck::figures::{OVERLAY_CAPTION, SWEEP_CAPTION};
 use crate::crosscheck::{Agreement, ComparedCircuit, Crosscheck, QuantityCheck, Solver, SweepCurve};
-use videg_report::{self, ReportError, Section};
+use videg_report::{self, KeyNumber, Report, Section};
 
 const HEADINGS: [&str; 9] = [
     "quantity",
@@ -154,18 +154,39 @@ pub fn sweep(found: &Crosscheck) -> Option<Sheet> {
 }
 
 /// The HTML report; `figures` are the overlay and, if there is a sweep, that of the sweep.
-pub fn html(found: &Crosscheck, figures: Vec<String>) -> Result<String, ReportError> {
+pub fn html(found: &Crosscheck, device: &Device, figures: Vec<String>) -> anyhow::Result<String> {
     let scenario = &found.scenario;
     let title = format!("Crosscheck of {}", scenario.name);
     let subtitle = format!("{}; 0 to {} s; circuit: {}.", scenario.description, scenario.until, found.label);
     let report = output::report(title, subtitle);
-    videg_report::render_html(&sections(found, figures).into_iter().fold(report, videg_report::Report::section))
+    let mut sections = sections(found, figures);
+    sections.splice(1..1, drawn::section(device, Some(&found.settings))?);
+    let report = sections.into_iter().fold(report, Report::section);
+    let parameters = parameter_table::section(device, scenario);
+    let parameters = parameter_table::with_circuit(parameters, &found.settings, scenario);
+    Ok(videg_report::render_html(&report.section(parameters))?)
 }
 
-/// The sections of the report.
+/// The verdicts in big type.
+fn keys(found: &Crosscheck) -> [KeyNumber; 4] {
+    let compared: Vec<_> = found.checks.iter().filter_map(|check| check.agreement.as_ref()).collect();
+    let claims: Vec<_> = found.checks.iter().filter_map(|check| check.claim.as_ref()).collect();
+    let count = |holds: usize, all: usize| format!("{holds} of {all}");
+    let agree = count(compared.iter().filter(|agreement| agreement.agree).count(), compared.len());
+    let hold = count(claims.iter().filter(|claim| claim.holds).count(), claims.len());
+    let used = compared.iter().map(|agreement| agreement.deviation / agreement.tolerance).fold(0.0, f64::max);
+    let verdict = if found.passed() { "agree" } else { "disagree" };
+    [
+        KeyNumber::new("solvers", verdict, "").note("closed forms, embedded solver and ngspice on one C(t)").main(),
+        KeyNumber::new("comparisons within tolerance", agree, ""),
+        KeyNumber::new("largest part of a tolerance used", significant(100.0 * used, 3), "%"),
+        KeyNumber::new("claims that hold in ngspice", hold, ""),
+    ]
+}
+
+/// The sections of the report, with those of the `figures` that there are.
 pub fn sections(found: &Crosscheck, figures: Vec<String>) -> Vec<Section> {
-    let conclusion = found.warnings.iter().cloned().fold(Section::new("Conclusion"), Section::warning);
-    let conclusion = found.conclusion.iter().cloned().fold(conclusion, Section::text);
+    let answer = found.warnings.iter().cloned().fold(Section::new("Result"), Section::warning).keys(keys(found));
     let checks = found.checks.iter().map(|check| {
         let claim = check
             .claim
@@ -176,17 +197,22 @@ pub fn sections(found: &Crosscheck, figures: Vec<String>) -> Vec<Section> {
     let checks = Sheet::new(HEADINGS, &[0, 1, 7, 8], checks.collect());
     let mechanics = run_output::mechanics(&found.scenario, &found.mechanics.summary);
     let mut figures = figures.into_iter();
+    let answer = figures.next().into_iter().fold(answer, |answer, figure| answer.figure(figure, OVERLAY_CAPTION));
     let mut sections = vec![
-        conclusion,
-        Section::new("Claim by claim").text(LEGEND).table(checks.html()),
-        Section::new("The paper's circuit, an ideal switch, a storage").text(QUICK).table(comparison(found).html()),
-        Section::new("Embedded solver and ngspice").figure(figures.next().unwrap_or_default(), OVERLAY_CAPTION),
-        Section::new("Mechanics").table(mechanics.html()),
+        found.conclusion.iter().cloned().fold(answer, Section::text),
+        Section::new("The paper's circuit, an ideal switch, a storage")
+            .table(comparison(found).html())
+            .folded(Section::new("What the quick release is").text(QUICK)),
     ];
-    if let Some((sheet, figure)) = sweep(found).zip(figures.next()) {
-        let section = Section::new("Net gain over voltage of release and load").table(sheet.html());
-        sections.push(section.figure(figure, SWEEP_CAPTION));
+    if let Some(sheet) = sweep(found) {
+        let section = Section::new("Net gain over voltage of release and load");
+        let section = figures.next().into_iter().fold(section, |section, figure| section.figure(figure, SWEEP_CAPTION));
+        sections.push(section.table(sheet.html()));
     }
+    sections.extend([
+        Section::new("Claim by claim").table(checks.html()).folded(Section::new("How to read this table").text(LEGEND)),
+        Section::new("Mechanics").table(mechanics.html()),
+    ]);
     sections
 }
 

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use serde_json::{Value, json};
-use videg_report::{Report, Section};
+use videg_report::{KeyNumber, Report, Section};
 
 use super::format::{Sheet, significant};
-use super::{output, run_output};
+use super::{drawn, output, parameter_table, run_output};
 use crate::artefact::Picture;
+use crate::cosim::Device;
 use crate::dynamics::orbits::{Branch, End, Orbit};
 use crate::dynamics::{Basins, Diagram, Motion, Problem, periods};
 use crate::scenario::{Scenario, Setting};
@@ -138,19 +139,61 @@ fn bifurcation_table(problem: &Problem, branches: &[Branch]) -> Sheet {
 }
 
 /// The report.
-pub fn report(scenario: &Scenario, problem: &Problem, found: &Found, drawn: Vec<Picture>) -> Report {
+pub fn report(
+    scenario: &Scenario,
+    problem: &Problem,
+    found: &Found,
+    device: &Device,
+    pictures: Vec<Picture>,
+) -> anyhow::Result<Report> {
     let subtitle = format!("{}.", scenario.description);
-    let mut section = Section::new("Result").text(summary(found));
-    if found.has_orbits && found.orbits.is_empty() {
-        section = section.text(format!("{NO_ORBITS}."));
-    } else if found.has_orbits {
-        section = section.text(ORBITS).table(orbit_table(&found.orbits).html());
+    let answer = Section::new("Result").keys(keys(found));
+    let answer =
+        pictures.into_iter().fold(answer, |section, picture| section.drawing(picture.drawing, picture.caption));
+    let report =
+        output::report(format!("Dynamics of {}", scenario.name), subtitle).section(answer.text(summary(found)));
+    let section = Section::new("Periodic orbits");
+    let report = match (found.has_orbits, found.orbits.is_empty()) {
+        (false, _) => report,
+        (true, true) => report.section(section.text(format!("{NO_ORBITS}."))),
+        (true, false) => {
+            let legend = Section::new("How orbits are named, and what a multiplier is").text(ORBITS);
+            report.section(section.table(orbit_table(&found.orbits).html()).folded(legend))
+        }
+    };
+    let report = if found.branches.is_empty() {
+        report
+    } else {
+        let legend = Section::new("What happens at a bifurcation").text(BRANCHES);
+        let table = bifurcation_table(problem, &found.branches).html();
+        report.section(Section::new("Bifurcations").table(table).folded(legend))
+    };
+    let drawn = drawn::section(device, None)?;
+    Ok(drawn.into_iter().fold(report, Report::section).section(parameter_table::section(device, scenario)))
+}
+
+/// What the motion is, in big type.
+fn keys(found: &Found) -> Vec<KeyNumber> {
+    let motion = match found.motion.recurrence() {
+        Some(count) => KeyNumber::new("the motion comes back after", periods(Some(count), ""), ""),
+        None => KeyNumber::new("the motion", "does not come back", ""),
+    };
+    let kind = if found.exponent > 0.0 { "neighbours part" } else { "neighbours do not part" };
+    let mut keys = vec![
+        motion.note(format!("from the start of the case, after {} periods", found.transient)).main(),
+        KeyNumber::new("<U>, Eq. (15)", significant(found.motion.own_gain(), 5), "V/s"),
+        KeyNumber::new("largest Lyapunov exponent", significant(found.exponent, 4), "1/s").note(kind),
+    ];
+    if found.has_orbits {
+        let stable = found.orbits.iter().filter(|orbit| orbit.is_stable()).count();
+        keys.push(
+            KeyNumber::new("periodic orbits", found.orbits.len().to_string(), "").note(format!("{stable} stable")),
+        );
     }
-    if !found.branches.is_empty() {
-        section = section.text(BRANCHES).table(bifurcation_table(problem, &found.branches).html());
-    }
-    let section = drawn.into_iter().fold(section, |section, picture| section.drawing(picture.drawing, picture.caption));
-    output::report(format!("Dynamics of {}", scenario.name), subtitle).section(section)
+    keys.extend(found.basins.iter().map(|basins| {
+        KeyNumber::new("attractors", basins.attractors.len().to_string(), "").note("of the starts in the map of basins")
+    }));
+    keys
 }
 
 /// What is said where the search finds nothing.

@@ -1,16 +1,14 @@
 //! The section of a report on the excitation: over time, and its spectrum.
 
-use crate::cosim::Excitation;
-use crate::scenario::Scenario;
-use fmu_import::Fmu;
+use crate::cosim::{Device, Excitation};
 use videg_report::{Figure, Panel, Report, Section, Series, render_svg};
 
 /// Periods of a harmonic excitation that are shown.
 const SHOWN: usize = 200;
 
 /// `report` with the section; as it is for an FMU that is not the harvester.
-pub fn described(report: Report, fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<Report> {
-    let Some(excitation) = Excitation::of(fmu, scenario)? else { return Ok(report) };
+pub fn described(report: Report, device: &Device, until: f64) -> anyhow::Result<Report> {
+    let Some(excitation) = Excitation::of(device, until) else { return Ok(report) };
     let (series, spectrum) = (excitation.series(), excitation.spectrum());
     // A recording is shown as a whole, of a harmonic some periods.
     let shown = if excitation.file.is_empty() { &series[..series.len().min(SHOWN)] } else { &series[..] };

@@ -145,37 +145,83 @@ pub fn cosim(trace: &Trace, scenario: &Scenario, circuit: Electrical) -> Result<
         Electrical::Netlist(probes) => (NETLIST_ENERGIES, probes),
         Electrical::Foreign(probes) => (FOREIGN_ENERGIES, probes),
     };
-    let energies = curves.map(|(_, value, _)| {
-        points(&trace.overview, |point| point.circuits.first().map_or(f64::NAN, |c| 1e3 * value(&c.ledger)))
-    });
-    let eq13 = points(&trace.overview, |point| 1e3 * point.harvester.energy_eq13());
+    let [steps, energies] = [&trace.detail, &trace.overview].map(|trace| EnergyLines::new(trace, &curves));
     let probes = Probes::new(trace, probes);
     // On a shared node the two voltages are one.
     let shared = left == right;
-    let mut voltages = Panel::new("(c)", "time (s)", "voltage (kV)").height(120.0);
+    let mut voltages = Panel::new("(c)", "", "voltage (kV)").height(120.0);
     voltages = if shared {
         voltages.series(Series::points("both membranes", &left))
     } else {
         voltages.series(Series::points("left membrane", &left)).series(Series::points("right membrane", &right))
     };
     let figure = mechanics.panels(Figure::new(title(scenario)), detail_range(trace, scenario));
-    let probed = probes.panels();
-    if !probed.is_empty() {
-        voltages = voltages.share_x_with_next();
-    }
-    let letter = letter(3 + probed.len());
-    let figure = probed.into_iter().fold(figure.panel(voltages), Figure::panel);
-    let mut panel = Panel::new(letter, "time (s)", "energy (mJ)").height(150.0);
-    let known = |energy: &Points| energy.iter().any(|(_, value)| !value.is_nan());
-    let drawn = curves.into_iter().zip(&energies).enumerate().filter(|(_, (_, energy))| known(energy));
-    for (color, ((name, _, style), energy)) in drawn {
-        panel = panel.series(Series::points(name, energy).style(style).color(color));
-    }
-    let figure = figure.panel(panel.series(Series::points("W, Eq. (13)", &eq13).color(6))).caption(
-        "Relative displacement of the ball, capacitances and voltages of the membranes in the last seconds of the run, \
-         and the energies since its start. Lines join capacitances and voltages at communication points.",
+    let (probed, voltages) = (probes.panels(), voltages.share_x_with_next());
+    let (detail, whole) = (letter(3 + probed.len()), letter(4 + probed.len()));
+    let steps = steps.panel(Panel::new(detail, "time (s)", "energy (mJ)").height(120.0), &curves);
+    let whole = energies.panel(Panel::new(whole, "time (s)", "energy (mJ)").height(120.0), &curves);
+    let figure = probed.into_iter().map(Panel::share_x_with_next).fold(figure.panel(voltages), Figure::panel);
+    let figure = figure.panel(steps).panel(whole).caption(
+        "Relative displacement of the ball, capacitances and voltages of the membranes and energies of the circuit in the last seconds of \
+         the run, and the energies since its start. Lines join capacitances and voltages at communication points.",
     );
     Drawing::new(&figure)
+}
+
+/// Energies of the first circuit, mJ, since the first point of a trace.
+struct EnergyLines {
+    curves: [Points; 4],
+    eq13: Points,
+}
+
+impl EnergyLines {
+    fn new(trace: &[TracePoint], curves: &[EnergyCurve; 4]) -> Self {
+        let since_first = |value: &dyn Fn(&TracePoint) -> f64| {
+            let first = trace.first().map_or(0.0, value);
+            thinned(&points(trace, |point| 1e3 * (value(point) - first)))
+        };
+        let curve = |(_, value, _): &EnergyCurve| {
+            since_first(&|point| point.circuits.first().map_or(f64::NAN, |circuit| value(&circuit.ledger)))
+        };
+        Self { curves: curves.each_ref().map(curve), eq13: since_first(&|point| point.harvester.energy_eq13()) }
+    }
+
+    /// `panel` with those that are known.
+    fn panel<'a>(&'a self, mut panel: Panel<'a>, curves: &[EnergyCurve; 4]) -> Panel<'a> {
+        for (color, ((name, _, style), energy)) in curves.iter().zip(&self.curves).enumerate() {
+            if energy.iter().any(|(_, value)| !value.is_nan()) {
+                panel = panel.series(Series::points(*name, energy).style(*style).color(color));
+            }
+        }
+        panel.series(Series::points("W, Eq. (13)", &self.eq13).color(6))
+    }
+}
+
+/// Without points that lie on the line between those that stay, within a pixel's fraction: energies hold and step, and a report shall be small.
+fn thinned(points: &[(f64, f64)]) -> Points {
+    /// Largest distance from the line, over the range of all values.
+    const TOLERANCE: f64 = 5e-4;
+    let (low, high) = points.iter().fold((f64::MAX, f64::MIN), |(low, high), (_, y)| (low.min(*y), high.max(*y)));
+    let tolerance = TOLERANCE * (high - low);
+    let mut kept: Points = points.first().copied().into_iter().collect();
+    // Slopes of the lines from the last point kept that pass all points since.
+    let (mut least, mut most) = (f64::MIN, f64::MAX);
+    for pair in points.windows(2) {
+        let [before, here] = [pair[0], pair[1]];
+        let from = kept.last().copied().unwrap_or(before);
+        let slopes = |(x, y): (f64, f64), (x0, y0): (f64, f64)| {
+            [(y - tolerance - y0) / (x - x0), (y + tolerance - y0) / (x - x0)]
+        };
+        let [low, high] = slopes(here, from);
+        (least, most) = (least.max(low), most.min(high));
+        let slope = (here.1 - from.1) / (here.0 - from.0);
+        if !(least <= slope && slope <= most) && before != from {
+            kept.push(before);
+            [least, most] = slopes(here, before);
+        }
+    }
+    kept.extend(points.last().filter(|last| points.len() > 1 && kept.last() != Some(*last)));
+    kept
 }
 
 /// A waveform of a user's circuit that was asked for.
@@ -225,14 +271,11 @@ impl Probes {
                 axes.push(&probe.axis);
             }
         }
-        let last = axes.len().saturating_sub(1);
         let panel = |(index, axis): (usize, &&str)| {
             let curves = self.curves.iter().filter(|(probe, _)| probe.axis == **axis);
-            let panel = curves
-                .fold(Panel::new(letter(3 + index), "", *axis).height(120.0), |panel, (probe, points)| {
-                    panel.series(Series::points(probe.name.as_str(), points))
-                });
-            if index < last { panel.share_x_with_next() } else { panel }
+            curves.fold(Panel::new(letter(3 + index), "", *axis).height(120.0), |panel, (probe, points)| {
+                panel.series(Series::points(probe.name.as_str(), points))
+            })
         };
         axes.iter().enumerate().map(panel).collect()
     }
@@ -268,6 +311,33 @@ pub fn simulate(trace: &Trace, scenario: &Scenario) -> Result<String, ReportErro
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thinned_points_stay_close_to_all_that_are_left_out() {
+        let mut random = fastrand::Rng::with_seed(7);
+        for kind in 0..40 {
+            let mut y = 0.0;
+            let all: Points = (0..2000)
+                .map(|k| {
+                    let step = if random.f64() < 0.02 { 10.0 * random.f64() } else { 0.0 };
+                    y += if kind % 2 == 0 { step } else { 0.01 * (f64::from(k) * 0.03).sin() + 1e-3 * step };
+                    (f64::from(k) * 1e-3, y)
+                })
+                .collect();
+            let kept = thinned(&all);
+            assert!(kept.len() < all.len() / 3 && kept[0] == all[0] && kept.last() == all.last());
+            let range = all.iter().map(|point| point.1).fold(f64::MIN, f64::max)
+                - all.iter().map(|point| point.1).fold(f64::MAX, f64::min);
+            for (x, y) in all {
+                let after = kept.partition_point(|point| point.0 < x).clamp(1, kept.len() - 1);
+                let [(x0, y0), (x1, y1)] = [kept[after - 1], kept[after]];
+                let line = y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+                assert!((line - y).abs() <= 1.001e-3 * range, "{x}: {line} for {y} of {range}");
+            }
+        }
+        assert_eq!(thinned(&[]), []);
+        assert_eq!(thinned(&[(0.0, f64::NAN), (1.0, f64::NAN)]).len(), 2);
+    }
 
     #[test]
     fn a_cubic_is_its_own_curve() {

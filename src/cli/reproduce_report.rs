@@ -7,9 +7,10 @@ use serde::Serialize;
 use super::{cosim_report, crosscheck_report, format, output};
 use crate::cosim::Results;
 use crate::crosscheck::Crosscheck;
+use crate::crosscheck::figures::{OVERLAY_CAPTION, SWEEP_CAPTION};
 use crate::paper::{Artefact, Finding, Verdict};
 use fmu_import::Fmu;
-use videg_report::{self, Cell, Column, Drawing, Section, Table, Tone};
+use videg_report::{self, Cell, Column, Drawing, KeyNumber, Section, Table, Tone};
 
 /// One table or figure in the report. Field names are the keys of `--json`.
 #[derive(Serialize)]
@@ -23,42 +24,61 @@ pub struct Chapter {
     /// The files written.
     pub files: Vec<PathBuf>,
     #[serde(skip)]
-    sections: Vec<Section>,
+    section: Section,
 }
 
 impl Chapter {
     /// A table or figure of the paper.
     pub fn new(name: &'static str, title: &'static str, artefact: Artefact, files: Vec<PathBuf>) -> Self {
         let Artefact { findings, text, tables, pictures, .. } = artefact;
-        let section = text.into_iter().fold(Section::new(title).id(name), Section::text);
+        let section = Section::new(title).id(name);
+        let section = if findings.is_empty() { section } else { section.text(verdicts(&findings)) };
+        let section = section.drawings(pictures.into_iter().map(|picture| (picture.drawing, picture.caption)));
         let numbers = findings.iter().fold(Table::new(columns()), |table, finding| table.row(row(None, finding)));
-        let section = if findings.is_empty() { section } else { section.table(numbers) };
-        let section = tables.into_iter().fold(section, Section::table);
-        let section =
-            pictures.into_iter().fold(section, |section, picture| section.drawing(picture.drawing, picture.caption));
-        Self { name, title, findings, files, sections: vec![section] }
+        let inner = text.into_iter().fold(Section::new("Numbers and explanations"), Section::text);
+        let inner = if findings.is_empty() { inner } else { inner.table(numbers) };
+        let inner = tables.into_iter().fold(inner, Section::table);
+        Self { name, title, findings, files, section: section.folded(inner) }
     }
 
     /// Where the energy goes.
     pub fn audit(name: &'static str, results: &Results, drawing: Drawing, files: Vec<PathBuf>) -> Self {
         let title = "Energy audit of Figure 14";
-        let section = Section::new(title)
-            .id(name)
-            .text(cosim_report::EXPLANATION.join(" "))
-            .text(cosim_report::coupling_lines(results))
+        let inner = Section::new("Energies and explanations")
             .table(cosim_report::energies(results).html())
-            .drawing(drawing, cosim_report::FIGURE_CAPTION);
-        Self { name, title, findings: Vec::new(), files, sections: vec![section] }
+            .text(cosim_report::EXPLANATION.join(" "))
+            .text(cosim_report::coupling_lines(results));
+        let section = Section::new(title).id(name).drawings([(drawing, cosim_report::FIGURE_CAPTION)]).folded(inner);
+        Self { name, title, findings: Vec::new(), files, section }
     }
 
     /// What ngspice says.
     pub fn crosscheck(name: &'static str, found: &Crosscheck, figures: Vec<String>, files: Vec<PathBuf>) -> Self {
         let title = "Crosscheck with ngspice";
-        let lead = format!("{}; circuit: {}.", found.scenario.description, found.label);
-        let mut sections = vec![Section::new(title).id(name).text(lead)];
-        sections.extend(crosscheck_report::sections(found, figures));
-        Self { name, title, findings: Vec::new(), files, sections }
+        let lead =
+            format!("{}; 0 to {} s; circuit: {}.", found.scenario.description, found.scenario.until, found.label);
+        let captions = [OVERLAY_CAPTION, SWEEP_CAPTION].map(str::to_owned);
+        let section = Section::new(title).id(name).text(lead).figures(figures.into_iter().zip(captions));
+        let section = crosscheck_report::sections(found, Vec::new()).into_iter().fold(section, Section::folded);
+        Self { name, title, findings: Vec::new(), files, section }
     }
+}
+
+/// The verdicts of the numbers that the paper speaks of, by their frequency in the order of the enumeration.
+fn counts<'a>(findings: impl Iterator<Item = &'a Finding> + Clone) -> impl Iterator<Item = (Verdict, usize)> {
+    let count = move |verdict| (verdict, findings.clone().filter(|finding| finding.verdict == verdict).count());
+    ORDER.into_iter().map(count).filter(|(_, count)| *count > 0)
+}
+
+/// From good to bad.
+const ORDER: [Verdict; 6] =
+    [Verdict::Agrees, Verdict::WithinEnsemble, Verdict::Tail, Verdict::Explained, Verdict::Differs, Verdict::Beyond];
+
+/// One line on the numbers of a chapter.
+fn verdicts(findings: &[Finding]) -> String {
+    let shown: Vec<_> =
+        counts(findings.iter()).map(|(verdict, count)| format!("{}: {count}", verdict.words())).collect();
+    shown.join("; ")
 }
 
 /// Headings of the summary table.
@@ -92,9 +112,10 @@ pub fn write(
         "Every table and figure of \"Energy harvesting from a DE-based dynamic vibro-impact system\", computed through the \
          FMI 2.0 co-simulation interface of VibroImpactHarvester.fmu, and what lies beyond the paper.",
     )
+    .paired()
     .section(summary(chapters, warnings, quick));
-    for section in chapters.iter().flat_map(|chapter| &chapter.sections) {
-        report = report.section(section.clone());
+    for chapter in chapters {
+        report = report.section(chapter.section.clone());
     }
     let path = folder.join("report.html");
     output::write(&path, &videg_report::render_html(&report.section(versions(fmu)))?)?;
@@ -111,16 +132,24 @@ fn summary(chapters: &[Chapter], warnings: &[String], quick: bool) -> Section {
                   says in words holds; within ensemble - the motion is chaotic, and the paper's value lies within the \
                   middle 95 % of nearby starts; in the tail - it lies outside of these; explained - the reason beside it \
                   accounts for the difference. Numbers of which the paper says nothing stand with each figure below.";
+    let all = chapters.iter().flat_map(|chapter| &chapter.findings);
+    let compared = rows.len();
+    let keys = counts(all).map(|(verdict, count)| {
+        let key = KeyNumber::new(verdict.words(), count.to_string(), "");
+        if verdict == Verdict::Agrees {
+            key.note(format!("of {compared} numbers that the paper has")).main()
+        } else {
+            key
+        }
+    });
     let section = Section::new("Summary").id("summary");
-    let mut section = if rows.is_empty() {
-        section.text("The paper says nothing of the numbers below.")
-    } else {
-        section.text(legend).table(rows.into_iter().fold(Table::new(columns()), Table::row))
-    };
-    if quick {
-        section = section.warning("Made with --quick: fewer samples and coarser grids.");
+    let section = if quick { section.warning("Made with --quick: fewer samples and coarser grids.") } else { section };
+    let section = warnings.iter().cloned().fold(section, Section::warning).keys(keys).thumbnails();
+    if rows.is_empty() {
+        return section.text("The paper says nothing of the numbers below.");
     }
-    warnings.iter().cloned().fold(section, Section::warning)
+    let table = rows.into_iter().fold(Table::new(columns()), Table::row);
+    section.folded(Section::new("All numbers beside the paper's, and what the verdicts mean").text(legend).table(table))
 }
 
 fn columns() -> impl Iterator<Item = Column> {

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use videg_report::{Report, Section};
+use videg_report::{KeyNumber, Report, Section};
 
 use super::format::{Sheet, deviation, significant};
 use super::output;
-use crate::cosim::MechanicsSummary;
+use crate::cosim::{Device, MechanicsSummary};
 use crate::scenario::{PaperValues, Scenario, Setting};
 
 /// The keys of `--json` for every run: scenario and mechanics.
@@ -76,6 +76,38 @@ pub fn report(title: String, scenario: &Scenario) -> Report {
 /// The section of a report with the `warnings` of a run.
 pub fn result(warnings: &[String]) -> Section {
     warnings.iter().cloned().fold(Section::new("Result"), Section::warning)
+}
+
+/// A mean power in big type: W, mW or uW by the size of the `largest` that it stands with.
+pub fn power(label: &str, watt: f64, largest: f64) -> KeyNumber {
+    let (unit, factor) = match largest.abs() {
+        large if large >= 0.1 => ("W", 1.0),
+        small if small < 1e-6 && small > 0.0 => ("uW", 1e6),
+        _ => ("mW", 1e3),
+    };
+    let value = if watt.is_nan() { "-".to_owned() } else { significant(factor * watt, 4) };
+    KeyNumber::new(label, value, unit)
+}
+
+/// `<U>` in big type, beside the paper's.
+pub fn voltage_gain(scenario: &Scenario, mechanics: &MechanicsSummary) -> KeyNumber {
+    let found = mechanics.average_voltage_gain;
+    let number = KeyNumber::new("<U>, Eq. (15)", significant(found, 5), "V/s");
+    match scenario.paper.voltage_gain {
+        Some(paper) => number.note(format!("paper: {paper} ({})", deviation(found, paper))),
+        None => number,
+    }
+}
+
+/// Impacts per period of the harmonic excitation, or per second if there is none.
+pub fn impact_rate(scenario: &Scenario, mechanics: &MechanicsSummary, device: &Device) -> KeyNumber {
+    let rate = f64::from(mechanics.impacts) / scenario.until;
+    let note = format!("{} in {} s", mechanics.impacts, scenario.until);
+    let harmonic = device.parameters.as_ref().map(|(parameters, _)| parameters);
+    match harmonic.filter(|parameters| parameters.cylinder_amplitude() > 0.0) {
+        Some(p) => KeyNumber::new("impacts per period", significant(rate / p.frequency, 4), "").note(note),
+        None => KeyNumber::new("impacts per second", significant(rate, 4), "").note(note),
+    }
 }
 
 /// The list of files written.

@@ -12,13 +12,13 @@ use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
 use super::run_output::{self, RunOutput, file_list, heading};
-use super::{Exit, excitation, output, picture, time_series};
-use crate::cosim::CsvRecorder;
+use super::{Exit, drawn, energy_flow, excitation, output, parameter_table, picture, time_series};
+use crate::cosim::{CsvRecorder, Device};
 use crate::scenario::Scenario;
 use crate::simulate::{Options, Results, Simulation};
 use fmu_import::Fmu;
 use law::Law;
-use videg_report::Section;
+use videg_report::Report;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -43,14 +43,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
     let csv = folder.join("timeseries.csv");
-    let Results { mechanics, warnings, trace, .. } = record(&fmu, &scenario, &csv)?;
-    let svg = picture::simulate(&trace, &scenario)?;
-    let table = run_output::mechanics(&scenario, &mechanics);
-    let text = table.text();
-    let page = run_output::report(format!("Simulation of {}", scenario.name), &scenario)
-        .section(run_output::result(&warnings).table(table.html()))
-        .section(Section::new("Motion, capacitances and gains").figure(svg.clone(), CAPTION));
-    let page = excitation::described(page, &fmu, &scenario)?;
+    let results = record(&fmu, &scenario, &csv)?;
+    let svg = picture::simulate(&results.trace, &scenario)?;
+    let page = report(&scenario, &results, &Device::of(&fmu, &scenario)?, svg.clone())?;
+    let Results { mechanics, warnings, .. } = results;
+    let text = run_output::mechanics(&scenario, &mechanics).text();
     let files = run_output::write(&folder, &[csv], &svg, &videg_report::render_html(&page)?)?;
     let output = RunOutput::new(&scenario, mechanics, &warnings, &files);
     let text = [heading("simulate", &scenario), text, file_list(&files)];
@@ -60,6 +57,23 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 
 const CAPTION: &str = "(a) Relative displacement, (b) capacitances, (c) velocities in the last seconds of the run; (d) sum \
     of the voltage gains U_DE4 - U_in since its start.";
+
+/// The HTML report.
+fn report(scenario: &Scenario, results: &Results, device: &Device, svg: String) -> anyhow::Result<Report> {
+    let Results { mechanics, flows, warnings, .. } = results;
+    let keys = [
+        run_output::voltage_gain(scenario, mechanics).main(),
+        run_output::impact_rate(scenario, mechanics, device),
+        run_output::power("P, Eq. (14)", mechanics.average_power_eq13, 0.0),
+    ];
+    let answer = run_output::result(warnings).keys(keys).figure(svg, CAPTION);
+    let report = run_output::report(format!("Simulation of {}", scenario.name), scenario)
+        .section(answer.table(run_output::mechanics(scenario, mechanics).html()));
+    let drawn = drawn::section(device, None)?;
+    let flow = energy_flow::section(flows, device, scenario.window, &energy_flow::PAPER)?;
+    let report = drawn.into_iter().chain(flow).fold(report, Report::section);
+    excitation::described(report.section(parameter_table::section(device, scenario)), device, scenario.until)
+}
 
 /// Runs the harvester alone and writes the time series to `csv`.
 fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {

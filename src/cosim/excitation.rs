@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use fmu_import::Fmu;
 use videg_model::{ExcitationKind, Setup};
 
+use super::Device;
 use super::spectrum::amplitudes;
-use super::{CosimError, HarvesterFmu};
-use crate::scenario::{Scenario, Setting};
 
 /// Most samples; a longer time is cut off at its end.
 const MOST: f64 = 262_144.0;
@@ -33,22 +31,14 @@ pub struct Excitation {
 }
 
 impl Excitation {
-    /// That of `scenario`; none if `fmu` is another model, or has its recording in its resources.
-    ///
-    /// # Errors
-    /// As [`HarvesterFmu::new`].
-    pub fn of(fmu: &Fmu, scenario: &Scenario) -> Result<Option<Self>, CosimError> {
-        // Those of a circuit are no matter here.
-        let is_mechanical = |setting: &&Setting| fmu.description().variable(&setting.name).is_ok();
-        let mechanical: Vec<_> = scenario.settings.iter().filter(is_mechanical).cloned().collect();
-        let Some((parameters, file)) = HarvesterFmu::new(fmu, scenario, &mechanical)?.parameters() else {
-            return Ok(None);
-        };
+    /// That of a run of `device` to `until`, s; none if it is another model, or has its recording in its resources.
+    pub fn of(device: &Device, until: f64) -> Option<Self> {
+        let (parameters, file) = device.parameters.as_ref()?;
         if file.is_empty() {
-            return Ok(Some(Self::sampled(&Setup::from(&parameters), file, scenario.until)));
+            return Some(Self::sampled(&Setup::from(parameters), String::new(), until));
         }
-        let Ok(recording) = videg_data::recording::read(Path::new(&file)) else { return Ok(None) };
-        Ok(Some(Self::sampled(&parameters.with_recording(Some(&recording)), file, scenario.until)))
+        let recording = videg_data::recording::read(Path::new(file)).ok()?;
+        Some(Self::sampled(&parameters.with_recording(Some(&recording)), file.clone(), until))
     }
 
     /// From 0 to `until`, s, or as long as nothing but a recording that is not repeated excites the cylinder.

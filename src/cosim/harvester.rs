@@ -4,7 +4,7 @@ use super::CosimError;
 use super::balance::ENERGIES;
 use super::instance::{SavedState, read, references};
 use crate::scenario::{Scenario, Setting};
-use fmu_import::{Fmu, Instance, Logging, Status, Value};
+use fmu_import::{Causality, Fmu, Instance, Logging, Status, Value, Variable};
 use videg_model::Parameters;
 
 /// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
@@ -88,6 +88,8 @@ pub struct HarvesterFmu {
     voltages: [u32; 2],
     bias_voltage: f64,
     feedback: Option<Feedback>,
+    /// References of the mechanical energies, if the FMU has them.
+    energies: Option<[u32; ENERGIES.len()]>,
     saved: SavedState,
 }
 
@@ -98,8 +100,6 @@ struct Feedback {
     takes_rates: bool,
     /// Reference of the electrical work, if the FMU sums it up.
     work: Option<[u32; 1]>,
-    /// References of the mechanical energies, if the FMU has them.
-    energies: Option<[u32; ENERGIES.len()]>,
 }
 
 impl HarvesterFmu {
@@ -126,7 +126,15 @@ impl HarvesterFmu {
         instance.exit_initialization_mode()?;
         let [bias_voltage] = read(&instance, &bias)?;
         let feedback = Feedback::of(fmu, &instance, &voltages)?;
-        Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, saved: SavedState::default() })
+        let (energies, saved) = (references(fmu, ENERGIES).ok(), SavedState::default());
+        Ok(Self { instance, reals, counts, voltages, bias_voltage, feedback, energies, saved })
+    }
+
+    /// Values of all parameters, in the order of the FMU.
+    pub(super) fn settings(&self) -> Vec<(&Variable, Value)> {
+        let variables = self.instance.description().variables.iter();
+        let parameters = variables.filter(|variable| variable.causality == Causality::Parameter);
+        parameters.filter_map(|it| Some((it, self.instance.get_by_name(&it.name).ok()?))).collect()
     }
 
     /// The parameters, and the file of the recording; none if the FMU lacks one of them or has another type for it.
@@ -185,10 +193,9 @@ impl HarvesterFmu {
         work.map(|reference| read(&self.instance, &reference).map(|[work]| -work)).transpose()
     }
 
-    /// Values of [`ENERGIES`], if the voltages act on the harvester and it has them.
+    /// Values of [`ENERGIES`], if the harvester has them.
     pub(super) fn energies(&self) -> Result<Option<[f64; ENERGIES.len()]>, CosimError> {
-        let energies = self.feedback.and_then(|feedback| feedback.energies);
-        energies.map(|references| read(&self.instance, &references)).transpose()
+        self.energies.map(|references| read(&self.instance, &references)).transpose()
     }
 
     /// dC/dt of the membranes, left and right, F/s, at the communication point.
@@ -254,6 +261,6 @@ impl Feedback {
         let mut trial = fmu.instantiate("trial", Logging::default())?;
         let takes_rates = trial.set_real_input_derivatives(voltages, &[1, 1], &[0.0, 0.0]).is_ok();
         let work = references(fmu, [ELECTRICAL_WORK]).ok();
-        Ok(Some(Self { takes_rates, work, energies: references(fmu, ENERGIES).ok() }))
+        Ok(Some(Self { takes_rates, work }))
     }
 }

@@ -4,8 +4,8 @@ use super::adaptive::StepControl;
 use super::coupling::CouplingWork;
 use super::signal::{Curve, Line};
 use super::{
-    Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, ElementEnergy, EnergyBalance, Gains,
-    HarvesterFmu, HarvesterSample, MechanicsSummary, Method, Powers, Schedule,
+    Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, ElementEnergy, EnergyBalance, Flows,
+    Gains, HarvesterFmu, HarvesterSample, MechanicsSummary, Method, Powers, Schedule,
 };
 use crate::scenario::Scenario;
 
@@ -49,6 +49,8 @@ pub struct Outcome {
     pub coupling: CouplingSummary,
     /// The energy balance of harvester and first circuit, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
+    /// Mean flows of energy of harvester and first circuit over the averaging window.
+    pub flows: Flows,
     /// Warnings of the harvester, before and in the run.
     pub warnings: Vec<String>,
 }
@@ -114,7 +116,7 @@ impl Master {
         let window = self.scenario.window;
         let mut point = self.start()?;
         let energies_at_start = self.harvester.energies()?;
-        let (mut gains, mut ledgers) = ([None; 2], [None, None]);
+        let (mut gains, mut ledgers, mut mechanical) = ([None; 2], [None, None], [None; 2]);
         loop {
             let harvester = &point.harvester;
             let row = Row { time: point.time, harvester, circuits: &point.circuits, probes: &point.probes };
@@ -128,6 +130,11 @@ impl Master {
             for (ledger, edge) in ledgers.iter_mut().zip(window) {
                 if ledger.is_none() && point.time >= edge {
                     *ledger = Some(point.circuits.iter().map(|circuit| circuit.ledger).collect::<Vec<_>>());
+                }
+            }
+            for (energies, edge) in mechanical.iter_mut().zip(window) {
+                if energies.is_none() && point.time >= edge {
+                    *energies = self.harvester.energies()?;
                 }
             }
             if point.time >= self.scenario.until {
@@ -152,14 +159,17 @@ impl Master {
         };
         let coupling = self.work.summary(&self.coupling);
         let balance = energies
+            .filter(|_| self.harvester.feels_voltage())
             .zip(point.circuits.first())
             .map(|((start, end), circuit)| EnergyBalance::new(start, end, &circuit.ledger));
         let [before, after] = ledgers.map(Option::unwrap_or_default);
         let powers = before.iter().zip(&after).map(|(before, after)| Powers::over(window, before, after)).collect();
+        let ledgers = [before.first(), after.first()];
+        let flows = Flows::over(window, mechanical, ledgers);
         let elements = self.circuits.first_mut().map_or_else(|| Ok(Vec::new()), |circuit| circuit.elements())?;
         let mut warnings = self.harvester.warnings();
         warnings.extend(self.circuits.iter().flat_map(|circuit| circuit.notes().iter().cloned()));
-        Ok(Outcome { mechanics, circuits: point.circuits, elements, powers, coupling, balance, warnings })
+        Ok(Outcome { mechanics, circuits: point.circuits, elements, powers, coupling, balance, flows, warnings })
     }
 
     fn start(&self) -> Result<Point, CosimError> {

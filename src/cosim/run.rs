@@ -10,8 +10,8 @@ use super::ratios::{CapacitanceRatios, best_release_voltage};
 use super::settings::{CircuitRequest, label, split_between, voltage_warning};
 use super::{
     CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, ElementEnergy, EmbeddedCircuit, EnergyBalance,
-    FmuCircuit, ForeignCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit, Observer,
-    Outcome, Powers, TimeProgress, Trace,
+    Flows, FmuCircuit, ForeignCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit,
+    Observer, Outcome, Powers, TimeProgress, Trace,
 };
 use crate::ngspice::{self, Elements};
 use crate::progress::Progress;
@@ -80,6 +80,10 @@ pub struct Results {
     pub coupling: CouplingSummary,
     /// The energy balance, with electrostatic feedback.
     pub balance: Option<EnergyBalance>,
+    /// Mean flows of energy over the averaging window.
+    pub flows: Flows,
+    /// The circuit asked for with all its parameters, unless it is one of the user.
+    pub asked: Option<Settings>,
     /// Sum of `U_in` dC over all impacts, `U_in` that of the supply, C; 0 for a circuit of the user.
     pub cycle_charge: f64,
     /// Warnings about the validity of the numbers.
@@ -156,7 +160,8 @@ impl<'a> Cosimulation<'a> {
         let Self { master, scenario, labels, asked, bias_voltage } = self;
         let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));
         let outcome = master.run(&mut [recorder, &mut trace, &mut time])?;
-        let Outcome { mechanics, circuits: samples, elements, powers, coupling, balance, mut warnings } = outcome;
+        let Outcome { mechanics, circuits: samples, elements, powers, coupling, balance, flows, mut warnings } =
+            outcome;
         warnings.extend(asked.and_then(|asked| voltage_warning(&asked, bias_voltage)));
         warnings.extend(coupling.warning());
         let labelled = labels.into_iter().zip(&samples).zip(powers).map(|((label, sample), powers)| LabelledCircuit {
@@ -171,7 +176,19 @@ impl<'a> Cosimulation<'a> {
         // Those of our own netlists are no names of the user.
         let elements = if asked.is_some() { Vec::new() } else { elements };
         let is_foreign = asked.is_none();
-        Ok(Results { mechanics, circuits, is_foreign, elements, coupling, balance, cycle_charge, warnings, trace })
+        Ok(Results {
+            mechanics,
+            circuits,
+            is_foreign,
+            elements,
+            coupling,
+            balance,
+            flows,
+            asked,
+            cycle_charge,
+            warnings,
+            trace,
+        })
     }
 }
 

@@ -5,8 +5,8 @@ mod contacts;
 pub use contacts::{ContactSummary, Contacts};
 
 use crate::cosim::{
-    CircuitRequest, CosimError, Coupling, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome, TimeProgress,
-    Trace,
+    CircuitRequest, CosimError, Coupling, Flows, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome,
+    TimeProgress, Trace,
 };
 use crate::progress::Progress;
 use crate::scenario::Scenario;
@@ -26,6 +26,8 @@ pub struct Options<'a> {
 pub struct Results {
     /// Impacts and gains.
     pub mechanics: MechanicsSummary,
+    /// Mean flows of energy over the averaging window.
+    pub flows: Flows,
     /// How long the membranes were deflected, and how far.
     pub contacts: Contacts,
     /// Warnings about the validity of the numbers.
@@ -64,8 +66,8 @@ impl<'a> Simulation<'a> {
         let (mut trace, mut time) = (Trace::of(scenario), TimeProgress::new(progress, scenario.until));
         let mut contacts = Contacts::new(trace.detail_from());
         let outcome = master.run(&mut [recorder, &mut trace, &mut contacts, &mut time])?;
-        let Outcome { mechanics, mut warnings, .. } = outcome;
+        let Outcome { mechanics, flows, mut warnings, .. } = outcome;
         warnings.extend(circuit.names().map(|names| format!("{names} left out: simulate runs no circuit, cosim does")));
-        Ok(Results { mechanics, contacts, warnings, trace })
+        Ok(Results { mechanics, flows, contacts, warnings, trace })
     }
 }

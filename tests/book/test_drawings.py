@@ -3,16 +3,14 @@
 from xml.etree import ElementTree
 
 import draw
-from harness import ROOT
-
-FIGURES = ROOT / "docs" / "figures"
 
 
 def test_every_drawing_is_in_git_as_it_is_drawn():
-    drawings = draw.drawings()
-    assert {path.name for path in FIGURES.glob("*.svg")} == set(drawings)
-    changed = [name for name, svg in drawings.items() if (FIGURES / name).read_text() != svg]
-    assert changed == [], "run .venv/bin/python docs/drawings/draw.py and look at the pictures"
+    for folder, drawn in draw.FOLDERS.items():
+        drawings = drawn()
+        assert {path.name for path in folder.glob("*.svg")} == set(drawings)
+        changed = [name for name, svg in drawings.items() if (folder / name).read_text() != svg]
+        assert changed == [], "run .venv/bin/python docs/drawings/draw.py and look at the pictures"
 
 
 def test_every_drawing_has_a_title_and_paper_behind_it():

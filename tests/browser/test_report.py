@@ -6,11 +6,28 @@ import re
 import pytest
 from playwright.sync_api import TimeoutError
 
-WIDTHS = [375, 1440]
+WIDTHS = [375, 800, 1440]
 SCHEMES = ["light", "dark"]
 
 # Both sides of the page, which text and figures must not leave unless a box of their own scrolls.
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+# What sticks out of the page and is in no box that scrolls.
+BEYOND = """() => [...document.querySelectorAll('body *')].filter(it => {
+    if (it.closest('.scroll, .plot, .chart, pre, .thumbnails svg, desc') || !it.checkVisibility()) return false;
+    const box = it.getBoundingClientRect();
+    return box.width > 0 && (box.right > document.documentElement.clientWidth + 1 || box.left < -1);
+}).map(it => it.outerHTML.slice(0, 100))"""
+# Texts of a picture that reach over its edge.
+CLIPPED = """picture => {
+    const frame = picture.getBoundingClientRect();
+    return [...picture.querySelectorAll('text')].filter(text => {
+        const box = text.getBoundingClientRect();
+        return box.width > 0 && (box.left < frame.left - 1 || box.right > frame.right + 1 || box.top < frame.top - 1 || box.bottom > frame.bottom + 1);
+    }).map(text => text.textContent);
+}"""
+UNFOLD = "() => document.querySelectorAll('details').forEach(details => { details.open = true; })"
+# Height of a page of the report on a desktop, in screens.
+SCREENS = "() => document.documentElement.scrollHeight / 900"
 PANELS = "box => box.querySelectorAll('.cartesianlayer > .subplot').length"
 RANGES = """box => Object.fromEntries(
     Object.entries(box._fullLayout).filter(([name]) => /^xaxis/.test(name)).map(([name, axis]) => [name, axis.range])
@@ -56,12 +73,15 @@ def test_the_page_fits_and_every_picture_is_drawn(visit, width, scheme):
     visited = visit(width, scheme)
     page = visited.page
     visited.shoot(f"{width}-{scheme}")
-    assert page.evaluate(OVERFLOW) <= 0
+    assert page.evaluate(OVERFLOW) <= 0 and page.evaluate(BEYOND) == []
+    page.evaluate(UNFOLD)
+    assert page.evaluate(OVERFLOW) <= 0 and page.evaluate(BEYOND) == []
     pictures = page.locator("figure .plot > svg").all()
     assert len(pictures) == page.locator("figure").count() > 0
     for picture in pictures:
         box = picture.bounding_box()
         assert box["width"] > 200 and box["height"] > 50
+        assert picture.evaluate(CLIPPED) == []
         assert picture.locator("path, polyline, polygon, circle").count() > 0
 
 
@@ -70,6 +90,7 @@ def test_the_page_fits_and_every_picture_is_drawn(visit, width, scheme):
 def test_every_chart_opens_with_all_its_panels_and_closes_again(visit, width, scheme):
     visited = visit(width, scheme)
     page = visited.page
+    page.evaluate(UNFOLD)
     for number, figure in enumerate(page.locator("figure.interactive").all(), 1):
         look_closer(figure)
         box, panels = figure.locator(".chart"), chart_of(figure)["panels"]
@@ -150,3 +171,37 @@ def test_every_link_leads_somewhere_within_the_page(visit):
     page = visit().page
     for target in page.locator("a[href]").evaluate_all("links => links.map(link => link.getAttribute('href'))"):
         assert target.startswith("#") and page.locator(f"[id='{target[1:]}']").count() == 1
+
+
+def test_the_answer_comes_first(visit):
+    page = visit().page
+    keys, figures = page.locator(".keys .value"), page.locator("figure")
+    if keys.count() == 0:
+        return
+    assert keys.first.bounding_box()["y"] < 400
+    assert figures.first.bounding_box()["y"] < 900 or page.locator(".thumbnails").count() == 1
+
+
+def test_the_paper_takes_few_screens_and_thumbnails_show_their_figures(visit):
+    visited = visit()
+    page = visited.page
+    if page.locator(".thumbnails").count() == 0:
+        return
+    assert page.evaluate(SCREENS) < 15
+    for thumbnail in page.locator(".thumbnails use").all():
+        assert thumbnail.bounding_box()["width"] > 40
+
+
+def test_the_flows_of_every_stage_close_but_for_the_residual_that_is_stated(visit):
+    page = visit().page
+    for picture in page.locator("svg.sankey").all():
+        bands = picture.evaluate("""picture => [...picture.querySelectorAll('path[data-flow]')].map(band => ({...band.dataset}))""")
+        lines = [line for line in picture.locator("text").all_text_contents() if "residual" in line]
+        assert bands and lines
+        for stage, line in enumerate(lines):
+            total = {end: sum(float(band["flow"]) for band in bands if band.get(end) == str(stage)) for end in ("from", "to")}
+            residual = float(re.search(r"residual (\S+)", line)[1])
+            assert all(float(band["flow"]) > 0 for band in bands)
+            assert total["to"] - total["from"] == pytest.approx(residual, rel=0.06, abs=1e-7 * total["to"])
+            # What the coupling in steps leaves.
+            assert abs(residual) < 1e-2 * total["to"], line

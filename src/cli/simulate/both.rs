@@ -10,7 +10,8 @@ use super::law::Law;
 use super::record;
 use crate::cli::options::RunOptions;
 use crate::cli::run_output::{self, RunOutput, file_list, heading};
-use crate::cli::{Exit, excitation, output};
+use crate::cli::{Exit, excitation, output, parameter_table};
+use crate::cosim::Device;
 use crate::scenario::Scenario;
 use crate::simulate::Results;
 use fmu_import::Fmu;
@@ -33,7 +34,9 @@ pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Resu
     let svg = both_report::figure([&impulsive, &compliant], scenario)?;
     let report = both_report::report(scenario, &laws, &warnings, svg.clone());
     // Both runs have one excitation.
-    let html = videg_report::render_html(&excitation::described(report, fmu, scenario)?)?;
+    let device = Device::of(fmu, scenario)?;
+    let report = report.section(parameter_table::section(&device, scenario));
+    let html = videg_report::render_html(&excitation::described(report, &device, scenario.until)?)?;
     let files = run_output::write(&folder, &[impulsive_csv, compliant_csv], &svg, &html)?;
     let run = RunOutput::new(scenario, impulsive.mechanics, &warnings, &files);
     let words = both_report::words(scenario, &laws).join("\n");

@@ -8,7 +8,7 @@ use crate::cli::run_output;
 use crate::cosim::MechanicsSummary;
 use crate::scenario::Scenario;
 use crate::simulate::{ContactSummary, Results};
-use videg_report::{Figure, Panel, Report, ReportError, Section, Series, render_svg};
+use videg_report::{Figure, KeyNumber, Panel, Report, ReportError, Section, Series, render_svg};
 
 /// Results under one law.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -165,8 +165,13 @@ fn deepest_contact(run: &Results, side: usize, line: &Points) -> Points {
 
 /// The HTML report.
 pub fn report(scenario: &Scenario, laws: &Laws, warnings: &[String], svg: String) -> Report {
-    let result = run_output::result(warnings).text(words(scenario, laws).join(" ")).table(table(laws).html());
-    run_output::report(format!("Simulation of {} under both laws of contact", scenario.name), scenario)
-        .section(result)
-        .section(Section::new("Motion and capacitance").figure(svg, CAPTION))
+    let gain = |name: &str, law: &LawResult| {
+        KeyNumber::new(format!("<U>, {name}"), format::significant(law.mechanics.average_voltage_gain, 5), "V/s")
+    };
+    let keys = [gain("impulsive law", &laws.impulsive), gain("compliant law", &laws.compliant)];
+    let result =
+        run_output::result(warnings).keys(keys).figure(svg, CAPTION).table(table(laws).html()).folded(
+            Section::new("The differences in words, and what a contact is").text(words(scenario, laws).join(" ")),
+        );
+    run_output::report(format!("Simulation of {} under both laws of contact", scenario.name), scenario).section(result)
 }
