@@ -25,6 +25,9 @@ const BOLTZMANN_OVER_CHARGE: f64 = 1.380_649e-23 / 1.602_176_634e-19;
 /// it saves the exponential the detour of an underflow.
 const EXPONENT: f64 = 600.0;
 
+/// Exponent below which the exponential less 1 is -1 to rounding.
+const BLOCKED: f64 = -40.0;
+
 /// Largest conductance of a load behind a smooth switch (S). A switch is lossless: below 1 kohm, only the
 /// nanoseconds in which a node falls to `U_z` depend on the load, while the band would shrink below the last bit of
 /// the voltage.
@@ -114,9 +117,63 @@ impl Devices {
         }
     }
 
+    /// Node voltage at which the charging diode passes a current above `-IS` (V), and its conductance there (S).
+    pub fn supplying_at(&self, current: f64) -> (f64, f64) {
+        (self.supply - self.forward * (current / self.saturation).ln_1p(), (current + self.saturation) / self.forward)
+    }
+
+    /// Node voltage at which the release element to a constant voltage passes a current above 0 (V), and its slope there
+    /// (S): of a storage, a switch within its band, or a Zener diode without a load behind it.
+    pub fn held_at(&self, current: f64) -> (f64, f64) {
+        match self.release {
+            Release::Storage => {
+                let above = self.forward * (current / self.saturation).ln_1p();
+                (self.threshold + above, (current + self.saturation) / self.forward)
+            }
+            Release::Zener => (self.zener_drop(current), current / self.reverse),
+            Release::Switch => {
+                let half = 0.5 * self.threshold;
+                let voltage = half + (half * half + current * (self.band / self.conductance)).sqrt();
+                (voltage, self.switch(voltage).1)
+            }
+        }
+    }
+
+    /// Voltage across a Zener diode that passes a current above 0 (V).
+    pub fn zener_drop(&self, current: f64) -> f64 {
+        self.breakdown + self.reverse * (current / self.saturation).ln()
+    }
+
+    /// `NBV Vt` (V): by how much the drop of a Zener diode grows when its current grows by the factor e.
+    pub fn zener_slope(&self) -> f64 {
+        self.reverse
+    }
+
+    /// Node voltage, above that of the load behind a Zener diode, from which on the release element conducts (V).
+    pub fn release_edge(&self) -> f64 {
+        match self.release {
+            Release::Zener => self.breakdown,
+            Release::Switch | Release::Storage => self.threshold,
+        }
+    }
+
+    /// Node voltage from which on a switch is closed, above its band (V).
+    pub fn closed_from(&self) -> f64 {
+        self.threshold + self.band
+    }
+
+    /// How far another node has to be below one for a switch to follow this one alone, to rounding (V).
+    pub fn clearance(&self) -> f64 {
+        -BLOCKED * PRECEDENCE * self.band
+    }
+
     /// Current of a diode without breakdown (A) and its conductance (S), from anode to cathode.
     fn diode(&self, across: f64) -> (f64, f64) {
-        let grown = (across / self.forward).clamp(-EXPONENT, EXPONENT).exp_m1();
+        let exponent = across / self.forward;
+        if exponent < BLOCKED {
+            return (-self.saturation, 0.0);
+        }
+        let grown = if exponent > EXPONENT { EXPONENT } else { exponent }.exp_m1();
         (self.saturation * grown, self.saturation * (1.0 + grown) / self.forward)
     }
 

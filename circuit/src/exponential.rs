@@ -1,7 +1,8 @@
 //! Integration of the circuit with exponential diodes: the length of the internal steps, and the ledger.
 //!
-//! A step itself, with the estimate of its error, is in [`step`].
+//! A step itself, with the estimate of its error, is in [`step`]; [`closed`] takes it in closed form where it can.
 
+mod closed;
 mod step;
 
 use core::cell::Cell;
@@ -68,7 +69,8 @@ impl<const LEAKS: bool> Exponential<'_, LEAKS> {
             if h <= 1e-18 * dt || elapsed + h == elapsed {
                 return Err(self.failed(elapsed, h, Failure::ErrorEstimate));
             }
-            let Some(step) = self.step(&flow, &point, elapsed, h) else {
+            let closed = self.closed(&flow, &point, elapsed, h);
+            let Some(step) = closed.or_else(|| self.step(&flow, &point, elapsed, h)) else {
                 if h <= 1e-12 * dt {
                     return Err(self.failed(elapsed, h, Failure::NodeEquations));
                 }

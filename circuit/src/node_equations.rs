@@ -303,3 +303,28 @@ impl NodeEquations<'_> {
         point.load_voltage = if current == 0.0 { 0.0 } else { current * self.devices.resistance };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{DiodeParameters, Parameters};
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn nested_equations_keep_the_load_in_balance_where_a_trial_ends_at_rounding() {
+        let parameters = Parameters { zener_voltage: 2450.0, ..Parameters::default() };
+        let devices = Devices::new(&parameters, &DiodeParameters::default());
+        let capacitance = [32.774_600_327_305_6e-12, 15e-12];
+        let equations = NodeEquations {
+            devices: &devices,
+            count: 1,
+            capacitance,
+            charge: [capacitance[0] * 2_452.133_521_7, 0.0],
+            span: 0.25 * 2.313_214_4e-4,
+            trials: &Cell::default(),
+        };
+        let guess = Point { voltage: [2446.9, 0.0], load_voltage: 1e-4, ..Point::default() };
+        let point = equations.zeners(&guess).unwrap();
+        assert_relative_eq!(point.load_voltage, devices.resistance * point.release[0], max_relative = 1e-6);
+    }
+}

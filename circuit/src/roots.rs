@@ -15,9 +15,13 @@ pub(crate) fn bracketed(mut f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, gu
     if at_a == 0.0 {
         return a;
     }
-    let (mut below, mut above) = if at_a < 0.0 { (a, b) } else { (b, a) };
-    let mut x = if guess > a.min(b) && guess < a.max(b) { guess } else { 0.5 * (a + b) };
-    let mut last_move = (b - a).abs();
+    if at_a < 0.0 { between(f, a, b, guess) } else { between(f, b, a, guess) }
+}
+
+/// [`bracketed`] between places where `f` is known to be below and above zero: near a root, rounding might tell another sign.
+fn between(mut f: impl FnMut(f64) -> (f64, f64), mut below: f64, mut above: f64, guess: f64) -> f64 {
+    let mut x = if guess > below.min(above) && guess < below.max(above) { guess } else { 0.5 * (below + above) };
+    let mut last_move = (above - below).abs();
     for _ in 0..EVALUATIONS {
         let (value, slope) = f(x);
         if value == 0.0 {
@@ -74,7 +78,8 @@ pub(crate) fn increasing(mut f: impl FnMut(f64) -> (f64, f64), guess: f64, reach
         if let Some((from, from_value)) = other_side
             && from_value * value < 0.0
         {
-            return Some(bracketed(f, from, x, x - value / slope));
+            let (below, above) = if value < 0.0 { (x, from) } else { (from, x) };
+            return Some(between(f, below, above, x - value / slope));
         }
         other_side = Some((x, value.signum()));
         let newton = -value / slope;

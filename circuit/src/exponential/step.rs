@@ -101,13 +101,13 @@ pub(crate) struct Step<const LEAKS: bool> {
 }
 
 /// What errors are relative to.
-struct Scale {
+pub(super) struct Scale {
     /// (C)
-    charge: f64,
+    pub charge: f64,
     /// (J)
-    energy: f64,
+    pub energy: f64,
     /// Of the load's energy (J).
-    load: f64,
+    pub load: f64,
 }
 
 impl<const LEAKS: bool> Exponential<'_, LEAKS> {
@@ -148,7 +148,7 @@ impl<const LEAKS: bool> Exponential<'_, LEAKS> {
     }
 
     /// Node capacitances `t` seconds after the start of the call (F).
-    fn capacitances(&self, t: f64) -> [f64; 2] {
+    pub(super) fn capacitances(&self, t: f64) -> [f64; 2] {
         [0, 1].map(|j| self.capacitance[j] + self.rate[j] * t)
     }
 
@@ -239,7 +239,7 @@ impl<const LEAKS: bool> Exponential<'_, LEAKS> {
 
     /// Charges are relative to `C U_in` or to what is there, if more; energies to that at its voltage; that of the load
     /// to the same charge at the voltage of the load, which may be small.
-    fn scale(&self, start: &Flow<LEAKS>, elapsed: f64, top: f64) -> Scale {
+    pub(super) fn scale(&self, start: &Flow<LEAKS>, elapsed: f64, top: f64) -> Scale {
         let supply = self.devices.supply;
         let (charges, capacitances) = (self.charges(start), self.capacitances(elapsed));
         let mut scale = Scale { charge: 0.0, energy: 0.0, load: 0.0 };
@@ -283,7 +283,7 @@ fn net<const LEAKS: bool>(flow: &Flow<LEAKS>, j: usize) -> f64 {
 }
 
 /// The larger one in size; NaN must not be lost, as it would be in `f64::max`.
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b.abs() <= a { a } else { b.abs() }
 }
 
