@@ -60,5 +60,6 @@ pub mod paper;
 pub mod progress;
 pub mod scenario;
 pub mod simulate;
+pub mod statistics;
 pub mod sweep;
 pub(crate) mod threads;

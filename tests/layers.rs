@@ -29,7 +29,7 @@ const PACKAGES: [(&str, &[&str]); 12] = [
 const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 17] = [
+const DOWNWARDS: [&str; 18] = [
     "cli",
     "paper",
     "dynamics",
@@ -45,6 +45,7 @@ const DOWNWARDS: [&str; 17] = [
     "scenario",
     "circuit_sample",
     "artefact",
+    "statistics",
     "threads",
     "progress",
 ];

@@ -41,6 +41,7 @@ mod streams;
 mod sweep;
 mod sweep_cases;
 mod sweep_options;
+mod sweep_statistics;
 mod time_series;
 mod worker;
 

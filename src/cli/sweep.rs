@@ -13,7 +13,7 @@ use super::message::say;
 use super::progress::RunBar;
 use super::run_output::file_list;
 use super::sweep_options::What;
-use super::{Exit, format, output};
+use super::{Exit, format, output, sweep_statistics};
 use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, System};
 use fmu_import::Fmu;
 
@@ -78,6 +78,9 @@ struct Counts<'a> {
     samples: u64,
     /// Runs of the sweep, or of the shard.
     runs: u64,
+    /// Whether the number of samples depends on their results.
+    #[serde(skip)]
+    is_adaptive: bool,
 }
 
 /// Output of `--json`.
@@ -92,6 +95,8 @@ struct Output<'a> {
     rate_runs_per_s: f64,
     shard: Option<String>,
     files: &'a [PathBuf],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    statistics: Option<sweep_statistics::Output<'a>>,
 }
 
 /// Output of `merge --json`.
@@ -101,6 +106,8 @@ struct Merged<'a> {
     failed: u64,
     elapsed_s: f64,
     files: &'a [PathBuf],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    statistics: Option<sweep_statistics::Output<'a>>,
 }
 
 /// Runs the verb.
@@ -113,10 +120,13 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
 
 fn run_merge(merge: &Merge) -> anyhow::Result<Exit> {
     let started = Instant::now();
-    let Report { runs, failed, files, .. } = sweep::merge(&merge.folders, &merge.output)?;
+    let Report { runs, failed, files, statistics, .. } = sweep::merge(&merge.folders, &merge.output)?;
     let elapsed_s = started.elapsed().as_secs_f64();
-    output::show(merge.json, &Merged { runs, failed, elapsed_s, files: &files }, || {
-        format!("merged {runs} runs, {failed} of them failed\n\n{}", file_list(&files))
+    let statistics = statistics.as_ref().and_then(sweep_statistics::Output::of);
+    let merged = Merged { runs, failed, elapsed_s, files: &files, statistics };
+    output::show(merge.json, &merged, || {
+        let means = means(merged.statistics.as_ref());
+        format!("merged {runs} runs, {failed} of them failed\n\n{means}{}", file_list(&files))
     })?;
     Ok(verdict(runs, failed))
 }
@@ -166,7 +176,13 @@ fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
 
 impl<'a> Counts<'a> {
     fn new(sweep: &'a Sweep, design: Design, runs: u64) -> Self {
-        Self { case: sweep.name(), design, points: sweep.points(), samples: sweep.samples(), runs }
+        let (points, samples, is_adaptive) = (sweep.points(), sweep.samples(), sweep.is_adaptive());
+        Self { case: sweep.name(), design, points, samples, runs, is_adaptive }
+    }
+
+    /// In front of a number of samples.
+    fn at_most(&self) -> &'static str {
+        if self.is_adaptive { "at most " } else { "" }
     }
 }
 
@@ -174,7 +190,8 @@ fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::
     let counts = Counts::new(sweep, design, sweep.runs());
     let Counts { case, points, samples, runs, .. } = counts;
     output::show(arguments.json, &counts, || {
-        format!("sweep {case}: {design} of {points} points, {samples} samples each: {runs} runs")
+        let at_most = counts.at_most();
+        format!("sweep {case}: {design} of {points} points, {at_most}{samples} samples each: {at_most}{runs} runs")
     })?;
     Ok(Exit::Passed)
 }
@@ -198,18 +215,27 @@ fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, e
         rate_runs_per_s: (runs - resumed_from) as f64 / elapsed_s,
         shard: arguments.shard.map(|shard| shard.to_string()),
         files: &report.files,
+        statistics: report.statistics.as_ref().and_then(sweep_statistics::Output::of),
     };
     output::show(arguments.json, &result, || text(&result))?;
     if failed > 0 {
         say(&format!("warning: {failed} of {runs} runs failed; the column error says why"));
+    }
+    if let Some(unreached) = report.statistics.as_ref().map(|it| it.unreached).filter(|unreached| *unreached > 0) {
+        let points = sweep.points();
+        say(&format!(
+            "warning: {unreached} of {points} points did not become as precise as --until-precision; the column reached of statistics.csv says \
+             which"
+        ));
     }
     // The merge of the shards finds out whether all runs of the sweep failed.
     Ok(if arguments.shard.is_some() { Exit::Passed } else { verdict(runs, failed) })
 }
 
 fn text(result: &Output<'_>) -> String {
-    let Output { counts, failed, resumed_from, elapsed_s, rate_runs_per_s, shard, files } = result;
-    let Counts { case, design, points, samples, runs } = counts;
+    let Output { counts, failed, resumed_from, elapsed_s, rate_runs_per_s, shard, files, statistics } = result;
+    let Counts { case, design, points, samples, runs, .. } = counts;
+    let at_most = counts.at_most();
     let share = shard.as_ref().map_or_else(String::new, |shard| format!(", shard {shard}"));
     let work = if resumed_from == runs {
         "all of them were there already: nothing to do".to_owned()
@@ -219,8 +245,14 @@ fn text(result: &Output<'_>) -> String {
         format!("{rate} runs/s, {seconds} s{resumed}")
     };
     format!(
-        "sweep {case}: {design} of {points} points, {samples} samples each{share}\n\
-         {runs} runs, {failed} of them failed; {work}\n\n{}",
+        "sweep {case}: {design} of {points} points, {at_most}{samples} samples each{share}\n\
+         {runs} runs, {failed} of them failed; {work}\n\n{}{}",
+        means(statistics.as_ref()),
         file_list(files)
     )
+}
+
+/// The means of the samples in front of the list of files.
+fn means(statistics: Option<&sweep_statistics::Output<'_>>) -> String {
+    statistics.map(|statistics| statistics.text() + "\n\n").unwrap_or_default()
 }

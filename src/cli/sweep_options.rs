@@ -159,6 +159,9 @@ impl What {
             ("design", own.design.is_none() && said.design.is_some()),
             ("points", own.points.is_none() && said.points.is_some()),
             ("samples", own.samples.is_none() && said.samples.is_some()),
+            ("confidence", own.confidence.is_none() && said.confidence.is_some()),
+            ("until-precision", own.until_precision.is_none() && said.until_precision.is_some()),
+            ("precision-of", own.precision_of.is_none() && said.precision_of.is_some()),
             ("seed-variable", own.seed_variable.is_none() && said.seed_variable.is_some()),
             ("record", self.record.is_empty() && !file.record.is_empty()),
         ];

@@ -3,6 +3,7 @@
 use super::excitation::set;
 use super::{PaperError, Run, Study};
 use crate::scenario::Setting;
+use crate::statistics;
 
 /// Largest nudge of the ball's velocity at the start, m/s: a millionth of its usual speed.
 pub(super) const NUDGE: f64 = 1e-7;
@@ -62,12 +63,7 @@ impl Ensemble {
 
     /// The value that a `share` from 0 to 1 of all lies below, linear between neighbours; NaN of nothing.
     pub(super) fn quantile(&self, share: f64) -> f64 {
-        let last = self.sorted.len().saturating_sub(1);
-        let place = share.clamp(0.0, 1.0) * last as f64;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not negative, at most a length
-        let below = place as usize;
-        let at = |index: usize| self.sorted.get(index).copied().unwrap_or(f64::NAN);
-        at(below) + (place - below as f64) * (at((below + 1).min(last)) - at(below))
+        statistics::quantile(&self.sorted, share)
     }
 
     /// Smallest and largest value.

@@ -1,6 +1,7 @@
 //! Statistics of a sample: mean with its confidence interval, median, rank correlation, slope.
 
 use super::ensemble::Ensemble;
+pub use crate::statistics::mean;
 
 /// Samples drawn anew for an interval of confidence.
 const RESAMPLES: usize = 2000;
@@ -62,12 +63,6 @@ fn moments(points: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 3] {
     let (x, y) = (mean(points.clone().map(|point| point.0)), mean(points.clone().map(|point| point.1)));
     points
         .fold([0.0; 3], |[xx, xy, yy], (a, b)| [xx + (a - x) * (a - x), xy + (a - x) * (b - y), yy + (b - y) * (b - y)])
-}
-
-/// Arithmetic mean; NaN of nothing.
-pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    sum / count
 }
 
 fn standard_error(values: &[f64]) -> f64 {

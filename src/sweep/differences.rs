@@ -70,8 +70,8 @@ fn of_named(what: &str, there: &[Value], here: &[Value]) -> Vec<Difference> {
 fn typed(key: &str) -> String {
     match key {
         "settings" => "--set".to_owned(),
-        "until" | "step" | "window" | "design" | "vary" | "points" | "samples" | "seed" | "common_seeds"
-        | "seed_variable" => format!("--{}", key.replace('_', "-")),
+        "until" | "step" | "window" | "design" | "vary" | "points" | "samples" | "confidence" | "until_precision"
+        | "precision_of" | "seed" | "common_seeds" | "seed_variable" => format!("--{}", key.replace('_', "-")),
         "videg" => "the version of videg".to_owned(),
         "case" | "cases" | "model" | "isolation" => format!("the {key}"),
         "guid" => "the GUID of the model".to_owned(),

@@ -2,6 +2,7 @@
 //! follow it (`sums.rs`).
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -10,9 +11,11 @@ use sha2::{Digest as _, Sha256};
 
 use super::cases;
 use super::column::Column;
+use super::order::{Order, Rule};
 use super::times::Times;
-use super::{Design, Vary};
+use super::{Design, Scale, Shard, SweepError, Vary};
 use crate::scenario::Setting;
+use crate::statistics::CONFIDENCE;
 use fmu_import::Bounds;
 
 /// Name of the document in a folder of results.
@@ -45,6 +48,14 @@ pub(super) struct Document<'a> {
     pub seed: u64,
     pub common_seeds: bool,
     pub seed_variable: Option<&'a str>,
+    /// Probability of the intervals of the statistics, unless it is that of [`CONFIDENCE`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<f64>,
+    /// Half the interval of a mean over the mean, at most, and the column of that mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub until_precision: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub precision_of: Option<&'a str>,
     pub columns: &'a [Column],
     /// SHA-256 of the above.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,12 +75,49 @@ impl From<Bounds> for Limits {
     }
 }
 
-/// The part of the document that a merge needs.
+/// The part of the document that a merge and the statistics need.
 #[derive(Debug, Deserialize)]
 pub(super) struct Kept {
     pub videg: String,
-    pub runs: u64,
+    pub fmu: Option<String>,
+    pub vary: Vec<Varied>,
+    pub points: u64,
+    pub samples: u64,
+    pub until_precision: Option<f64>,
+    pub precision_of: Option<String>,
+    #[serde(default = "usual_confidence")]
+    pub confidence: f64,
     pub columns: Vec<Column>,
+}
+
+/// A varied variable in the document.
+#[derive(Debug, Deserialize)]
+pub(super) struct Varied {
+    pub name: String,
+    /// How many values a grid has, if they are evenly spread.
+    pub count: Option<u64>,
+    #[serde(default)]
+    pub scale: Scale,
+}
+
+fn usual_confidence() -> f64 {
+    CONFIDENCE
+}
+
+impl Kept {
+    /// Reads the `document` of the sweep in `folder`.
+    pub fn read(document: &str, folder: &Path) -> Result<Self, SweepError> {
+        let refuse = |error: serde_json::Error| SweepError::content(&folder.join(DOCUMENT), error.to_string());
+        serde_json::from_str(document).map_err(refuse)
+    }
+
+    /// The runs of `shard`, or of the whole.
+    pub fn order(&self, shard: Option<Shard>) -> Order {
+        let precision = self.precision_of.as_deref().zip(self.until_precision);
+        let rule = precision
+            .and_then(|(of, precision)| Rule::new(&self.columns, of, precision, self.confidence, self.samples));
+        Order::new(self.points, self.samples, rule, shard)
+    }
 }
 
 impl Document<'_> {

@@ -5,7 +5,10 @@
 //! until = 60.0
 //! design = "lhs"                 # or "grid" (default), "random"
 //! points = 1000                  # of lhs and random; a grid has as many as it has
-//! samples = 20                   # runs of each point, each with a seed of its own
+//! samples = 200                  # runs of each point, each with a seed of its own
+//! confidence = 0.9               # of the intervals of means
+//! until_precision = 0.05         # samples, at most so many, until the interval of a mean is that narrow
+//! precision_of = "impacts"
 //! seed = 7
 //! common_seeds = true            # sample i has the same seed in all points
 //! seed_variable = "excitation.seed"
@@ -76,6 +79,9 @@ impl SweepFile {
             "design",
             "points",
             "samples",
+            "confidence",
+            "until_precision",
+            "precision_of",
             "seed",
             "common_seeds",
             "seed_variable",
@@ -98,8 +104,19 @@ mod tests {
         let example: Vec<_> = source.lines().map_while(|line| line.strip_prefix("//!")).collect();
         let text = example.join("\n");
         let file = SweepFile::parse(text.split("```toml").nth(1).unwrap().split("```").next().unwrap()).unwrap();
-        let Sampling { design, points, samples, seed, common_seeds, seed_variable } = file.sampling;
-        assert_eq!((design, points, samples, seed), (Some(Design::Lhs), Some(1000), Some(20), Some(7)));
+        let Sampling {
+            design,
+            points,
+            samples,
+            confidence,
+            until_precision,
+            precision_of,
+            seed,
+            common_seeds,
+            seed_variable,
+        } = file.sampling;
+        assert_eq!((design, points, samples, seed), (Some(Design::Lhs), Some(1000), Some(200), Some(7)));
+        assert_eq!((confidence, until_precision, precision_of.as_deref()), (Some(0.9), Some(0.05), Some("impacts")));
         assert_eq!((common_seeds, seed_variable.as_deref()), (true, Some("excitation.seed")));
         assert_eq!((file.case.until, file.record), (Some(60.0), vec!["cylinder.position".to_owned()]));
         let options =

@@ -7,13 +7,18 @@ use super::differences::told;
 use super::document::{DOCUMENT, identity};
 use super::files::{remove, rename, write_synced};
 use super::unfinished::{Unfinished, complete_name, unfinished};
-use super::{Shard, SweepError, table};
+use super::{Shard, SweepError, statistics, table};
 use videg_system::atomic_file::partial;
 
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
 /// Advice for a folder of another sweep.
 const WAY_OUT: &str = "type the command with another --output to keep both, or with --fresh to replace what is there";
+
+/// All files that may follow from the results at `csv`.
+pub(super) fn derived_from(csv: &Path) -> Vec<PathBuf> {
+    [table::path(csv)].into_iter().chain(statistics::paths(csv)).collect()
+}
 
 /// Takes the folder for the sweep of `document`, whose results go to `path`: locks them, and writes the document. With
 /// `fresh` whatever was there goes.
@@ -25,7 +30,7 @@ pub(super) fn claim(folder: &Path, document: &str, path: &Path, fresh: bool) -> 
     if fresh {
         // Results go before the document that says whose they are: killed in between, none are taken for another's.
         remove(path)?;
-        remove(&table::path(path))?;
+        derived_from(path).iter().try_for_each(|file| remove(file))?;
         results.file.set_len(0).map_err(SweepError::file("empty", &results.part()))?;
         if read_document(folder)?.is_some_and(|there| there != document) {
             remove(&folder.join(DOCUMENT))?;

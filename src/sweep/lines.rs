@@ -1,9 +1,9 @@
 //! Reading results: whole lines in the order of the runs, as many as are what they should be.
 
 use std::io::{self, BufRead, Read as _};
-use std::ops::Range;
 
 use super::column::{self, Column, Type};
+use super::order::Order;
 
 /// Longest line with its end, bytes. None is written that is longer.
 pub(super) const LONGEST: usize = 1 << 20;
@@ -36,13 +36,13 @@ pub(super) enum Rest {
 }
 
 impl Extent {
-    /// That it is all of a file of `length` bytes with the results of the runs `range`; else what is wrong with them.
-    pub fn check_complete(&self, length: u64, range: &Range<u64>) -> Result<(), String> {
-        let expected = range.start + self.lines;
+    /// That it is all of a file of `length` bytes with results, behind which `order` stands; else what is wrong with them.
+    pub fn check_complete(&self, length: u64, order: &Order) -> Result<(), String> {
+        let is_short = order.next() < order.range().end;
         match &self.rest {
             _ if self.bytes == 0 => Err(NOT_HEADING.to_owned()),
-            Rest::Wrong(reason) if expected < range.end => Err(reason.clone()),
-            _ if expected < range.end => Err(not_expected(self.lines + 2, expected, range)),
+            Rest::Wrong(reason) if is_short => Err(reason.clone()),
+            _ if is_short => Err(not_expected(self.lines + 2, order)),
             _ if self.bytes < length => {
                 Err(format!("{} bytes follow line {}, its last", length - self.bytes, self.lines + 1))
             }
@@ -53,16 +53,17 @@ impl Extent {
 
 const NOT_HEADING: &str = "its first line is not the heading of this sweep";
 
-fn not_expected(line: u64, expected: u64, range: &Range<u64>) -> String {
-    format!("line {line} is not run {expected} of runs {} to {}", range.start, range.end - 1)
+fn not_expected(line: u64, order: &Order) -> String {
+    let range = order.range();
+    format!("line {line} is not run {} of runs {} to {}", order.next(), range.start, range.end - 1)
 }
 
-/// Follows results of the runs `range` from their heading on, and hands each line of a run to `take`. Ends before the first
+/// Follows results in their `order` from their heading on, and hands each line of a run to `take`. Ends before the first
 /// line that is not whole or not that of the run expected.
 pub(super) fn follow<E: From<io::Error>>(
     mut from: impl BufRead,
     columns: &[Column],
-    range: &Range<u64>,
+    order: &mut Order,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
 ) -> Result<Extent, E> {
     let heading = column::heading(columns);
@@ -78,7 +79,7 @@ pub(super) fn follow<E: From<io::Error>>(
             _ if line.contains(&0) => Err(Rest::Torn),
             Some(b'\n') if is_heading && line == heading => Ok(()),
             Some(b'\n') if is_heading => Err(Rest::Wrong(NOT_HEADING.to_owned())),
-            Some(b'\n') => cells.check(&line, &extent, range).map_err(Rest::Wrong),
+            Some(b'\n') => cells.check(&line, &extent, order).map_err(Rest::Wrong),
             _ if line.len() < LONGEST => Err(Rest::Torn),
             _ => Err(Rest::Wrong(format!("line {} has more than {LONGEST} bytes", extent.lines + 2))),
         };
@@ -95,10 +96,11 @@ pub(super) fn follow<E: From<io::Error>>(
             extent.failed += 1;
         } else {
             let (run, last) = extent.last.get_or_insert_default();
-            *run = range.start + extent.lines;
+            *run = order.next();
             last.clone_from(&line);
         }
         extent.lines += 1;
+        order.took(&line);
     }
 }
 
@@ -117,10 +119,10 @@ impl<'a> Cells<'a> {
         Self { columns, reader: csv_core::Reader::new(), text: Vec::new(), ends }
     }
 
-    /// That `line` is that of the run expected behind `extent`, and a row of its own, with cells of the types of the
-    /// columns; else why not.
-    fn check(&mut self, line: &[u8], extent: &Extent, range: &Range<u64>) -> Result<(), String> {
-        let (number, expected) = (extent.lines + 2, range.start + extent.lines);
+    /// That `line` is that of the run that follows in `order`, behind `extent`, and a row of its own, with cells of the types
+    /// of the columns; else why not.
+    fn check(&mut self, line: &[u8], extent: &Extent, order: &Order) -> Result<(), String> {
+        let (number, expected, range) = (extent.lines + 2, order.next(), order.range());
         if range.is_empty() {
             return Err(format!("line {number} is one too many: a share without runs has none"));
         }
@@ -128,7 +130,7 @@ impl<'a> Cells<'a> {
             return Err(format!("line {number} follows that of the last run, {}", range.end - 1));
         }
         if line.strip_prefix(expected.to_string().as_bytes()).is_none_or(|rest| rest.first() != Some(&b',')) {
-            return Err(not_expected(number, expected, range));
+            return Err(not_expected(number, order));
         }
         self.check_cells(line).map_err(|reason| format!("line {number}, of run {expected}, {reason}"))
     }
@@ -174,11 +176,17 @@ pub(super) fn has_failed(line: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use super::*;
 
+    fn columns() -> [Column; 2] {
+        [Column::always("run", Type::Integer), Column::optional("error", Type::Text)]
+    }
+
     fn extent(text: &str, range: &Range<u64>) -> Extent {
-        let columns = [Column::always("run", Type::Integer), Column::optional("error", Type::Text)];
-        follow(text.as_bytes(), &columns, range, |_| Ok::<_, io::Error>(())).unwrap()
+        let columns = columns();
+        follow(text.as_bytes(), &columns, &mut Order::of(range.clone(), None), |_| Ok::<_, io::Error>(())).unwrap()
     }
 
     #[test]
@@ -244,7 +252,8 @@ mod tests {
         ] {
             let columns = [Column::always("run", Type::Integer), Column::always("x", kind)];
             let text = format!("run,x\n0,{cell}\n");
-            let extent = follow(text.as_bytes(), &columns, &(0..1), |_| Ok::<_, io::Error>(())).unwrap();
+            let extent =
+                follow(text.as_bytes(), &columns, &mut Order::of(0..1, None), |_| Ok::<_, io::Error>(())).unwrap();
             let wrong = Rest::Wrong(format!("line 2, of run 0, has x = {cell:?}, which is not of its type"));
             assert_eq!(extent.rest, if is_one { Rest::Nothing } else { wrong });
         }
@@ -260,7 +269,9 @@ mod tests {
             ("run,error\n5,\n7,\n", Some("line 3 is not run 6 of runs 5 to 6")),
             ("run,error\n5,\n6,\n7,\n", Some("3 bytes follow line 3, its last")),
         ] {
-            let checked = extent(text, &(5..7)).check_complete(text.len() as u64, &(5..7));
+            let (columns, mut order) = (columns(), Order::of(5..7, None));
+            let extent = follow(text.as_bytes(), &columns, &mut order, |_| Ok::<_, io::Error>(())).unwrap();
+            let checked = extent.check_complete(text.len() as u64, &order);
             assert_eq!(checked.err().as_deref(), expected, "{text:?}");
         }
     }

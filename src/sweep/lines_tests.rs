@@ -67,7 +67,7 @@ fn resumed(sweep: &Sweep, folder: &Path, bytes: &[u8]) -> Result<u64, String> {
     fs::write(folder.join(DOCUMENT), sweep.document()).unwrap();
     fs::write(folder.join("sweep.csv.part"), bytes).unwrap();
     match Record::open(folder, sweep, None, false) {
-        Ok(Found::Unfinished(record)) => Ok(record.next),
+        Ok(Found::Unfinished(record)) => Ok(record.next()),
         Ok(Found::Complete { .. }) => Err("complete".to_owned()),
         Err(error) => Err(error.to_string()),
     }

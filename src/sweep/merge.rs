@@ -9,7 +9,7 @@ use super::document::{self, DOCUMENT, Kept};
 use super::folder::{self, RESULTS};
 use super::run::Report;
 use super::unfinished::Unfinished;
-use super::{Shard, SweepError, column, files, lines, sums, table};
+use super::{Shard, SweepError, column, derived, files, lines, sums};
 use videg_system::atomic_file::{self, Part};
 
 /// Version of this program: tables that another one writes may have other bytes.
@@ -21,10 +21,10 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Shards that are missing, there twice, of other sweeps or of other divisions; a refusal of the file system.
 pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
     let document = common_document(folders)?;
-    let refuse = |reason: String| SweepError::content(&folders[0].join(DOCUMENT), reason);
-    let kept: Kept = serde_json::from_str(&document).map_err(|error| refuse(error.to_string()))?;
+    let kept = Kept::read(&document, &folders[0])?;
     if kept.videg != VERSION {
-        return Err(refuse(format!("it is of videg {}, and this is {VERSION}; merge it with that", kept.videg)));
+        let reason = format!("it is of videg {}, and this is {VERSION}; merge it with that", kept.videg);
+        return Err(SweepError::content(&folders[0].join(DOCUMENT), reason));
     }
     let shards = collect(folders)?;
     std::fs::create_dir_all(output).map_err(SweepError::file("make the folder", output))?;
@@ -34,22 +34,21 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Report, SweepError> {
         Part::begin(|| Unfinished::take(&path).map(|results| (results, atomic_file::partial(&path))))?;
     let is_new = !output.join(DOCUMENT).exists();
     folder::write_document(output, &document, &path)?;
-    let joined = join(&shards, &kept, &results).and_then(|failed| {
-        sums::forget(output, &document, &[&path, &table::path(&path)])?;
+    let joined = join(&shards, &kept, &results).and_then(|counts| {
+        sums::forget(output, &document, &[vec![path.clone()], folder::derived_from(&path)].concat())?;
         results.finish()?;
-        Ok(failed)
+        Ok(counts)
     });
-    let failed = match joined {
-        Ok(failed) => failed,
+    let (runs, failed) = match joined {
+        Ok(counts) => counts,
         Err(error) => {
             leave(output, results, is_new);
             return Err(error);
         }
     };
-    let parquet = table::write(&path, &kept.columns, &document, true)?;
-    sums::record(output, &document, &[&path, &parquet])?;
-    let files = vec![path, output.join(DOCUMENT), parquet];
-    Ok(Report { runs: kept.runs, done: kept.runs, failed, resumed_from: 0, files })
+    let derived = derived::write(&path, &document, true, false)?;
+    let files = [vec![path, output.join(DOCUMENT)], derived.files].concat();
+    Ok(Report { runs, done: runs, failed, resumed_from: 0, files, statistics: derived.statistics })
 }
 
 /// Removes what a merge that failed has written: the document only if it `is_new`.
@@ -128,26 +127,28 @@ impl From<io::Error> for Broken {
     }
 }
 
-/// Writes the lines of all shards one after the other; how many runs failed.
-fn join(shards: &[(Shard, PathBuf)], kept: &Kept, results: &Unfinished) -> Result<u64, SweepError> {
+/// Writes the lines of all shards one after the other; how many runs there are, and how many of them failed.
+fn join(shards: &[(Shard, PathBuf)], kept: &Kept, results: &Unfinished) -> Result<(u64, u64), SweepError> {
     let heading = column::heading(&kept.columns);
-    let (mut failed, file) = (0, &results.file);
+    let (mut runs, mut failed, file) = (0, 0, &results.file);
     let written = |cause| SweepError::file("write", &results.part())(cause);
     let mut out = BufWriter::new(file);
     out.rewind().and_then(|()| file.set_len(0)).and_then(|()| out.write_all(&heading)).map_err(written)?;
     for (shard, path) in shards {
-        let range = shard.range(kept.runs);
+        let mut order = kept.order(Some(*shard));
         let from = BufReader::new(videg_input::open_regular(path).map_err(SweepError::file("open", path))?);
-        let extent = lines::follow(from, &kept.columns, &range, |line| out.write_all(line).map_err(Broken::Written));
+        let extent =
+            lines::follow(from, &kept.columns, &mut order, |line| out.write_all(line).map_err(Broken::Written));
         let extent = extent.map_err(|broken| match broken {
             Broken::Read(cause) => SweepError::file("read", path)(cause),
             Broken::Written(cause) => written(cause),
         })?;
         let length = std::fs::metadata(path).map_err(SweepError::file("read", path))?.len();
-        extent.check_complete(length, &range).map_err(|reason| SweepError::content(path, reason))?;
+        extent.check_complete(length, &order).map_err(|reason| SweepError::content(path, reason))?;
         sums::check(path)?;
+        runs += extent.lines;
         failed += extent.failed;
     }
     out.flush().and_then(|()| file.sync_all()).map_err(written)?;
-    Ok(failed)
+    Ok((runs, failed))
 }

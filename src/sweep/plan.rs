@@ -10,13 +10,15 @@ use super::document::Document;
 use super::electrical::is_electrical;
 use super::lines::LONGEST;
 use super::named_files::NamedFiles;
+use super::order::{Order, Rule};
 use super::points::{MAX_RUNS, Points};
 use super::seeds::{self, Seeds};
 use super::setting::{as_setting, last_of_each, not_varied, typed};
 use super::times::Times;
-use super::{Sampling, SweepError, Vary};
+use super::{Sampling, Shard, SweepError, Vary};
 use crate::cosim::Averages;
 use crate::scenario::{Origin, Setting};
+use crate::statistics::CONFIDENCE;
 use fmu_import::{Bounds, Kind, ModelDescription, Value, ValueError, Variable};
 
 /// Variables from which averages follow, and their types.
@@ -84,6 +86,8 @@ pub struct Sweep {
     /// Whether averages are made.
     pub(super) averages: bool,
     columns: Vec<Column>,
+    /// When a point has enough samples, if that depends on them.
+    rule: Option<Rule>,
     document: String,
 }
 
@@ -143,6 +147,11 @@ impl Sweep {
         }
         let columns = columns(points.axes(), seeds.as_ref(), averages, &record)?;
         check_lengths(&columns, points.axes())?;
+        let precision_of = sampling.precision_of(&columns)?;
+        let confidence = sampling.confidence()?;
+        let rule = precision_of
+            .zip(sampling.until_precision)
+            .and_then(|(of, precision)| Rule::new(&columns, of, precision, confidence.unwrap_or(CONFIDENCE), samples));
         let document = Document {
             videg: env!("CARGO_PKG_VERSION"),
             case: &request.name,
@@ -161,13 +170,30 @@ impl Sweep {
             seed,
             common_seeds: sampling.common_seeds,
             seed_variable: seeds.as_ref().map(|seeds| seeds.variable.name.as_str()),
+            confidence,
+            until_precision: sampling.until_precision,
+            precision_of,
             columns: &columns,
             sha256: None,
         };
         let (document, name, times) = (document.sealed(), request.name.clone(), request.times);
         let of_cases = request.cases.iter().flat_map(|case| &case.settings);
         let files = NamedFiles::of(of_cases.chain(&request.settings), &vary)?;
-        Ok(Self { name, settings, cases, files, times, points, samples, seeds, record, averages, columns, document })
+        Ok(Self {
+            name,
+            settings,
+            cases,
+            files,
+            times,
+            points,
+            samples,
+            seeds,
+            record,
+            averages,
+            columns,
+            rule,
+            document,
+        })
     }
 
     /// How it is called.
@@ -190,12 +216,22 @@ impl Sweep {
         self.points.count()
     }
 
-    /// Runs of each point.
+    /// Runs of each point, at most.
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Number of runs.
+    /// Whether the number of samples of a point depends on them.
+    pub fn is_adaptive(&self) -> bool {
+        self.rule.is_some()
+    }
+
+    /// The runs of `shard`, or of the whole.
+    pub(super) fn order(&self, shard: Option<Shard>) -> Order {
+        Order::new(self.points(), self.samples, self.rule.clone(), shard)
+    }
+
+    /// Number of runs, at most.
     pub fn runs(&self) -> u64 {
         self.points.count() * self.samples
     }

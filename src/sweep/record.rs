@@ -2,14 +2,14 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek as _, SeekFrom, Write as _};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::folder::{self, RESULTS};
 use super::lines::{self, Extent, Rest};
+use super::order::Order;
 use super::unfinished::Unfinished;
-use super::{Column, Shard, Sweep, SweepError, column, sums, table};
+use super::{Column, Shard, Sweep, SweepError, column, sums};
 
 /// How often results are forced to the disk: what a power cut may cost.
 const SYNC_EVERY: Duration = Duration::from_secs(10);
@@ -22,19 +22,22 @@ const NOT_TORN: &str = "no interruption leaves a whole line like that, so nothin
 pub(super) enum Found {
     /// Everything.
     Complete {
-        /// Runs that failed.
+        /// Runs in it.
+        runs: u64,
+        /// Those of them that failed.
         failed: u64,
     },
     /// Results up to some run.
-    Unfinished(Record),
+    Unfinished(Box<Record>),
 }
 
 /// Results that are being written.
 pub(super) struct Record {
     results: Unfinished,
     path: PathBuf,
-    /// First run that is not in it.
-    pub next: u64,
+    order: Order,
+    /// Runs in it.
+    pub runs: u64,
     /// Runs in it that failed.
     pub failed: u64,
     /// The last run in it that did not fail, and its line.
@@ -47,30 +50,26 @@ pub(super) fn results_path(folder: &Path, shard: Option<Shard>) -> PathBuf {
     folder.join(shard.map_or_else(|| RESULTS.to_owned(), Shard::file_name))
 }
 
-/// The runs that `shard`, or the whole, consists of.
-pub(super) fn range(sweep: &Sweep, shard: Option<Shard>) -> Range<u64> {
-    shard.map_or(0..sweep.runs(), |shard| shard.range(sweep.runs()))
-}
-
 impl Record {
     /// Opens the results of `shard` of `sweep` in `folder`; with `fresh` whatever was there goes.
     pub fn open(folder: &Path, sweep: &Sweep, shard: Option<Shard>, fresh: bool) -> Result<Found, SweepError> {
         std::fs::create_dir_all(folder).map_err(SweepError::file("make the folder", folder))?;
         let path = results_path(folder, shard);
         let results = folder::claim(folder, sweep.document(), &path, fresh)?;
-        let range = range(sweep, shard);
-        if let Some(extent) = complete(&path, sweep.columns(), &range)? {
+        if let Some(extent) = complete(&path, sweep.columns(), sweep.order(shard))? {
             results.discard()?;
-            return Ok(Found::Complete { failed: extent.failed });
+            return Ok(Found::Complete { runs: extent.lines, failed: extent.failed });
         }
-        let extent = extent(&results.file, &results.kept(), sweep.columns(), &range)?;
+        let mut order = sweep.order(shard);
+        let extent = extent(&results.file, &results.kept(), sweep.columns(), &mut order)?;
         if let Rest::Wrong(reason) = extent.rest {
             return Err(SweepError::content(&results.kept(), format!("{reason}; {NOT_TORN}")));
         }
         let mut record = Self {
             results,
             path,
-            next: range.start + extent.lines,
+            order,
+            runs: extent.lines,
             failed: extent.failed,
             last: extent.last,
             synced: Instant::now(),
@@ -79,12 +78,22 @@ impl Record {
         if extent.bytes == 0 {
             record.write(&column::heading(sweep.columns()))?;
         }
-        Ok(Found::Unfinished(record))
+        Ok(Found::Unfinished(record.into()))
     }
 
     fn go_on_after(&mut self, bytes: u64) -> Result<(), SweepError> {
         let cut = self.results.file.set_len(bytes).and_then(|()| self.results.file.seek(SeekFrom::Start(bytes)));
         cut.map(|_| ()).map_err(SweepError::file("cut", &self.kept()))
+    }
+
+    /// Which runs follow.
+    pub fn order(&self) -> &Order {
+        &self.order
+    }
+
+    /// First run that is not in it.
+    pub fn next(&self) -> u64 {
+        self.order.next()
     }
 
     /// Where the results are if they do not become complete.
@@ -98,7 +107,10 @@ impl Record {
             return Ok(());
         }
         self.write(&lines.concat())?;
-        self.next += lines.len() as u64;
+        for line in lines {
+            self.order.took(line);
+        }
+        self.runs += lines.len() as u64;
         self.failed += lines.iter().filter(|line| lines::has_failed(line)).count() as u64;
         if self.synced.elapsed() >= SYNC_EVERY {
             self.results.file.sync_data().map_err(|cause| self.full(cause))?;
@@ -126,21 +138,21 @@ impl Record {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         folder::write_document(folder, document, &self.path)?;
         // Of those that were there before `fresh`; killed from here on, none are compared with others' checksums.
-        sums::forget(folder, document, &[&self.path, &table::path(&self.path)])?;
+        sums::forget(folder, document, &[vec![self.path.clone()], folder::derived_from(&self.path)].concat())?;
         self.results.finish()
     }
 }
 
 /// How far the results at `path` are complete; none if there are none.
-fn complete(path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Option<Extent>, SweepError> {
+fn complete(path: &Path, columns: &[Column], mut order: Order) -> Result<Option<Extent>, SweepError> {
     let file = match videg_input::open_regular(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(SweepError::file("open", path)(error)),
     };
-    let extent = extent(&file, path, columns, range)?;
+    let extent = extent(&file, path, columns, &mut order)?;
     let length = file.metadata().map_err(SweepError::file("read", path))?.len();
-    match extent.check_complete(length, range) {
+    match extent.check_complete(length, &order) {
         Ok(()) => Ok(Some(extent)),
         Err(reason) => {
             let reason = format!("it was changed after it was complete: {reason}; --fresh begins anew");
@@ -149,7 +161,7 @@ fn complete(path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Optio
     }
 }
 
-fn extent(file: &File, path: &Path, columns: &[Column], range: &Range<u64>) -> Result<Extent, SweepError> {
+fn extent(file: &File, path: &Path, columns: &[Column], order: &mut Order) -> Result<Extent, SweepError> {
     let mut from = BufReader::new(file);
-    from.rewind().and_then(|()| lines::follow(from, columns, range, |_| Ok(()))).map_err(SweepError::file("read", path))
+    from.rewind().and_then(|()| lines::follow(from, columns, order, |_| Ok(()))).map_err(SweepError::file("read", path))
 }

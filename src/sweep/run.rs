@@ -1,11 +1,10 @@
 //! Running a sweep: all cores compute runs, and results are written in order as they come.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::document::DOCUMENT;
 use super::record::{self, Found, Record};
-use super::{Engine, Shard, Sweep, SweepError, sums, table};
+use super::{Engine, Shard, Summary, Sweep, SweepError, derived, sums, waves};
 use crate::progress::Progress;
 use crate::threads::{self, Sharing};
 
@@ -38,9 +37,9 @@ impl<'a> Options<'a> {
 }
 
 /// Outcome of a sweep or of a merge.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Runs that this sweep or shard consists of.
+    /// Runs that this sweep or shard consists of; most runs of one that takes samples until a mean is precise, and has not ended.
     pub runs: u64,
     /// Runs that are in the file.
     pub done: u64,
@@ -50,6 +49,8 @@ pub struct Report {
     pub resumed_from: u64,
     /// Files written.
     pub files: Vec<PathBuf>,
+    /// Of complete results with several samples.
+    pub statistics: Option<Summary>,
 }
 
 impl Report {
@@ -66,49 +67,43 @@ impl Report {
 /// Results of another sweep, or of another build of the model; a refusal of the file system; an FMU that is beyond use.
 pub fn run(options: &Options<'_>, observer: &dyn Progress) -> Result<Report, SweepError> {
     let Options { sweep, engine, folder, shard, fresh, .. } = *options;
-    let range = record::range(sweep, shard);
-    let runs = range.end - range.start;
     let path = record::results_path(folder, shard);
     let mut files = vec![path.clone(), folder.join(DOCUMENT)];
     let mut is_summed = false;
-    let (done, failed, resumed_from) = match Record::open(folder, sweep, shard, fresh)? {
-        Found::Complete { failed } => {
+    let (runs, done, failed, resumed_from) = match Record::open(folder, sweep, shard, fresh)? {
+        Found::Complete { runs, failed } => {
             is_summed = sums::check(&path)?;
-            (runs, failed, runs)
+            (runs, runs, failed, runs)
         }
         Found::Unfinished(mut record) => {
-            let resumed_from = record.next - range.start;
+            let resumed_from = record.runs;
             check_last(sweep, engine, &record)?;
-            let computed = compute(options, &range, &mut record, observer).and_then(|()| record.sync());
-            let (next, kept) = (record.next, record.kept());
+            let computed = compute(options, &mut record, observer).and_then(|()| record.sync());
+            let (next, kept) = (record.next(), record.kept());
             computed.map_err(|cause| SweepError::Ended { path: kept.clone(), next, cause: cause.into() })?;
-            let (done, failed) = (next - range.start, record.failed);
-            if done < runs {
-                files[0] = kept;
-            } else {
+            let (done, failed, range) = (record.runs, record.failed, record.order().range().clone());
+            let is_complete = next == range.end;
+            if is_complete {
                 record.finish(sweep.document())?;
+            } else {
+                files[0] = kept;
             }
-            (done, failed, resumed_from)
+            (if is_complete { done } else { range.end - range.start }, done, failed, resumed_from)
         }
     };
+    let mut statistics = None;
     if done == runs {
-        let is_new = resumed_from < runs;
-        let parquet = shard.is_none().then(|| table::write(&path, sweep.columns(), sweep.document(), is_new));
-        let parquet = parquet.transpose()?;
-        let mut missing: Vec<&Path> = (!is_summed).then_some(path.as_path()).into_iter().collect();
-        if let Some(parquet) = &parquet
-            && (is_new || !sums::check(parquet)?)
-        {
-            missing.push(parquet);
-        }
-        if missing.is_empty() {
+        if shard.is_none() {
+            let derived = derived::write(&path, sweep.document(), resumed_from < runs, is_summed)?;
+            files.extend(derived.files);
+            statistics = derived.statistics;
+        } else if is_summed {
             sums::clear(folder);
         } else {
-            sums::record(folder, sweep.document(), &missing)?;
+            sums::record(folder, sweep.document(), &[&path])?;
         }
-        files.extend(parquet);
     }
-    Ok(Report { runs, done, failed, resumed_from, files })
+    Ok(Report { runs, done, failed, resumed_from, files, statistics })
 }
 
 /// Checks that this program gives the last line that is there again. Lines of runs that failed do not count: the machine may
@@ -128,24 +123,23 @@ fn check_last(sweep: &Sweep, engine: &Engine, record: &Record) -> Result<(), Swe
     Err(SweepError::content(&record.kept(), reason))
 }
 
-fn compute(
-    options: &Options<'_>,
-    range: &Range<u64>,
-    record: &mut Record,
-    observer: &dyn Progress,
-) -> Result<(), SweepError> {
+fn compute(options: &Options<'_>, record: &mut Record, observer: &dyn Progress) -> Result<(), SweepError> {
     let Options { sweep, engine, jobs, .. } = *options;
     let line = |number| {
         let run = sweep.run(number);
         engine.run(sweep, &run).map(|outcome| sweep.line(&run, &outcome))
     };
+    let range = record.order().range().clone();
     let tell = |next: u64| observer.advance(next - range.start, range.end - range.start, &[]);
-    tell(record.next);
+    tell(record.next());
     let is_stopped = || observer.is_stopped();
     let sharing = Sharing { threads: engine.at_once(jobs), ahead: AHEAD, is_stopped: &is_stopped };
-    threads::in_order(record.next..range.end, sharing, line, |lines| {
+    if record.order().stage().is_some() {
+        return waves::compute(record, sharing, line, tell);
+    }
+    threads::in_order(record.next()..range.end, sharing, line, |lines| {
         record.append(&lines)?;
-        tell(record.next);
+        tell(record.next());
         Ok(())
     })
 }

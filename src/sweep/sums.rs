@@ -8,9 +8,10 @@ use std::time::{Duration, Instant};
 
 use sha2::{Digest as _, Sha256};
 
+use super::SweepError;
 use super::document::{DOCUMENT, Sum, Sums, hexadecimal, sums, with_sums};
 use super::files::{lock, remove, rename, write_synced};
-use super::{SweepError, folder};
+use super::folder::{self, RESULTS};
 use videg_system::atomic_file::{self, Part};
 
 /// The process that has this file locked writes the checksums.
@@ -23,7 +24,7 @@ pub(super) fn check(path: &Path) -> Result<bool, SweepError> {
     let Some(expected) = read(&path.with_file_name(DOCUMENT))?.remove(&name(path)) else { return Ok(false) };
     let found = Sum::of(path)?;
     let changed = |what: String| {
-        let anew = if path.extension().is_some_and(|it| it == "parquet") {
+        let anew = if folder::derived_from(&path.with_file_name(RESULTS)).iter().any(|it| it == path) {
             "removed, it is made again"
         } else {
             "--fresh makes it anew"
@@ -56,13 +57,15 @@ pub(super) fn clear(folder: &Path) {
 }
 
 /// Takes out the checksums of `results`, which are about to be replaced.
-pub(super) fn forget(folder: &Path, document: &str, results: &[&Path]) -> Result<(), SweepError> {
+pub(super) fn forget(folder: &Path, document: &str, results: &[impl AsRef<Path>]) -> Result<(), SweepError> {
     let Some(first) = results.first() else { return Ok(()) };
     let sums = read(&folder.join(DOCUMENT))?;
-    if results.iter().all(|result| !sums.contains_key(&name(result))) {
+    if results.iter().all(|result| !sums.contains_key(&name(result.as_ref()))) {
         return Ok(());
     }
-    change(folder, document, first, |sums| sums.retain(|of, _| results.iter().all(|result| name(result) != *of)))
+    change(folder, document, first.as_ref(), |sums| {
+        sums.retain(|of, _| results.iter().all(|result| name(result.as_ref()) != *of));
+    })
 }
 
 /// Changes the checksums in the `document` of the folder, on behalf of the result at `first`.

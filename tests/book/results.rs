@@ -13,7 +13,7 @@ use crate::has_ngspice;
 const RUNS: [(&str, &[&str], &str); 7] = [
     ("simulate", &[], "simulate --until 1"),
     ("cosim", &["simulate"], "cosim --until 1 --set contact.law=compliant --set contact.electrostaticFeedback=true"),
-    ("sweep", &[], "sweep --vary membrane.restitution=0.3,0.6 --until 1"),
+    ("sweep", &[], "sweep --vary membrane.restitution=0.3,0.6 --until 1 --samples 2"),
     (
         "dynamics",
         &[],

@@ -27,7 +27,14 @@ COUPLED = [
 ]
 """A sweep of harvester and circuit over cases, of 36 runs."""
 
-RESULTS = ["sweep.csv", "sweep.parquet", "sweep.json"]
+PRECISE = [
+    *("--vary", "membrane.restitution=0.3:0.9:5", "--set", "excitation.phaseNoise=0.5", "--until", "4"),
+    *("--set", "excitation.noiseHold=1e-3", "--until-precision", "0.01", "--samples", "120"),
+]
+"""A sweep whose points take as many samples as they need."""
+
+RESULTS = ["sweep.csv", "sweep.parquet", "sweep.json", "statistics.csv", "statistics.svg"]
+"""Of a sweep with several samples."""
 
 
 @pytest.fixture
@@ -100,6 +107,14 @@ def undivided_coupled(tmp_path_factory) -> Path:
     """The same of the sweep of harvester and circuit."""
     folder = tmp_path_factory.mktemp("undivided-coupled")
     subprocess.run([VIDEG, "sweep", *COUPLED, "--output", folder], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def undivided_precise(tmp_path_factory) -> Path:
+    """The same of the sweep that takes samples until means are precise."""
+    folder = tmp_path_factory.mktemp("undivided-precise")
+    subprocess.run([VIDEG, "sweep", *PRECISE, "--output", folder], check=True, stdout=subprocess.DEVNULL)
     return folder
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from conftest import COUPLED, SWEEP, VIDEG, end, same_bytes, wait_for
+from conftest import COUPLED, PRECISE, SWEEP, VIDEG, end, same_bytes, wait_for
 
 SCRIPT = "dask/sweep.py"
 
@@ -26,6 +26,14 @@ def test_shards_of_harvester_and_circuit_are_the_undivided_sweep(run, undivided_
     assert ended.returncode == 0, ended.stderr
     assert same_bytes(tmp_path, undivided_coupled)
     assert json.loads(ended.stdout)["runs"] == 36
+
+
+def test_shards_of_points_with_as_many_samples_as_they_need_are_the_undivided_sweep(run, undivided_precise, tmp_path):
+    ended = run(SCRIPT, "--output", tmp_path, "--workers", 2, "--shards", 3, "--", *PRECISE)
+    assert ended.returncode == 0, ended.stderr
+    assert same_bytes(tmp_path, undivided_precise)
+    runs = len((undivided_precise / "sweep.csv").read_text().splitlines()) - 1
+    assert json.loads(ended.stdout)["runs"] == runs
 
 
 def test_tasks_are_as_long_as_the_measured_rate_says(run, undivided, tmp_path):

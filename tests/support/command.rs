@@ -64,8 +64,9 @@ pub fn names(folder: &Path) -> Vec<String> {
 }
 
 pub fn assert_same_results(one: &Path, other: &Path) {
-    for name in ["sweep.csv", "sweep.json", "sweep.parquet"] {
-        let [a, b] = [one, other].map(|folder| fs::read(folder.join(name)).unwrap());
+    assert_eq!(names(one), names(other));
+    for name in names(one) {
+        let [a, b] = [one, other].map(|folder| fs::read(folder.join(&name)).unwrap());
         assert!(a == b, "{name} of {} and of {} differ", one.display(), other.display());
     }
 }

@@ -4,7 +4,9 @@
 mod cases;
 mod checksums;
 mod coupled;
+mod precision;
 mod request;
 mod resume;
 mod runs;
 mod shards;
+mod statistics;
