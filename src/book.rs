@@ -10,4 +10,5 @@ macro_rules! chapters {
 chapters! {
     circuit: "/docs/howto/circuit.md";
     dynamics: "/docs/howto/dynamics.md";
+    map: "/docs/howto/map.md";
 }
