@@ -279,7 +279,7 @@ fn the_best_voltage_of_a_quick_release_is_that_of_the_closed_form() {
     assert!(zener < 0.01, "{zener}");
 }
 
-/// Without leakage the best point of `tuning`; with it, less for the load in proportion to what leaks, and never less than what
+/// Without leakage nearly the best point of `tuning`; with it, less for the load in proportion to what leaks, and never less than what
 /// the membranes at rest lose at the supply voltage.
 #[test]
 fn leakage_takes_the_net_gain_and_lowers_the_best_load() {
@@ -287,7 +287,9 @@ fn leakage_takes_the_net_gain_and_lowers_the_best_load() {
     let tight = found(&leakage, "best load without leakage");
     let best = found(&tuning, "isolated membranes, ideal switch");
     let rows = &leakage.sheets[1].rows;
-    assert!((rows[0][2] / best.videg - 1.0).abs() < 0.01 && rows[0][3] == 0.0, "{best:?} {:?}", rows[0]);
+    // At 2000 V, not at the best voltage.
+    let part = rows[0][2] / best.videg;
+    assert!(part > 0.98 && part <= 1.0 && rows[0][3] == 0.0, "{best:?} {:?}", rows[0]);
     assert!((1e9 * tight.videg / 3.2e10).log10().abs() < 0.2, "{tight:?}");
     let rest = 2.0 * 2000.0 * 2000.0 * 1.501_476_744_842_152e-11;
     for pair in rows.windows(2) {
