@@ -33,8 +33,8 @@ fn main() -> Result<ExitCode> {
         let [one, all] = [1, 1 + RUNS].map(|runs| counted(number, runs));
         let each = (all? - one?) as f64 / f64::from(RUNS) / events as f64;
         let ratio = each / *level.get_or_insert(each);
-        is_within &= allowed.is_none_or(|allowed| ratio <= allowed);
-        let allowed = allowed.map_or_else(String::new, |allowed| allowed.to_string());
+        is_within &= allowed.is_none_or(|allowed| each <= allowed);
+        let allowed = allowed.map_or_else(String::new, |allowed| format!("{allowed:.0}"));
         println!("| {name} | {events} | {each:.0} | {ratio:.2} | {allowed} |");
     }
     Ok(if is_within { ExitCode::SUCCESS } else { ExitCode::FAILURE })

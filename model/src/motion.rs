@@ -269,15 +269,15 @@ impl Motion {
         (self.ball, self.slip) = (ball, slip);
         // Else the cylinder goes on as before.
         if self.mount.ratio > 0.0 || self.mount.is_suspended() {
-            self.change_load(here);
+            *here = self.change_load(*here);
         }
     }
 
     #[inline(never)] // what a free cylinder does stays small
-    fn change_load(&mut self, here: &mut CylinderState) {
+    fn change_load(&mut self, here: CylinderState) -> CylinderState {
         let load = Self::load_of(&self.mount, &self.ball, self.slip);
-        self.cylinder = self.cylinder.loaded(here, load);
-        *here = self.cylinder.at_start();
+        self.cylinder = self.cylinder.loaded(&here, load);
+        self.cylinder.at_start()
     }
 
     /// dz'', m/s^2, of a ball without friction where the cylinder is `here`, if the ball does not act on it.

@@ -40,10 +40,11 @@ impl Batch {
         for (excess, peak) in excesses.iter_mut().zip(&peaks[..impacts.len()]) {
             *excess = membrane.capacitance_excess(*peak);
         }
-        for (&(start, side, speed), (&peak, &excess)) in impacts.iter().zip(peaks.iter().zip(&excesses)) {
-            pulses.push(membrane, side, Pulse { start, speed, peak, change: PulseChange::default() });
-            ledger.credit(excess);
-        }
+        excesses[..self.len].iter().for_each(|excess| ledger.credit(*excess));
+        let started = |(&(start, side, speed), &peak): (&(f64, Side, f64), &f64)| {
+            (side, Pulse { start, speed, peak, change: PulseChange::default() })
+        };
+        pulses.extend(membrane, impacts.iter().zip(&peaks).map(started));
         self.len = 0;
     }
 }

@@ -214,7 +214,8 @@ impl CylinderMotion {
     }
 
     /// All of the motion at `time`, s.
-    #[inline]
+    #[allow(clippy::inline_always)] // as a copy of what a call returns, sine and cosine would arrive late
+    #[inline(always)]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
         let turns = self.turns(time);
         self.at_angle(time, turns, sin_cos(4.0 * turns))

@@ -5,12 +5,14 @@
 //! It is searched in windows of one excitation period, counted from the start of the flight and not from the steps of a
 //! caller, so that the result does not depend on them. Within a window the zeros of a high derivative are known in
 //! closed form; between them the next lower derivative is monotone, its zeros are bracketed, and so on down to the
-//! extrema of dz. Between two extrema dz is monotone and meets a membrane at most once.
+//! extrema of dz. Between two extrema dz is monotone and meets a membrane at most once. Most flights are simpler than that
+//! ([`Flight::simple_contact`]).
 
 pub(super) mod angle;
 mod crossing;
 mod curved;
 pub(super) mod piece;
+mod simple;
 mod zeros;
 
 use core::f64::consts::TAU;
@@ -89,7 +91,9 @@ impl Flight {
         relative: f64,
     ) -> Self {
         let (drive, swing) = (&cylinder.drive, cylinder.swing);
-        let CylinderState { time, turns, sine, .. } = *start;
+        // One by one: as a copy of both, sine and cosine would arrive late.
+        let CylinderState { time, turns, sine: [sin, cos], .. } = *start;
+        let sine = [sin, cos];
         let [external, external_rate] = cylinder.external_at(time);
         let external = [0.5 * (external + relative), external_rate / 6.0];
         let (frequency, period) = (drive.frequency, 1.0 / drive.frequency);

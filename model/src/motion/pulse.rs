@@ -252,6 +252,23 @@ impl Pulses {
         list.insert(position, Running::new(membrane, pulse));
     }
 
+    /// Adds the pulses of impacts in their order, but for those that have ended when the next one on their side begins.
+    pub(crate) fn extend(&mut self, membrane: &Shared<Membrane>, pulses: impl Iterator<Item = (Side, Pulse)>) {
+        let mut last: [Option<Pulse>; 2] = [None; 2];
+        for (side, pulse) in pulses {
+            let Some(before) = last[side.index()].replace(pulse) else { continue };
+            let is_over = membrane.is_power() && self.shape.end_time(&before) <= pulse.start;
+            if !is_over || self.under_way[side.index()].len() >= Self::CAPACITY {
+                self.push(membrane, side, before);
+            }
+        }
+        for (side, pulse) in Side::BOTH.into_iter().zip(last) {
+            if let Some(pulse) = pulse {
+                self.push(membrane, side, pulse);
+            }
+        }
+    }
+
     /// The pulses of the membrane at `side` that have not ended at `time`, s.
     pub(crate) fn going_on(&self, side: Side, time: f64) -> impl Iterator<Item = &Pulse> {
         let list = self.under_way[side.index()].iter();
@@ -342,6 +359,27 @@ mod tests {
             [(2.6, 1.341_987_686_916_841_2), (1.0, LINEAR_LOADING), (10.0, 1.120_767_003_918_876)]
         {
             assert_relative_eq!(PulseShape::new(exponent, 1.0).loading, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn pulses_that_are_added_together_are_those_that_are_added_one_by_one() {
+        let membrane = Shared::new(Membrane::new(&crate::Parameters::default()));
+        let none = || Pulses { shape: PulseShape::new(2.6, 0.5), under_way: Default::default() };
+        for spacing in [1e-6, 1e-4, 1e-3, 3e-3, 1e-2] {
+            let started = |k: u32| {
+                let speed = 0.05 + 0.03 * f64::from(k * 7 % 11);
+                let side = if k % 5 < 3 { Side::Left } else { Side::Right };
+                (side, pulse(spacing * f64::from(k), speed, membrane.deflection(speed)))
+            };
+            let (mut together, mut singly, all) = (none(), none(), (0..800).map(started).collect::<Vec<_>>());
+            for some in all.chunks(16) {
+                together.extend(&membrane, some.iter().copied());
+                for &(side, pulse) in some {
+                    singly.push(&membrane, side, pulse);
+                }
+                assert_eq!(together, singly, "{spacing} s");
+            }
         }
     }
 

@@ -36,7 +36,31 @@ impl Motion {
 
     /// The next event, if there is one before the search windows have passed `until`, s. If the caller is to get there,
     /// `follow` spares it the way.
+    #[allow(clippy::inline_always)] // at each event, where what it returns stays in registers
+    #[inline(always)]
     pub fn next_event(&mut self, noise: &mut Noise, until: f64, follow: bool) -> Option<Prediction> {
+        self.next_impact(noise, until).or_else(|| self.search_for_event(noise, until, follow))
+    }
+
+    /// The same if it is the impact of a simple flight that has not been searched.
+    #[allow(clippy::inline_always)] // at each event, where what it returns stays in registers
+    #[inline(always)]
+    fn next_impact(&mut self, noise: &Noise, until: f64) -> Option<Prediction> {
+        let is_free =
+            matches!(self.ball, Ball::Free) && self.slip == 0.0 && !self.goes_in_pieces() && noise.limit().is_none();
+        let Self { flight, search, .. } = self;
+        if !is_free || search.window > 0 || search.has_ended() || flight.start > until {
+            return None;
+        }
+        let contact = flight.simple_contact()?;
+        let event = Prediction::Impact { time: flight.start + contact.elapsed, side: contact.side };
+        (search.window, search.found, search.speed) = (1, Some(event), contact.speed);
+        Some(event)
+    }
+
+    /// The next event, whatever it is.
+    #[inline(never)] // what a simple flight does stays small
+    pub fn search_for_event(&mut self, noise: &mut Noise, until: f64, follow: bool) -> Option<Prediction> {
         let limit = noise.limit();
         if let Ball::InContact(contact) = &self.ball {
             let end = contact.end();

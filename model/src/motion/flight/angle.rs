@@ -1,5 +1,7 @@
 //! The angle of the harmonic force at a place of a flight, and what it has passed through since the start.
 
+#![allow(clippy::inline_always)] // what is taken at each event, and not inlined everywhere otherwise
+
 use core::f64::consts::TAU;
 
 use crate::numerics::elementary::sin_cos;
@@ -28,13 +30,13 @@ impl Angle {
     pub(super) const SMALL: f64 = 0.25;
 
     /// The angle that lies `phi`, rad, that is `turns` but for whole ones, after one with this sine and cosine.
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(start: [f64; 2], phi: f64, turns: f64) -> Self {
         Self::swept(start, Swept::new(phi, turns))
     }
 
     /// The angle that lies so far after one with this sine and cosine.
-    #[inline]
+    #[inline(always)]
     fn swept([sin, cos]: [f64; 2], swept: Swept) -> Self {
         let Swept { sine, versine, .. } = swept;
         Self { sine: [sin + (cos * sine - sin * versine), cos - (sin * sine + cos * versine)], swept }
@@ -56,7 +58,7 @@ impl Angle {
 
 impl Swept {
     /// The same for the angle `phi`, rad, that is `turns` but for whole ones.
-    #[inline]
+    #[inline(always)]
     pub fn new(phi: f64, turns: f64) -> Self {
         let [sin, cos] = sin_cos(2.0 * turns);
         let (sine, versine) = (2.0 * sin * cos, 2.0 * sin * sin);
@@ -65,7 +67,7 @@ impl Swept {
     }
 
     /// The same for an angle that is larger by `angle`, rad, a small one.
-    #[inline]
+    #[inline(always)]
     pub(super) fn further(&self, angle: f64) -> Self {
         let square = angle * angle;
         let versine = square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0)));
@@ -81,7 +83,7 @@ impl Swept {
 }
 
 /// phi - sin phi up to [`Angle::SMALL`]: its Taylor series.
-#[inline]
+#[inline(always)]
 fn small_lag(phi: f64) -> f64 {
     let q = phi * phi;
     let square = q * q;

@@ -4,6 +4,8 @@
 //! root costs no more sines; there the next series is taken, until one more step from its root, with the gap to all digits,
 //! is the last. The first place is one where sine and cosine are known beforehand.
 
+#![allow(clippy::inline_always)] // what is taken at each event, and not inlined everywhere otherwise
+
 use super::zeros::Knot;
 use super::{Angle, Crossing, Flight};
 use crate::motion::side::Side;
@@ -12,23 +14,42 @@ use crate::numerics::elementary::fraction;
 /// Bisection alone needs at most some 110 to exhaust the digits of a double.
 const MAX_SERIES: u32 = 200;
 
-/// A root of the first series need not be better than what that leaves out: the last change of a step, relative to it.
-const ROUGH: f64 = 0.3;
+/// Most steps to a rough root.
+pub(super) const ROUGH_STEPS: u32 = 8;
+
+/// Whether this last `change` of a `step` is small enough: a root of the first series need not be better than what that leaves out.
+#[inline]
+pub(super) fn is_rough_root(step: f64, change: f64) -> bool {
+    const ROUGH: f64 = 0.3;
+    change.abs() <= ROUGH * step.abs()
+}
 
 /// The gap about a place: coefficients of the powers of the time since then, s.
-struct Series([f64; 8]);
+pub(super) struct Series([f64; 8]);
 
 impl Series {
     /// Series of a gap that is `level` where these, a value and its derivatives, are zero.
-    #[inline]
-    fn new(level: f64, [d0, d1, d2, d3, d4, d5, d6, d7]: [f64; 8]) -> Self {
+    #[inline(always)]
+    pub(super) fn new(level: f64, [d0, d1, d2, d3, d4, d5, d6, d7]: [f64; 8]) -> Self {
         let [c2, c3, c4] = [d2 * (1.0 / 2.0), d3 * (1.0 / 6.0), d4 * (1.0 / 24.0)];
         Self([level + d0, d1, c2, c3, c4, d5 * (1.0 / 120.0), d6 * (1.0 / 720.0), d7 * (1.0 / 5040.0)])
     }
 
-    /// Value, first and half the second derivative.
+    /// Value at the place itself.
     #[inline]
-    fn at(&self, x: f64) -> [f64; 3] {
+    pub(super) fn value(&self) -> f64 {
+        self.0[0]
+    }
+
+    /// First derivative at the place itself.
+    #[inline]
+    pub(super) fn slope(&self) -> f64 {
+        self.0[1]
+    }
+
+    /// Value, first and half the second derivative.
+    #[inline(always)]
+    pub(super) fn at(&self, x: f64) -> [f64; 3] {
         let Self([c0, c1, c2, c3, c4, c5, c6, c7]) = self;
         let square = x * x;
         let four = square * square;
@@ -42,14 +63,14 @@ impl Series {
 
     /// The step of Halley's method from where the series has this value, slope and half the second derivative; none if
     /// that is not on the way down.
-    #[inline]
-    fn halley([value, slope, half_curvature]: [f64; 3]) -> Option<f64> {
+    #[inline(always)]
+    pub(super) fn halley([value, slope, half_curvature]: [f64; 3]) -> Option<f64> {
         (slope < 0.0).then(|| -value * slope / (slope * slope - value * half_curvature))
     }
 
     /// The step of Halley's method from the place itself.
-    #[inline]
-    fn first_step(&self) -> Option<f64> {
+    #[inline(always)]
+    pub(super) fn first_step(&self) -> Option<f64> {
         let Self([c0, c1, c2, ..]) = *self;
         Self::halley([c0, c1, c2])
     }
@@ -69,12 +90,11 @@ impl Series {
     /// About the root that Halley's method finds from `start` on.
     #[inline]
     fn rough_root(&self, start: f64) -> Option<f64> {
-        const MAX_STEPS: u32 = 8;
         let mut step = start;
-        for _ in 0..MAX_STEPS {
+        for _ in 0..ROUGH_STEPS {
             let change = Self::halley(self.at(step))?;
             step += change;
-            if change.abs() <= ROUGH * step.abs() {
+            if is_rough_root(step, change) {
                 return Some(step);
             }
         }
@@ -96,7 +116,7 @@ impl Flight {
         for _ in 0..MAX_SERIES {
             let angle = self.angle(tau);
             let series = gap_to.series(tau, &angle, level);
-            if series.0[0] > 0.0 {
+            if series.value() > 0.0 {
                 low = tau;
             } else {
                 high = tau;
@@ -150,8 +170,8 @@ impl Flight {
     ///
     /// An error e becomes K e^3 by a step. The first step has left K step^3 = rest, so that the next leaves rest^4 / step^3.
     /// Where the method crawls along a flat gap, the rest is larger than the step.
-    #[inline]
-    fn is_found(&self, tau: f64, step: f64, rest: f64, slope: f64) -> bool {
+    #[inline(always)]
+    pub(super) fn is_found(&self, tau: f64, step: f64, rest: f64, slope: f64) -> bool {
         let allowed = 0.25 * f64::EPSILON * tau;
         let square = (self.omega() * step).powi(2);
         let left_out = self.swing * (square * square) * (square * square) * (1.0 / 40_320.0);

@@ -69,6 +69,17 @@ proptest! {
     }
 
     #[test]
+    fn the_contact_of_a_simple_flight_is_the_one_that_the_search_finds_to_the_last_bit(flight in any_flight()) {
+        let flight = Flight { external: [0.0; 2], ..flight };
+        if let Some(simple) = flight.simple_contact() {
+            prop_assert_eq!(flight.skip(0), Some(0));
+            let found = flight.contact_in_window(0, f64::INFINITY).unwrap();
+            let bits = |crossing: Crossing| [crossing.elapsed, crossing.speed].map(f64::to_bits);
+            prop_assert_eq!((bits(simple), simple.side), (bits(found), found.side));
+        }
+    }
+
+    #[test]
     fn a_ball_that_just_reaches_a_membrane_meets_it_on_the_way_and_not_past_the_turn(
         flight in any_flight(), depth in -19..-8_i32,
     ) {
@@ -104,4 +115,21 @@ proptest! {
             prop_assert!((lower - knot.value).abs() <= 1e-12 * size(here - 1), "{lower:e} {:e}", knot.value);
         }
     }
+}
+
+#[test]
+fn most_flights_from_one_membrane_to_the_other_are_simple() {
+    let (swing, frequency) = (1.25 * HALF_TRAVEL, 2.0);
+    let amplitude = swing * (TAU * frequency).powi(2);
+    let flights = (0..400_u32).map(|number| {
+        let (phase, rebound) = (TAU * f64::from(number % 20) / 20.0, 0.02 * f64::from(number / 20));
+        let drive = Drive { amplitude, frequency, phase, external: 0.0, external_rate: 0.0, recorded: Segment::NONE };
+        let cylinder = CylinderMotion::new(0.0, 0.0, 0.0, drive, Load::NONE);
+        Flight::new(&cylinder, &cylinder.at(0.0), [HALF_TRAVEL, -rebound], HALF_TRAVEL, 0.0)
+    });
+    let [simple, found] = flights.fold([0, 0], |[simple, found], flight| {
+        let finds = flight.contact_in_window(0, f64::INFINITY).is_some();
+        [simple + u32::from(flight.simple_contact().is_some()), found + u32::from(finds)]
+    });
+    assert!(2 * simple > found && simple < found, "{simple} of {found}");
 }
