@@ -25,10 +25,10 @@ impl<'m> Layers<'m> {
     /// The layers of `map`.
     pub fn new(plan: &'m Plan, map: &Map) -> Self {
         let (factor, unit) = scaled_unit(plan, map);
-        let rounding = 1e-9 * factor * largest(plan, map);
+        let rounding = 1e-5 * factor * largest(plan, map);
         let value = |cell| {
             let value = factor * plan.number(cell, &plan.of);
-            // A sign that rounding made would put a 0 into the middle of the colours.
+            // What no colour tells from 0 would, by its sign, put 0 into the middle of the colours.
             if value.abs() < rounding { 0.0 } else { value }
         };
         let at = |point: &Point| vec![(point.at[0], point.at[1])];
