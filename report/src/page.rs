@@ -31,7 +31,7 @@ impl Report {
         Self { generated_by: program.into(), ..self }
     }
 
-    /// Puts two sections with one figure each side by side, where there is room.
+    /// Puts two sections with one figure each side by side, where there is room. There is no list of sections: thumbnails lead to them.
     pub fn paired(self) -> Self {
         Self { is_paired: true, ..self }
     }

@@ -215,12 +215,15 @@ fn thinned(points: &[(f64, f64)]) -> Points {
         let [low, high] = slopes(here, from);
         (least, most) = (least.max(low), most.min(high));
         let slope = (here.1 - from.1) / (here.0 - from.0);
-        if !(least <= slope && slope <= most) && before != from {
+        if !(least <= slope && slope <= most) && before.0 > from.0 {
             kept.push(before);
             [least, most] = slopes(here, before);
         }
     }
-    kept.extend(points.last().filter(|last| points.len() > 1 && kept.last() != Some(*last)));
+    // Times, not values: a circuit of the user may not tell one.
+    let is_left = |last: &&(f64, f64)| kept.last().is_some_and(|kept| kept.0 < last.0);
+    let last = points.last().filter(is_left).copied();
+    kept.extend(last);
     kept
 }
 
