@@ -33,6 +33,7 @@ mod tests {
     fn a_panic_has_its_text_whatever_its_payload() {
         assert_eq!(panic_message(Box::new("text")), "text");
         assert_eq!(panic_message(Box::new("owned".to_owned())), "owned");
-        assert_eq!(panic_message(Box::new(3)), "no message");
+        // Never dropped: of a size of 0, so that Miri sees no leak.
+        assert_eq!(panic_message(Box::new(())), "no message");
     }
 }
