@@ -51,6 +51,7 @@ pub mod cli;
 pub mod cosim;
 pub mod coupled;
 pub mod crosscheck;
+mod differences;
 pub mod dynamics;
 pub mod export;
 pub mod map;

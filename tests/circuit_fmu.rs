@@ -20,7 +20,7 @@ mod tool;
 mod toy;
 
 fn cosim(folder: &Path, arguments: &[&str]) -> Output {
-    let arguments = [&["cosim", "--json", "--output", "out"][..], arguments].concat();
+    let arguments = [&["cosim", "--json", "--fresh", "--output", "out"][..], arguments].concat();
     tool::tool(arguments).current_dir(folder).output().unwrap()
 }
 

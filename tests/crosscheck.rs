@@ -46,7 +46,8 @@ fn check<'a>(value: &'a Value, name: &str) -> &'a Value {
 fn crosscheck(arguments: &str, code: i32) -> Option<(TempDir, Value)> {
     ngspice()?;
     let folder = tempfile::tempdir().unwrap();
-    let arguments: Vec<_> = ["crosscheck", "--json"].into_iter().chain(arguments.split_whitespace()).collect();
+    let verb = ["crosscheck", "--json", "--output", "out/crosscheck-fig14"];
+    let arguments: Vec<_> = verb.into_iter().chain(arguments.split_whitespace()).collect();
     let found = json(&videg(folder.path(), &arguments, &[]), code);
     Some((folder, found))
 }
@@ -215,7 +216,11 @@ fn where_ngspice_stops_all_solvers_are_reported_up_to_there_and_open_claims_name
         sed -i 's/^tran \\([^ ]*\\) [^ ]* /tran \\1 0.7 /' harvesting.cir\n\
         echo 'doAnalyses: TRAN:  Timestep too small; time = 0.7'\nfi";
     let short = altered_ngspice(folder.path(), &program, commands);
-    let output = videg(folder.path(), &["crosscheck", "--json", "--until", "1.5"], &[("VIDEG_NGSPICE", &short)]);
+    let output = videg(
+        folder.path(),
+        &["crosscheck", "--json", "--until", "1.5", "--output", "out/crosscheck-fig14"],
+        &[("VIDEG_NGSPICE", &short)],
+    );
     let found = json(&output, 1);
     assert_eq!(found["passed"], false);
     let stopped = found["stopped"].as_array().unwrap();

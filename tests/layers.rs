@@ -26,10 +26,11 @@ const PACKAGES: [(&str, &[&str]); 12] = [
 ];
 
 /// Dependencies that serve the command line, and have no place in a shared library.
-const OF_THE_COMMAND_LINE: [&str; 6] = ["anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook"];
+const OF_THE_COMMAND_LINE: [&str; 8] =
+    ["anstream", "anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook", "terminal_size"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 18] = [
+const DOWNWARDS: [&str; 19] = [
     "cli",
     "paper",
     "dynamics",
@@ -46,6 +47,7 @@ const DOWNWARDS: [&str; 18] = [
     "circuit_sample",
     "artefact",
     "statistics",
+    "differences",
     "threads",
     "progress",
 ];

@@ -8,7 +8,10 @@
 use std::time::Instant;
 
 use fmu_import::Fmu;
-use videg::cosim::{CosimError, Coupling, CsvRecorder, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row, Trace};
+use videg::cosim::{
+    CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, Master, Observer, Row, Sample, SeriesOptions, SeriesRecorder,
+    Trace,
+};
 use videg::package::{Options, build_all};
 use videg::scenario::{Request, Scenario};
 use videg_circuit::Settings;
@@ -110,12 +113,13 @@ fn coupled(fmu: &Fmu, scenario: &Scenario, model: &Harvester) {
 /// A time series as long as memory would notice.
 fn assert_streamed(fmu: &Fmu, scenario: &Scenario) {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("timeseries.csv");
+    let series = SeriesOptions { sample: Sample::Step, ..SeriesOptions::default() };
     let harvester = HarvesterFmu::new(fmu, scenario, &scenario.settings).unwrap();
-    let (mut memory, mut recorder) = (MemoryAt::of(scenario.until), CsvRecorder::create(&path, None).unwrap());
+    let recorder = SeriesRecorder::create((folder.path(), "timeseries"), &series, scenario, None);
+    let (mut memory, mut recorder) = (MemoryAt::of(scenario.until), recorder.unwrap());
     let master = Master::new(harvester, Vec::new(), scenario, Coupling::default()).unwrap();
     master.run(&mut [&mut memory, &mut recorder]).unwrap();
-    recorder.finish().unwrap();
+    let path = recorder.finish().unwrap().unwrap();
     let length = path.metadata().unwrap().len();
     println!("a time series of {} MB: {:?} kB", length >> 20, memory.found);
     memory.assert_flat("time series");

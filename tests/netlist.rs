@@ -41,7 +41,7 @@ fn folder(netlist: &str) -> TempDir {
 }
 
 fn cosim(folder: &Path, arguments: &[&str]) -> Output {
-    let arguments = [&["cosim", "--json", "--output", "out"][..], arguments].concat();
+    let arguments = [&["cosim", "--json", "--fresh", "--output", "out"][..], arguments].concat();
     tool::tool(arguments).current_dir(folder).output().unwrap()
 }
 

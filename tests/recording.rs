@@ -43,7 +43,7 @@ const MOTION: [&str; 2] = ["--set", "excitation.kind=motion"];
 #[test]
 fn a_cosine_recorded_is_nearly_the_cosine_itself_and_the_report_shows_it() {
     let folder = folder();
-    let recorded = [&MOTION[..], &["--set", "excitation.file=shaker.csv", "--output", "out"]].concat();
+    let recorded = [&MOTION[..], &["--set", "excitation.file=shaker.csv", "--fresh", "--output", "out"]].concat();
     let exact = gain(folder.path(), &[&MOTION[..], &["--set", "excitation.acceleration=4"]].concat());
     let found = gain(folder.path(), &recorded);
     // Straight lines over a millisecond leave out up to 1/2 (4 pi 0.5e-3)^2 = 2e-5 of the cosine.

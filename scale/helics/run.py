@@ -121,6 +121,8 @@ def differences(options: argparse.Namespace, videg: str) -> list[str]:
             options.master,
             "--circuit",
             "fmu",
+            "--sample",
+            "step",
             "--output",
             folder,
             "--json",

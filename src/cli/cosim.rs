@@ -1,26 +1,28 @@
 //! `videg cosim`: the harvester FMU coupled with a harvesting circuit.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
 use indexmap::IndexMap;
 use serde::Serialize;
 
+use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::picture::{Electrical, Probe};
 use super::progress::TimeBar;
+use super::results::{Identity, Results as Claimed, chosen, listed};
 use super::run_output::{self, RunOutput, file_list, heading, mechanics};
+use super::time_series::TimeSeriesOptions;
 use super::{Exit, cosim_report, output, packaging, parameter_table, picture, time_series};
 use crate::cosim::{
-    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, CsvRecorder, Device, EnergyBalance,
-    ForeignCircuit, LabelledCircuit, Mapping, Method, NetlistCircuit, Options, Powers, Results,
+    CircuitSolver, CircuitSummary, Cosimulation, Coupling, CouplingSummary, Device, EnergyBalance, ForeignCircuit,
+    LabelledCircuit, Mapping, Method, NetlistCircuit, Options, Powers, Results, SeriesRecorder,
 };
 use crate::ngspice::UserNetlist;
 use crate::scenario::Scenario;
 use videg_report::Section;
-use videg_system::atomic_file;
 
 /// Default values of the circuit. They differ from the start values of its FMU.
 const DEFAULTS: &str = "Defaults: supply.voltage is biasVoltage and zener.voltage is supply.voltage, as in the paper; storage.voltage \
@@ -47,6 +49,8 @@ pub struct Arguments {
     /// its value, e.g. 1e-4; undoes steps, which ngspice cannot
     #[arg(long, value_name = "TOLERANCE", allow_negative_numbers = true)]
     adaptive: Option<f64>,
+    #[command(flatten)]
+    series: TimeSeriesOptions,
     #[command(flatten)]
     isolation: IsolationOptions,
 }
@@ -118,7 +122,7 @@ struct Output<'a> {
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = options.scenario()?;
     let coupling = Coupling { method: arguments.master, tolerance: arguments.adaptive };
@@ -130,7 +134,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(_) => arguments.isolation.open_beside("VibroImpactHarvester")?,
         None => arguments.isolation.open_own("VibroImpactHarvester")?,
     };
-    let folder = output::folder(options.output.as_deref(), "cosim", &scenario)?;
+    let claimed = Claimed::claim(&options.output, arguments.identity(&scenario)?, interruption)?;
     let solver = match (&own.netlist, &foreign.circuit_fmu, arguments.circuit) {
         (_, Some(path), _) => {
             mapping = Mapping::read(&foreign.map, foreign.map_file.as_deref())?;
@@ -154,11 +158,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         }
     };
     let cosimulation = Cosimulation::new(&Options { harvester: &harvester, scenario: &scenario, solver, coupling })?;
+    let series = arguments.series.options();
     // The number of points of an adaptive step is known at the end only.
-    let warning = coupling.tolerance.is_none().then(|| time_series::warning(&scenario, true)).flatten();
+    let warning = coupling.tolerance.is_none().then(|| time_series::warning(&series, &scenario, true)).flatten();
     output::warn(warning.as_slice());
-    let csv = folder.join("timeseries.csv");
-    let results = record(cosimulation, &scenario, &csv, &own.probe)?;
+    let recorder = SeriesRecorder::create((&claimed.folder, "timeseries"), &series, &scenario, Some(&own.probe))?;
+    let (results, written) = record(cosimulation, &scenario, recorder)?;
     let drawn = match solver {
         CircuitSolver::Netlist(_, user) => {
             Electrical::Netlist(user.probes.iter().map(|it| Probe::of_node(it)).collect())
@@ -179,10 +184,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     };
     let report = cosim_report::report(&scenario, &results, &device, svg.clone(), of_user)?;
     let html = videg_report::render_html(&report)?;
-    let files = run_output::write(&folder, &[csv], &svg, &html)?;
+    let files = run_output::write(&claimed.folder, written.as_slice(), &svg, &html)?;
     let (first, comparison) = results.circuits.split_first().context("a co-simulation without a circuit")?;
     let output = Output {
-        run: RunOutput::new(&scenario, results.mechanics, &results.warnings, &files),
+        run: RunOutput::new(&claimed.identity, &scenario, results.mechanics, &results.warnings, &files),
         circuit: &first.label,
         powers: &first.powers,
         summary: &first.summary,
@@ -200,26 +205,42 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         cosim_report::coupling_lines(&results),
         file_list(&files),
     ];
-    run_output::conclude(&folder, options.json, &output, &text, &results.warnings)?;
+    let json = run_output::json(&output)?;
+    run_output::conclude(claimed, options.json, &json, &text, &results.warnings)?;
     Ok(Exit::Passed)
 }
 
-/// Runs `cosimulation` and writes its time series to `csv`. The time series of a run that fails stays under another name.
+impl Arguments {
+    fn identity(&self, scenario: &Scenario) -> anyhow::Result<Identity> {
+        let Self { circuit, netlist, foreign, master, adaptive, .. } = self;
+        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        let options = [
+            ("circuit", chosen(circuit, &Backend::Embedded)),
+            ("netlist", path(&netlist.netlist)),
+            ("gain", listed(&netlist.gain)),
+            ("cost", listed(&netlist.cost)),
+            ("probe", listed(&netlist.probe)),
+            ("circuit_fmu", path(&foreign.circuit_fmu)),
+            ("map", listed(&foreign.map)),
+            ("map_file", path(&foreign.map_file)),
+            ("master", chosen(master, &Method::default())),
+            ("adaptive", adaptive.map(|tolerance| tolerance.to_string())),
+        ];
+        Identity::of("cosim", scenario, options.into_iter().chain(self.series.distinct()))
+    }
+}
+
+/// Runs `cosimulation` with its time series. That of a run that fails stays under another name.
 fn record(
     cosimulation: Cosimulation<'_>,
     scenario: &Scenario,
-    csv: &Path,
-    probes: &[String],
-) -> anyhow::Result<Results> {
-    let mut recorder = CsvRecorder::create(csv, Some(probes))?;
+    mut recorder: SeriesRecorder,
+) -> anyhow::Result<(Results, Option<PathBuf>)> {
     match cosimulation.run(&mut recorder, &TimeBar::new(&scenario.name)) {
-        Ok(results) => {
-            recorder.finish()?;
-            Ok(results)
-        }
-        Err(error) => {
-            recorder.leave()?;
-            Err(anyhow!("{error}; the time series up to there is in {}", atomic_file::partial(csv).display()))
-        }
+        Ok(results) => Ok((results, recorder.finish()?)),
+        Err(error) => Err(match recorder.leave()? {
+            Some(left) => anyhow!("{error}; the time series up to there is in {}", left.display()),
+            None => error.into(),
+        }),
     }
 }

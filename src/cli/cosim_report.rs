@@ -131,10 +131,10 @@ fn closure(results: &Results) -> String {
 }
 
 /// What stands under the energy table, in lines with `separator` between them.
-fn explanation(results: &Results, separator: &str) -> String {
+fn explanation(results: &Results) -> String {
     let is_untold = || results.circuits.iter().any(|circuit| circuit.summary.energy.converted.is_nan());
     match results.is_foreign {
-        false => EXPLANATION.join(separator),
+        false => EXPLANATION.join(" "),
         true if is_untold() => UNTOLD.to_owned(),
         true => "The energies are those that the circuit FMU tells.".to_owned(),
     }
@@ -145,7 +145,7 @@ pub fn tables(results: &Results) -> String {
     if is_netlist(results) {
         return format!("{}\n\n{}", elements(results).text(), closure(results));
     }
-    format!("{}\n\n{}", energies(results).narrow(", "), explanation(results, "\n"))
+    format!("{}\n\n{}", energies(results).narrow(", "), explanation(results))
 }
 
 /// The coupling with the first circuit, and the energy balance.
@@ -241,7 +241,7 @@ pub fn report(
         energies.table(elements(results).html()).text(closure(results))
     } else {
         let why = if results.is_foreign { "What the energies are" } else { "Why the circuits differ" };
-        energies.table(self::energies(results).html()).folded(Section::new(why).text(explanation(results, " ")))
+        energies.table(self::energies(results).html()).folded(Section::new(why).text(explanation(results)))
     };
     let parameters = parameter_table::section(device, scenario);
     let parameters = match &results.asked {

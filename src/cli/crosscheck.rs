@@ -7,8 +7,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use serde::Serialize;
 use videg_circuit::names;
 
+use super::interruption::Interruption;
 use super::options::RunOptions;
 use super::progress::TaskBar;
+use super::results::{Identity, Results, flag};
 use super::run_output::{self, RunOutput, file_list, heading};
 use super::{Exit, crosscheck_report as page, output, packaging};
 use crate::cosim::{Charges, CircuitSample, CircuitSummary, Device, Energies};
@@ -93,7 +95,7 @@ struct Output<'a> {
 const TOP_LEVEL: Solver = Solver::Exponential;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = options.scenario_with(arguments.settings())?;
     if let Some(folder) = &arguments.export {
@@ -101,22 +103,26 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     }
     let ngspice = Ngspice::find(None)?;
     let fmu = packaging::open("VibroImpactHarvester")?;
-    let folder = output::folder(options.output.as_deref(), "crosscheck", &scenario)?;
+    let swept = flag(arguments.sweep);
+    let identity = Identity::of("crosscheck", &scenario, [("sweep", swept)])?;
+    let claimed = Results::claim(&options.output, identity, interruption)?;
+    let folder = &claimed.folder;
     let (program, sweep) = (packaging::program()?, arguments.sweep);
     let inputs = Options { harvester: &fmu, scenario: &scenario, ngspice: &ngspice, program: &program, sweep };
     let found = crosscheck::run(&inputs, &TaskBar::new(&scenario.name))?;
-    let (mut written, figures) = files::write(&folder, &found)?;
+    let (mut written, figures) = files::write(folder, &found)?;
     let html = folder.join("report.html");
     output::write(&html, page::html(&found, &Device::of(&fmu, &scenario)?, figures)?)?;
     written.extend([html, folder.join("result.json")]);
     if let Some(folder) = &arguments.export {
         written.extend(export::write(folder, &found)?);
     }
-    run_output::conclude(&folder, options.json, &json(&found, &written), &text(&found, &written), &found.warnings)?;
+    let result = run_output::json(&json(&claimed.identity, &found, &written))?;
+    run_output::conclude(claimed, options.json, &result, &text(&found, &written), &found.warnings)?;
     Ok(if found.passed() { Exit::Passed } else { Exit::Failed })
 }
 
-fn json<'a>(found: &'a Crosscheck, files: &'a [PathBuf]) -> Output<'a> {
+fn json<'a>(identity: &'a Identity, found: &'a Crosscheck, files: &'a [PathBuf]) -> Output<'a> {
     let eq13 = found.mechanics.summary.energy_eq13;
     let solver = |(solver, run): &(Solver, Waveforms)| {
         let CircuitSummary { energy, charge } = run.summary(eq13);
@@ -125,7 +131,7 @@ fn json<'a>(found: &'a Crosscheck, files: &'a [PathBuf]) -> Output<'a> {
     };
     let top_level = found.run(TOP_LEVEL).map_or_else(CircuitSample::default, Waveforms::last);
     Output {
-        run: RunOutput::new(&found.scenario, found.mechanics.summary, &found.warnings, files),
+        run: RunOutput::new(identity, &found.scenario, found.mechanics.summary, &found.warnings, files),
         circuit: &found.label,
         energy_by: TOP_LEVEL.key(),
         summary: CircuitSummary::new(&top_level, eq13),

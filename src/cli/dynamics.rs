@@ -1,20 +1,21 @@
 //! `videg dynamics`: what the motion of a case is like for long.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use clap::value_parser;
 
 use super::dynamics_report::{self as page, Found};
+use super::interruption::Interruption;
 use super::options::{CaseOptions, mechanical};
 use super::progress::TimeBar;
+use super::results::{Identity, OutputOptions, Results, flag};
 use super::{Exit, output, packaging, reproduce_files as files, run_output};
 use crate::artefact::{Picture, Sheet};
 use crate::cosim::Device;
 use crate::dynamics::orbits::{self, Branch, Orbit, Search};
 use crate::dynamics::{Basins, Diagram, DynamicsError, Motion, Periods, Problem, exponent, pictures, sheets};
 use crate::progress::{Progress, during};
+use crate::scenario::Scenario;
 use crate::sweep::{Vary, harvester_description};
 
 /// Arguments of the verb.
@@ -30,10 +31,10 @@ pub struct Arguments {
     #[arg(long)]
     orbits: bool,
     /// Largest period of the orbits, in periods of the excitation
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = value_parser!(u32).range(1..=32))]
+    #[arg(long, value_name = "N", default_value_t = PERIODS, value_parser = value_parser!(u32).range(1..=32))]
     periods: u32,
     /// Seed of the random starts from which orbits are searched for
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = SEED)]
     seed: u64,
     /// Basins of attraction over N x N starts [default: 100]
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "100", value_parser = value_parser!(u32).range(2..=1000))]
@@ -42,19 +43,21 @@ pub struct Arguments {
     #[arg(long, value_name = "M/S", requires = "basins")]
     basins_speed: Option<f64>,
     /// Periods that pass before a motion is looked at
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = value_parser!(u32).range(0..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = TRANSIENT, value_parser = value_parser!(u32).range(0..=1_000_000))]
     transient: u32,
     /// Periods at which it is then looked at [default: 1000 for the section, 60 for the diagram]
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<u32>::new().range(4..=1_000_000))]
     samples: Option<u32>,
-    /// Folder for data, pictures and report [default: out/dynamics-CASE]
-    #[arg(long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     json: bool,
 }
 
+const PERIODS: u32 = 4;
+const SEED: u64 = 1;
+const TRANSIENT: u32 = 200;
 /// Periods of a section and of a diagram, and those of each start of basins.
 const SECTION: u32 = 1000;
 const DIAGRAM: u32 = 60;
@@ -63,30 +66,47 @@ const BASINS: u32 = 32;
 const MOST: u64 = 20_000_000;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let scenario = arguments.case.scenario()?;
     let vary = arguments.vary.as_deref().map(Vary::parse).transpose()?;
     let settings = mechanical(&harvester_description()?, &scenario, "dynamics")?;
     let problem = Problem::new(&settings, vary.as_ref())?;
     arguments.check(&problem)?;
+    let claimed = Results::claim(&arguments.output, arguments.identity(&scenario)?, interruption)?;
     let bar = TimeBar::new(&format!("dynamics {}", scenario.name));
     let found = arguments.find(&problem, &bar)?;
     drop(bar);
     let (sheets, pictures) = arguments.show(&problem, &found)?;
-    let folder = output::folder(arguments.output.as_deref(), "dynamics", &scenario)?;
-    let mut files = files::write(&folder, &sheets, &pictures)?;
+    let folder = &claimed.folder;
+    let mut files = files::write(folder, &sheets, &pictures)?;
     let device = Device::of(&packaging::open("VibroImpactHarvester")?, &scenario)?;
     let report = page::report(&scenario, &problem, &found, &device, pictures)?;
     let path = folder.join("report.html");
     output::write(&path, videg_report::render_html(&report)?)?;
     files.extend([path, folder.join("result.json")]);
-    let result = page::Output::new(&scenario, &problem, &found, &files);
+    let result = run_output::json(&page::Output::new(&claimed.identity, &scenario, &problem, &found, &files))?;
     let text = page::text(&scenario, &problem, &found, &files);
-    run_output::conclude(&folder, arguments.json, &result, &text, &[])?;
+    run_output::conclude(claimed, arguments.json, &result, &text, &[])?;
     Ok(Exit::Passed)
 }
 
 impl Arguments {
+    fn identity(&self, scenario: &Scenario) -> anyhow::Result<Identity> {
+        let Self { orbits, periods, seed, basins, transient, .. } = self;
+        let number = |number: u64, default: u64| (number != default).then(|| number.to_string());
+        let options = [
+            ("vary", self.vary.clone()),
+            ("orbits", flag(*orbits)),
+            ("periods", number(u64::from(*periods), u64::from(PERIODS))),
+            ("seed", number(*seed, SEED)),
+            ("basins", basins.map(|count| count.to_string())),
+            ("basins_speed", self.basins_speed.map(|speed| speed.to_string())),
+            ("transient", number(u64::from(*transient), u64::from(TRANSIENT))),
+            ("samples", self.samples.map(|samples| samples.to_string())),
+        ];
+        Identity::of("dynamics", scenario, options)
+    }
+
     /// Checks what goes together with what, before anything runs.
     fn check(&self, problem: &Problem) -> anyhow::Result<()> {
         if self.orbits {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use videg_report::{KeyNumber, Report, Section};
 
 use super::format::{Sheet, significant};
+use super::results::Identity;
 use super::{drawn, output, parameter_table, run_output};
 use crate::artefact::Picture;
 use crate::cosim::Device;
@@ -48,10 +49,17 @@ pub struct Output<'a> {
     branches: Vec<Value>,
     attractors: Vec<Value>,
     files: &'a [PathBuf],
+    request: &'a Identity,
 }
 
 impl<'a> Output<'a> {
-    pub fn new(scenario: &'a Scenario, problem: &Problem, found: &Found, files: &'a [PathBuf]) -> Self {
+    pub fn new(
+        request: &'a Identity,
+        scenario: &'a Scenario,
+        problem: &Problem,
+        found: &Found,
+        files: &'a [PathBuf],
+    ) -> Self {
         let attractors = found.basins.iter().flat_map(|basins| &basins.attractors);
         let attractor = |(attractor, share): &(crate::dynamics::Attractor, f64)| {
             json!({
@@ -60,6 +68,7 @@ impl<'a> Output<'a> {
             })
         };
         Self {
+            request,
             case: &scenario.name,
             description: &scenario.description,
             settings: &scenario.settings,

@@ -5,11 +5,16 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::Args;
 
+use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::options::TimedCaseOptions;
 use super::progress::TimeBar;
+use super::results::{Identity, chosen, listed};
 use super::{Exit, output};
 use crate::export::{self, Format, Options, Points};
+use crate::scenario::Scenario;
+use videg_system::atomic_file::Batch;
+use videg_system::folders;
 
 /// Error of the knots of a netlist, where none is given.
 const KNOTS: f64 = 1e-4;
@@ -35,7 +40,7 @@ pub struct Arguments {
     /// right.capacitance]
     #[arg(long, value_name = "VARIABLES", value_delimiter = ',')]
     columns: Vec<String>,
-    /// File to write [default: out/export-CASE with the ending of the format]
+    /// File to write [default: out/export-CASE and the settings, with the ending of the format]
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print one JSON object on stdout
@@ -45,8 +50,29 @@ pub struct Arguments {
     isolation: IsolationOptions,
 }
 
+impl Arguments {
+    /// The file to write.
+    fn path(&self, scenario: &Scenario) -> anyhow::Result<PathBuf> {
+        if let Some(path) = &self.output {
+            return Ok(path.clone());
+        }
+        let number = |number: Option<f64>| number.map(|number| number.to_string());
+        let options = [
+            ("sample", number(self.sample)),
+            ("knots", number(self.knots)),
+            ("columns", listed(&self.columns)),
+            // Others have an ending of their own.
+            ("format", chosen(&self.format, &Format::Ngspice).filter(|_| self.format.is_netlist())),
+        ];
+        let mut name = Identity::of("export", scenario, options)?.path().into_os_string();
+        name.push(".");
+        name.push(self.format.extension());
+        Ok(name.into())
+    }
+}
+
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let scenario = arguments.case.scenario()?;
     let format = arguments.format;
     let points = match (arguments.sample, arguments.knots) {
@@ -56,13 +82,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         (None, None) => Points::Sample(SAMPLE.min(scenario.until)),
     };
     let harvester = arguments.isolation.open_own("VibroImpactHarvester")?;
-    let path = arguments.output.clone().unwrap_or_else(|| {
-        let name = format!("export-{}.{}", output::safe(&scenario.name), format.extension());
-        Path::new("out").join(name)
-    });
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
+    let path = arguments.path(&scenario)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    folders::make(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    interruption.tell("nothing of this run is left");
+    let batch = Batch::begin(folder);
     let options = Options {
         harvester: &harvester,
         scenario: &scenario,
@@ -72,6 +96,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         path: &path,
     };
     let exported = export::run(&options, &TimeBar::new(&scenario.name))?;
+    batch.commit().with_context(|| format!("cannot give {} its name", path.display()))?;
+    interruption.tell("the results are complete");
     output::show(arguments.json, &exported, || {
         let files: Vec<_> = exported.files.iter().map(|file| format!("  {}", file.display())).collect();
         let [left, right] = exported.initial_capacitance.map(|c| 1e12 * c);

@@ -5,17 +5,17 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use comfy_table::{ColumnConstraint, ContentArrangement};
 use serde::Serialize;
 
+use super::format::Sheet;
 use super::isolation::IsolationOptions;
 use super::progress::spinner;
-use super::{Exit, fmu_check, format, output, packaging};
+use super::{Exit, fmu_check, output, packaging};
 use crate::package::{self, AddedBinary, Options};
 use fmu_import::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 
 /// Columns of a terminal within which descriptions of variables are wrapped.
-const WIDTH: u16 = 120;
+const WIDTH: usize = 120;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -182,16 +182,14 @@ fn row<'a>(items: &Items<'a>, variable: &'a Variable) -> Row<'a> {
 }
 
 fn text(info: &Info) -> String {
-    let mut table = format::table(&["variable", "start", "unit", "causality", "description"]);
-    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
-    table.set_constraints(vec![ColumnConstraint::ContentWidth; 4]); // not wrapped
-    for variable in &info.variables {
+    let row = |variable: &Row<'_>| {
         let unit = variable.unit.map_or_else(|| variable.r#type.to_lowercase(), ToOwned::to_owned);
         let start = variable.start.as_deref().unwrap_or_default().to_owned();
-        let mut cells = format::row(&[variable.name.to_owned(), start, unit, variable.causality.to_owned()]);
-        cells.push(variable.description.unwrap_or_default().into());
-        table.add_row(cells);
-    }
+        let description = variable.description.unwrap_or_default().to_owned();
+        vec![variable.name.to_owned(), start, unit, variable.causality.to_owned(), description]
+    };
+    let headings = ["variable", "start", "unit", "causality", "description"];
+    let table = Sheet::new(headings, &[4], info.variables.iter().map(row).collect()).within(WIDTH);
     let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
     format!(
         "{} (model identifier {}, FMI {})\n{}\nGUID {}, platforms: {platforms}\n\n{table}",

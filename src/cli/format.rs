@@ -1,10 +1,12 @@
 //! Numbers and tables as people read them.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{Cell, CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle, Width};
 use videg_report::Column;
 
+use super::terminal;
+
 /// A rule above, below the heading and below the table; nothing between rows.
-const RULE: LineStyle = LineStyle::none().fill('\u{2500}').junction('\u{2500}');
+const RULE: LineStyle = LineStyle::none().fill(terminal::RULE).junction(terminal::RULE);
 const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
 
 /// `value` with `digits` significant digits, without an exponent where that stays readable.
@@ -25,23 +27,6 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// Deviation of `found` from `expected` in per cent.
 pub fn deviation(found: f64, expected: f64) -> String {
     format!("{:+.3} %", (found / expected - 1.0) * 100.0)
-}
-
-/// An empty table with a heading; columns but the first are aligned to the right.
-pub fn table<S: AsRef<str>>(heading: &[S]) -> Table {
-    let mut table = Table::new();
-    table.load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(row(heading));
-    table
-}
-
-/// A row of such a table.
-pub fn row<S: AsRef<str>>(cells: &[S]) -> Vec<Cell> {
-    let aligned = cells.iter().enumerate().map(|(column, text)| {
-        let cell = Cell::new(text.as_ref());
-        if column == 0 { cell } else { cell.set_alignment(CellAlignment::Right) }
-    });
-    aligned.collect()
 }
 
 /// A table for terminals and for HTML reports.
@@ -72,12 +57,78 @@ impl Sheet {
         self.filled(&headings)
     }
 
+    /// The table as text of at most `columns`, whatever the terminal.
+    pub fn within(&self, columns: usize) -> String {
+        let text = self.laid_out(&self.headings, |column| column == 0 || self.words.contains(&column));
+        let columns = terminal::width().map_or(columns, |width| width.min(columns));
+        self.narrowed(text, columns)
+    }
+
+    /// The table with these headings, whose columns are aligned to the right but for some.
+    fn laid_out(&self, headings: &[String], is_left: impl Fn(usize) -> bool) -> Table {
+        let row = |cells: &[String]| {
+            let aligned = cells.iter().enumerate().map(|(column, text)| {
+                let cell = Cell::new(text);
+                if is_left(column) { cell } else { cell.set_alignment(CellAlignment::Right) }
+            });
+            aligned.collect::<Vec<_>>()
+        };
+        let mut table = Table::new();
+        table.load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
+        table.set_header(row(headings));
+        table.add_rows(self.rows.iter().map(|cells| row(cells)));
+        table
+    }
+
     fn filled(&self, headings: &[String]) -> String {
-        let mut text = table(headings);
-        for cells in &self.rows {
-            text.add_row(row(cells));
+        let text = self.laid_out(headings, |column| column == 0);
+        let whole = text.to_string();
+        match terminal::width() {
+            Some(columns) if !fits(&whole, columns) => self.narrowed(text, columns),
+            _ => whole,
         }
-        text.to_string()
+    }
+
+    /// The table, which does not fit in `columns` as it is: with words on several lines, or else a block for each row.
+    fn narrowed(&self, mut table: Table, columns: usize) -> String {
+        /// Columns between cells.
+        const BETWEEN: usize = 2;
+        let lower = |column: usize| {
+            let cells = self.rows.iter().filter_map(|row| row.get(column));
+            // The first column and those of words break at spaces, as headings do; a number stays whole.
+            let is_words = column == 0 || self.words.contains(&column);
+            let least = |cell: &String| if is_words { longest_word(cell) } else { terminal::columns_of(cell) };
+            cells.map(least).chain([longest_word(&self.headings[column])]).max().unwrap_or_default() + BETWEEN
+        };
+        let least: Vec<_> = (0..self.headings.len()).map(lower).collect();
+        if least.iter().sum::<usize>() <= columns {
+            let bound = |least: &usize| {
+                ColumnConstraint::LowerBoundary(Width::Fixed(u16::try_from(*least).unwrap_or(u16::MAX)))
+            };
+            table.set_content_arrangement(ContentArrangement::Dynamic);
+            table.set_width(u16::try_from(columns).unwrap_or(u16::MAX)).set_constraints(least.iter().map(bound));
+            let shown = table.to_string();
+            if fits(&shown, columns) {
+                return shown;
+            }
+        }
+        self.blocks(columns)
+    }
+
+    /// A block for each row, a line for each cell that is not empty, with its heading.
+    fn blocks(&self, columns: usize) -> String {
+        let widest = self.headings.iter().map(|heading| terminal::columns_of(heading)).max().unwrap_or_default();
+        let indentation = widest.min(columns / 2) + 2;
+        let block = |row: &Vec<String>| {
+            let cells = self.headings.iter().zip(row).filter(|(_, cell)| !cell.is_empty());
+            let lines = cells.flat_map(|(heading, cell)| {
+                let line = format!("{heading:<indentation$}{cell}");
+                let shown = if fits(&line, columns) { line } else { terminal::broken(&line, columns) };
+                shown.lines().map(str::to_owned).collect::<Vec<_>>()
+            });
+            lines.collect::<Vec<_>>().join("\n")
+        };
+        self.rows.iter().map(block).collect::<Vec<_>>().join("\n\n")
     }
 
     /// The table in a report.
@@ -90,9 +141,51 @@ impl Sheet {
     }
 }
 
+fn fits(text: &str, columns: usize) -> bool {
+    text.lines().all(|line| terminal::columns_of(line) <= columns)
+}
+
+fn longest_word(text: &str) -> usize {
+    text.split_whitespace().map(terminal::columns_of).max().unwrap_or_default()
+}
+
+/// A rate or a count per second: whole and with commas from a thousand on.
+pub fn rate(value: f64) -> String {
+    const GROUP: usize = 3;
+    if value.abs() < 1e3 || !value.is_finite() {
+        return significant(value, GROUP);
+    }
+    let digits = format!("{value:.0}");
+    let first = digits.len() % GROUP;
+    let comma = |(k, digit): (usize, char)| {
+        [(k > 0 && k % GROUP == first).then_some(','), Some(digit)].into_iter().flatten().collect::<String>()
+    };
+    digits.chars().enumerate().map(comma).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rates_have_commas_from_a_thousand_on() {
+        for (value, shown) in
+            [(30.24, "30.2"), (999.0, "999"), (3596.4, "3,596"), (35964.0, "35,964"), (1_234_567.0, "1,234,567")]
+        {
+            assert_eq!(rate(value), shown);
+        }
+    }
+
+    #[test]
+    fn a_table_is_as_narrow_as_it_has_to_be() {
+        let rows = [["energy into the load of both membranes", "mJ", "1.234567"], ["net gain", "mJ", "-0.1"]];
+        let rows = rows.map(|row| row.map(str::to_owned).to_vec()).to_vec();
+        let sheet = Sheet::new(["quantity", "unit", "found by the solver"], &[0, 1], rows);
+        for columns in 20..80 {
+            let narrow = sheet.narrowed(sheet.laid_out(&sheet.headings, |column| column == 0), columns);
+            assert!(fits(&narrow, columns) && narrow.contains("1.234567"), "{columns}:\n{narrow}");
+        }
+    }
 
     #[test]
     fn significant_digits_are_kept_and_exponents_only_where_they_help() {

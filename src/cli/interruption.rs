@@ -1,8 +1,8 @@
 //! Signals that end the program: it ends its children, and removes its temporary folders and the files that it has not
-//! finished, before. `videg sweep` ends the runs that it has begun instead.
+//! finished, and folders in which nothing is, before. `videg sweep` ends the runs that it has begun instead.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use anyhow::Context as _;
@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag::{register, register_conditional_shutdown, register_usize};
 
 use super::message::say;
-use videg_system::{atomic_file, processes, temporary};
+use videg_system::{atomic_file, folders, processes, temporary};
 
 /// Signals that end the program, but for those that it was started to ignore, as `nohup` and a shell's `&` do.
 #[cfg(unix)]
@@ -47,8 +47,8 @@ pub struct Interruption {
     has_come: Arc<AtomicBool>,
     /// Whether the caller ends by itself.
     is_deferred: Arc<AtomicBool>,
-    /// Notice about files that stay.
-    notice: Arc<OnceLock<String>>,
+    /// What becomes of the results.
+    notice: Arc<Mutex<String>>,
 }
 
 impl Interruption {
@@ -93,9 +93,9 @@ impl Interruption {
         self.signal.load(Ordering::Relaxed)
     }
 
-    /// Sets the notice about files that stay if a signal ends the process. The first one counts.
-    pub fn tell(&self, notice: String) {
-        let _ = self.notice.set(notice);
+    /// Sets what is told of the results if a signal ends the process from here on.
+    pub fn tell(&self, notice: &str) {
+        notice.clone_into(&mut self.notice.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// Ends the process if a signal has come, unless the caller ends by itself. Errors that the signal caused are not shown.
@@ -106,11 +106,12 @@ impl Interruption {
         }
         let _closed = (processes::end_all(), temporary::remove_all());
         let (removed, _closed_too) = atomic_file::remove_all();
-        let removed: Vec<_> = removed.iter().map(|part| format!("removed {}", part.display())).collect();
-        let told: Vec<_> = removed.into_iter().chain(self.notice.get().cloned()).collect();
-        if !told.is_empty() {
-            say(&format!("interrupted; {}", told.join("; ")));
-        }
+        folders::remove_empty();
+        let removed = removed.iter().map(|part| format!("removed {}", part.display()));
+        let notice = self.notice.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let told =
+            ["interrupted".to_owned()].into_iter().chain(removed).chain(Some(notice).filter(|it| !it.is_empty()));
+        say(&told.collect::<Vec<_>>().join("; "));
         // As shells say it; without the destructors of libraries whose code may be running.
         signal_hook::low_level::exit(128 + signal)
     }

@@ -11,6 +11,7 @@ use super::map_report::{self as page, Found};
 use super::message::say;
 use super::options::{Window, parse_window};
 use super::progress::RunBar;
+use super::results::RESULT;
 use super::run_output::file_list;
 use super::sweep_options::What;
 use super::{Exit, output, reproduce_files as files, run_output};
@@ -105,13 +106,9 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
             output::write(&path, html)?;
             paths.extend([path, folder.join("result.json")]);
             let text = page::text(&found, &paths);
-            run_output::conclude(
-                &folder,
-                arguments.json,
-                &page::Output::new(&found, &paths),
-                &text,
-                &page::warnings(&found),
-            )?;
+            let json = run_output::json(&page::Output::new(&found, &paths))?;
+            output::write(&folder.join(RESULT), &json)?;
+            run_output::show(arguments.json, &json, &text, &page::warnings(&found))?;
             Ok(Exit::Passed)
         }
         None if report.is_complete() => {

@@ -2,6 +2,8 @@
 
 use std::io::Write as _;
 
+use super::terminal;
+
 /// Longest error that is shown, characters.
 const LONGEST: usize = 2000;
 
@@ -37,14 +39,33 @@ pub fn plain_json(json: &str) -> String {
     json.chars().map(spell).collect()
 }
 
-/// Writes `message` on stderr in one line. A closed stderr is no failure.
+/// Writes `message` on stderr, in one line unless a terminal is narrower. A closed stderr is no failure.
 pub fn say(message: &str) {
-    show(&format!("videg: {}", one_line(message)));
+    let shown = fitted(message);
+    let warning = shown.strip_prefix("videg: warning:");
+    show(&match warning {
+        Some(rest) => format!("videg: {}{rest}", terminal::warning_prefix("warning:")),
+        None => shown,
+    });
+}
+
+/// The same for an error that ends the program.
+pub fn fail(message: &str) {
+    let shown = fitted(message);
+    show(&shown.replacen("videg:", &terminal::error_prefix("videg:"), 1));
+}
+
+fn fitted(message: &str) -> String {
+    let line = format!("videg: {}", one_line(message));
+    match terminal::width_of_stderr() {
+        columns @ Some(_) => terminal::wrapped(&line, columns),
+        None => line,
+    }
 }
 
 /// Writes a line of this program on stderr, as it is.
 pub fn show(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(terminal::stderr(), "{line}");
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 // `output` and `message` write on both: these macros panic if the reader has closed them.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod cases;
 mod completions;
 mod cosim;
 mod cosim_report;
@@ -34,6 +35,7 @@ mod progress;
 mod reproduce;
 mod reproduce_files;
 mod reproduce_report;
+mod results;
 mod run_output;
 mod simulate;
 mod ssp;
@@ -42,6 +44,7 @@ mod sweep;
 mod sweep_cases;
 mod sweep_options;
 mod sweep_statistics;
+mod terminal;
 mod time_series;
 mod worker;
 
@@ -77,6 +80,8 @@ enum Verb {
     Reproduce(reproduce::Arguments),
     /// Export C(t) for other programs: netlists for simulators of circuits, tables
     Export(export::Arguments),
+    /// List the published cases; print all start values of one as TOML, JSON or Python
+    Cases(cases::Arguments),
     /// Build, describe and check FMUs
     Fmu(fmu::Arguments),
     /// Package both FMUs, connected and with the parameters of a case, as Harvester.ssp (SSP 1.0)
@@ -109,14 +114,15 @@ impl Verb {
             interruption.watch()?;
         }
         let result = match self {
-            Self::Cosim(arguments) => cosim::run(arguments),
-            Self::Crosscheck(arguments) => crosscheck::run(arguments),
-            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Cosim(arguments) => cosim::run(arguments, &interruption),
+            Self::Crosscheck(arguments) => crosscheck::run(arguments, &interruption),
+            Self::Simulate(arguments) => simulate::run(arguments, &interruption),
             Self::Sweep(arguments) => sweep::run(arguments, &interruption),
             Self::Map(arguments) => map::run(arguments, &interruption),
-            Self::Dynamics(arguments) => dynamics::run(arguments),
+            Self::Dynamics(arguments) => dynamics::run(arguments, &interruption),
             Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
-            Self::Export(arguments) => export::run(arguments),
+            Self::Export(arguments) => export::run(arguments, &interruption),
+            Self::Cases(arguments) => cases::run(arguments),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),
             Self::Completions(arguments) => completions::run(arguments),
@@ -124,6 +130,7 @@ impl Verb {
             Self::FmuWorker => worker::run_fmu(),
         };
         interruption.settle();
+        videg_system::folders::remove_empty();
         result
     }
 }
@@ -146,7 +153,7 @@ pub fn main() -> ExitCode {
         // As shells say it.
         Ok(Exit::Stopped(signal)) => ExitCode::from(128 + signal),
         Err(error) => {
-            message::say(&format!("{error:#}"));
+            message::fail(&format!("{error:#}"));
             ExitCode::from(2)
         }
     }
@@ -162,6 +169,6 @@ fn usage(error: &clap::Error) -> ExitCode {
     let lines = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message: Vec<_> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
     let message = message::one_line(&message.join(" "));
-    message::say(&format!("{} (see --help)", message.trim_start_matches("error: ")));
+    message::fail(&format!("{} (see --help)", message.trim_start_matches("error: ")));
     ExitCode::from(2)
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use fmu_import::ModelDescription;
 
 use super::output;
+use super::results::OutputOptions;
 use crate::cosim::{CircuitRequest, CosimError};
 use crate::scenario::{CaseFile, Request, Scenario, ScenarioError, Setting};
 
@@ -46,9 +47,8 @@ pub struct RunOptions {
     /// Averaging window, s [default: 50,100, or the second half of a shorter run]
     #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
     window: Option<Window>,
-    /// Folder for time series, figure and report [default: out/VERB-CASE]
-    #[arg(long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputOptions,
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     pub json: bool,

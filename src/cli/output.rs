@@ -1,24 +1,16 @@
 //! Output of a verb: its folder, its files, and stdout.
 
 use std::ffi::OsString;
-use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
 use anyhow::Context as _;
 use serde::Serialize;
 
 use super::message::{plain, plain_json, say};
-use crate::scenario::Scenario;
+use super::terminal;
 use videg_report::Report;
 use videg_system::atomic_file;
-
-/// The folder for the results of `verb`. Creates it if needed.
-pub fn folder(asked: Option<&Path>, verb: &str, scenario: &Scenario) -> anyhow::Result<PathBuf> {
-    let name = safe(&scenario.name);
-    let folder = asked.map_or_else(|| Path::new("out").join(format!("{verb}-{name}")), Path::to_owned);
-    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
-    Ok(folder)
-}
 
 /// The name of a case as a part of a path: letters, digits, dot, dash and underscore. A case file may have any name.
 pub fn safe(name: &str) -> String {
@@ -30,9 +22,10 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     atomic_file::write(path, content).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Prints `text` and an end of line on stdout, with control characters spelled out.
+/// Prints `text` and an end of line on stdout, with control characters spelled out, lines that fit and verdicts in colour.
 pub fn print(text: &str) -> io::Result<()> {
-    put(&(plain(text) + "\n"))
+    let text = terminal::wrapped(&plain(text), terminal::width());
+    put_to(terminal::stdout(), &(terminal::coloured(&text) + "\n"))
 }
 
 /// Prints the document `json` and an end of line on stdout.
@@ -42,13 +35,16 @@ pub fn print_json(json: &str) -> io::Result<()> {
 
 /// Prints `value` as a JSON document, or else its `text`.
 pub fn show(is_json: bool, value: &impl Serialize, text: impl FnOnce() -> String) -> anyhow::Result<()> {
-    let text = if is_json { plain_json(&serde_json::to_string_pretty(value)?) } else { plain(&text()) };
-    Ok(put(&(text + "\n"))?)
+    let shown = if is_json { print_json(&serde_json::to_string_pretty(value)?) } else { print(&text()) };
+    Ok(shown?)
 }
 
 /// Writes `text` on stdout as it is. A reader that closes early (`videg ... | head`) is no failure.
 pub fn put(text: &str) -> io::Result<()> {
-    let mut stdout = io::stdout();
+    put_to(io::stdout(), text)
+}
+
+fn put_to(mut stdout: impl io::Write, text: &str) -> io::Result<()> {
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,

@@ -1,10 +1,12 @@
 //! Progress bars on stderr. They draw only if that is a terminal, and go when they are dropped.
 
+use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
 
+use super::format::rate;
 use super::message::{plain, say};
 use crate::progress::{Progress, Running};
 
@@ -94,7 +96,7 @@ pub struct RunBar<'a> {
 impl<'a> RunBar<'a> {
     /// A bar for the runs of `name`, which end early when `stop` is set.
     pub fn new(name: &str, stop: &'a AtomicBool) -> Self {
-        let bar = styled("{msg} [{bar:30}] {human_pos}/{human_len} runs, {per_sec}, {elapsed} gone, {eta} left");
+        let bar = styled("{msg} [{bar:30}] {human_pos}/{human_len} runs, {rate}/s, {elapsed} gone, {eta} left");
         Self { bar: bar.with_message(plain(name)), has_begun: AtomicBool::new(false), stop }
     }
 }
@@ -116,6 +118,8 @@ impl Progress for RunBar<'_> {
 /// A bar with a style that holds the form of its line.
 fn styled(template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let written = |state: &ProgressState, out: &mut dyn Write| _ = out.write_str(&rate(state.per_sec()));
+    let style = style.with_key("rate", written);
     ProgressBar::new(1).with_style(style.progress_chars("=> ")).with_finish(ProgressFinish::AndClear)
 }
 

@@ -6,17 +6,20 @@ use anyhow::{Context as _, anyhow};
 use clap::Args;
 use serde::Serialize;
 
+use super::format::Sheet;
 use super::interruption::Interruption;
 use super::progress::ItemBar;
 use super::reproduce_report::{self as page, Chapter};
-use super::{Exit, format, output, packaging, picture, reproduce_files as files, run_output};
-use crate::cosim::{Cosimulation, CsvRecorder, Options};
+use super::results::{Identity, OutputOptions, RESULT, flag, listed};
+use super::{Exit, output, packaging, picture, reproduce_files as files, run_output};
+use crate::cosim::{Cosimulation, Options, SeriesOptions, SeriesRecorder};
 use crate::crosscheck;
 use crate::ngspice::Ngspice;
 use crate::paper::{self, Artefact, Effort, Finding, ITEMS, Item, Study, Verdict};
 use crate::progress::{Progress, during};
 use crate::scenario::Request;
 use fmu_import::{Fmu, nearest_name};
+use videg_system::folders;
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -24,9 +27,8 @@ pub struct Arguments {
     /// Items to make, e.g. table2 fig14; all: every item [default: all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
-    /// Folder for data, pictures and report
-    #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
-    output: PathBuf,
+    #[command(flatten)]
+    output: OutputOptions,
     /// Use fewer samples and coarser grids, for a quick look
     #[arg(long)]
     quick: bool,
@@ -44,6 +46,7 @@ const CROSSCHECKED: [f64; 2] = [20.0, 5.0];
 
 #[derive(Serialize)]
 struct Output<'a> {
+    request: &'a Identity,
     quick: bool,
     /// Whether each difference from the paper has a known reason, and the solvers of the crosscheck agree.
     passed: bool,
@@ -64,18 +67,19 @@ struct Reproduction<'a> {
 /// Runs the verb.
 pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let wanted = Wanted::new(&arguments.names)?;
-    let folder = &arguments.output;
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the output folder {}", folder.display()))?;
-    let folder = folder.display();
+    let all = arguments.names.is_empty() || wanted.names_it("all");
+    let items = listed(if all { &[] } else { &arguments.names });
+    let identity = Identity::new("reproduce", [("items", items), ("quick", flag(arguments.quick))]);
+    let folder = arguments.output.folder(&identity)?;
+    let shown = folder.display();
     let kept =
-        format!("what is in {folder} is complete, of this run or an earlier one; the same command makes all anew");
-    interruption.tell(kept.clone());
-    make(arguments, &wanted).map_err(|error| anyhow!("{error:#}; {kept}"))
+        format!("what is in {shown} is complete, of this run or an earlier one; the same command makes all anew");
+    interruption.tell(&kept);
+    make(arguments, &wanted, &identity, &folder).map_err(|error| anyhow!("{error:#}; {kept}"))
 }
 
 /// Makes what is wanted.
-fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
-    let folder = &arguments.output;
+fn make(arguments: &Arguments, wanted: &Wanted, identity: &Identity, folder: &Path) -> anyhow::Result<Exit> {
     let fmu = packaging::open("VibroImpactHarvester")?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let mut made = Reproduction { folder, chapters: Vec::new(), warnings: Vec::new(), solvers_disagree: false };
@@ -97,8 +101,10 @@ fn make(arguments: &Arguments, wanted: &Wanted) -> anyhow::Result<Exit> {
     let report = page::write(folder, &made.chapters, &made.warnings, &fmu, arguments.quick)?;
     files::summary(&folder.join("summary.csv"), made.findings())?;
     let (items, warnings) = (&made.chapters[..], &made.warnings[..]);
-    let result = Output { quick: arguments.quick, passed, items, warnings, report: &report };
-    run_output::conclude(folder, arguments.json, &result, &[made.text(&report)], warnings)?;
+    let result = Output { request: identity, quick: arguments.quick, passed, items, warnings, report: &report };
+    let json = run_output::json(&result)?;
+    output::write(&folder.join(RESULT), &json)?;
+    run_output::show(arguments.json, &json, &[made.text(&report)], warnings)?;
     Ok(if passed { Exit::Passed } else { Exit::Failed })
 }
 
@@ -145,17 +151,18 @@ impl Reproduction<'_> {
 
     fn subfolder(&self, name: &str) -> anyhow::Result<PathBuf> {
         let folder = self.folder.join(name);
-        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        folders::make(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         Ok(folder)
     }
 
     /// Fig. 14 coupled with the paper's circuit and with better ones.
     fn audit(&mut self, fmu: &Fmu) -> anyhow::Result<()> {
         let folder = self.subfolder(AUDIT)?;
-        let (csv, svg) = (folder.join("timeseries.csv"), folder.join("figure.svg"));
+        let svg = folder.join("figure.svg");
         let scenario = Request { case: Some("fig14".to_owned()), ..Request::default() }.resolve()?;
         let cosimulation = Cosimulation::new(&Options::new(fmu, &scenario))?;
-        let mut recorder = CsvRecorder::create(&csv, Some(&[]))?;
+        let series = SeriesOptions::default();
+        let mut recorder = SeriesRecorder::create((&folder, "timeseries"), &series, &scenario, Some(&[]))?;
         let results = match cosimulation.run(&mut recorder, &()) {
             Ok(results) => results,
             Err(error) => {
@@ -163,11 +170,11 @@ impl Reproduction<'_> {
                 return Err(error.into());
             }
         };
-        recorder.finish()?;
+        let written = recorder.finish()?;
         let drawing = picture::cosim(&results.trace, &scenario, picture::Electrical::Paper)?;
         output::write(&svg, &drawing.svg)?;
         self.warnings.extend(results.warnings.iter().cloned());
-        self.chapters.push(Chapter::audit(AUDIT, &results, drawing, vec![csv, svg]));
+        self.chapters.push(Chapter::audit(AUDIT, &results, drawing, written.into_iter().chain([svg]).collect()));
         Ok(())
     }
 
@@ -201,13 +208,14 @@ impl Reproduction<'_> {
     }
 
     fn text(&self, report: &Path) -> String {
-        let mut table = format::table(&["where and what", "unit", "paper", "videg", "deviation", "verdict"]);
         let (compared, beyond): (Vec<_>, Vec<_>) = self.findings().partition(|finding| finding.is_compared());
         let (shown, left) = if compared.is_empty() { (beyond, Vec::new()) } else { (compared, beyond) };
-        for finding in shown {
+        let rows = shown.into_iter().map(|finding| {
             let [place, quantity, unit, paper, videg, deviation, verdict, _] = page::cells(finding);
-            table.add_row(format::row(&[format!("{place}: {quantity}"), unit, paper, videg, deviation, verdict]));
-        }
+            vec![format!("{place}: {quantity}"), unit, paper, videg, deviation, verdict]
+        });
+        let headings = ["where and what", "unit", "paper", "videg", "deviation", "verdict"];
+        let table = Sheet::new(headings, &[5], rows.collect()).text();
         let files: usize = self.chapters.iter().map(|chapter| chapter.files.len()).sum();
         let summary = self.folder.join("summary.csv");
         let summary = summary.display();

@@ -7,6 +7,7 @@ use videg_report::{KeyNumber, Report, Section};
 
 use super::format::{Sheet, deviation, significant};
 use super::output;
+use super::results::{Identity, Results};
 use crate::cosim::{Device, MechanicsSummary};
 use crate::scenario::{PaperValues, Scenario, Setting};
 
@@ -24,11 +25,13 @@ pub struct RunOutput<'a> {
     settings: &'a [Setting],
     warnings: &'a [String],
     files: &'a [PathBuf],
+    request: &'a Identity,
 }
 
 impl<'a> RunOutput<'a> {
     /// The output of a run of `scenario`.
     pub fn new(
+        request: &'a Identity,
         scenario: &'a Scenario,
         mechanics: MechanicsSummary,
         warnings: &'a [String],
@@ -36,7 +39,7 @@ impl<'a> RunOutput<'a> {
     ) -> Self {
         let Scenario { name, description, settings, until, step, window, paper, .. } = scenario;
         let (until, step, window, paper) = (*until, *step, *window, *paper);
-        Self { case: name, description, until, step, window, mechanics, paper, settings, warnings, files }
+        Self { request, case: name, description, until, step, window, mechanics, paper, settings, warnings, files }
     }
 }
 
@@ -125,21 +128,30 @@ pub fn write(folder: &Path, series: &[PathBuf], svg: &str, html: &str) -> anyhow
     Ok([series, &[figure, report, result]].concat())
 }
 
-/// Writes the `result` of a run into `folder` and prints it, or the parts of its `text`; then shows the warnings.
+/// Writes the `result` of a run, with which the `results` are complete, and shows it.
 pub fn conclude(
-    folder: &Path,
+    results: Results<'_>,
     is_json: bool,
-    result: &impl Serialize,
+    result: &str,
     text: &[String],
     warnings: &[String],
 ) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(result)?;
-    output::write(&folder.join("result.json"), &json)?;
+    results.complete(result)?;
+    show(is_json, result, text, warnings)
+}
+
+/// Prints the `result` of a run, or the parts of its `text`; then shows the warnings.
+pub fn show(is_json: bool, result: &str, text: &[String], warnings: &[String]) -> anyhow::Result<()> {
     if is_json {
-        output::print_json(&json)?;
+        output::print_json(result)?;
     } else {
         output::print(&text.join("\n\n"))?;
     }
     output::warn(warnings);
     Ok(())
+}
+
+/// The result of a run as JSON.
+pub fn json(result: &impl Serialize) -> anyhow::Result<String> {
+    Ok(serde_json::to_string_pretty(result)?)
 }

@@ -4,16 +4,19 @@ mod both;
 mod both_report;
 mod law;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::options::RunOptions;
 use super::progress::TimeBar;
+use super::results::{Identity, Results as Claimed};
 use super::run_output::{self, RunOutput, file_list, heading};
+use super::time_series::TimeSeriesOptions;
 use super::{Exit, drawn, energy_flow, excitation, output, parameter_table, picture, time_series};
-use crate::cosim::{CsvRecorder, Device};
+use crate::cosim::{Device, SeriesOptions, SeriesRecorder};
 use crate::scenario::Scenario;
 use crate::simulate::{Options, Results, Simulation};
 use fmu_import::Fmu;
@@ -30,28 +33,34 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     law: Option<Law>,
     #[command(flatten)]
+    series: TimeSeriesOptions,
+    #[command(flatten)]
     isolation: IsolationOptions,
 }
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
+pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let options = &arguments.run;
     let scenario = law::scenario(arguments.law, options)?;
     let fmu = arguments.isolation.open_own("VibroImpactHarvester")?;
-    if arguments.law == Some(Law::Both) {
-        return both::run(options, &fmu, &scenario);
+    let both = arguments.law.filter(|law| *law == Law::Both);
+    let options_of_law = [("law", both.map(|law| law.name().to_owned()))];
+    let identity = Identity::of("simulate", &scenario, options_of_law.into_iter().chain(arguments.series.distinct()))?;
+    let claimed = Claimed::claim(&options.output, identity, interruption)?;
+    if both.is_some() {
+        return both::run(arguments, &fmu, &scenario, claimed);
     }
-    let folder = output::folder(options.output.as_deref(), "simulate", &scenario)?;
-    let csv = folder.join("timeseries.csv");
-    let results = record(&fmu, &scenario, &csv)?;
+    let place = (claimed.folder.as_path(), "timeseries");
+    let (results, written) = record(&fmu, &scenario, &arguments.series.options(), place)?;
     let svg = picture::simulate(&results.trace, &scenario)?;
     let page = report(&scenario, &results, &Device::of(&fmu, &scenario)?, svg.clone())?;
     let Results { mechanics, warnings, .. } = results;
     let text = run_output::mechanics(&scenario, &mechanics).text();
-    let files = run_output::write(&folder, &[csv], &svg, &videg_report::render_html(&page)?)?;
-    let output = RunOutput::new(&scenario, mechanics, &warnings, &files);
+    let files = run_output::write(&claimed.folder, written.as_slice(), &svg, &videg_report::render_html(&page)?)?;
+    let output = RunOutput::new(&claimed.identity, &scenario, mechanics, &warnings, &files);
     let text = [heading("simulate", &scenario), text, file_list(&files)];
-    run_output::conclude(&folder, options.json, &output, &text, &warnings)?;
+    let json = run_output::json(&output)?;
+    run_output::conclude(claimed, options.json, &json, &text, &warnings)?;
     Ok(Exit::Passed)
 }
 
@@ -75,12 +84,16 @@ fn report(scenario: &Scenario, results: &Results, device: &Device, svg: String) 
     excitation::described(report.section(parameter_table::section(device, scenario)), device, scenario.until)
 }
 
-/// Runs the harvester alone and writes the time series to `csv`.
-fn record(fmu: &Fmu, scenario: &Scenario, csv: &Path) -> anyhow::Result<Results> {
+/// Runs the harvester alone and writes its time series into a folder, under a name.
+fn record(
+    fmu: &Fmu,
+    scenario: &Scenario,
+    series: &SeriesOptions,
+    place: (&Path, &str),
+) -> anyhow::Result<(Results, Option<PathBuf>)> {
     let simulation = Simulation::new(&Options { harvester: fmu, scenario })?;
-    output::warn(time_series::warning(scenario, false).as_slice());
-    let mut recorder = CsvRecorder::create(csv, None)?;
+    output::warn(time_series::warning(series, scenario, false).as_slice());
+    let mut recorder = SeriesRecorder::create(place, series, scenario, None)?;
     let results = simulation.run(&mut recorder, &TimeBar::new(&scenario.name))?;
-    recorder.finish()?;
-    Ok(results)
+    Ok((results, recorder.finish()?))
 }

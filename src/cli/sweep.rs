@@ -1,6 +1,6 @@
 //! `videg sweep`: many runs over parameters and seeds; `videg sweep merge`: shards put together.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -34,9 +34,10 @@ pub struct Arguments {
     /// Number of parallel runs [default: one on each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Folder for the results; the same command with the same folder resumes
-    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
-    output: PathBuf,
+    /// Folder for the results; the same command with the same folder resumes [default: out/sweep, or if another sweep is there
+    /// out/sweep-CASE-DIGEST]
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Start again; discards the results in the folder
     #[arg(long)]
     fresh: bool,
@@ -198,7 +199,8 @@ fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::
 
 /// Runs the sweep, with progress.
 fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBool) -> Result<Report, SweepError> {
-    let mut options = Options::new(sweep, engine, &arguments.output);
+    let folder = arguments.output.clone().map_or_else(|| sweep::free_folder(sweep, Path::new("out/sweep")), Ok)?;
+    let mut options = Options::new(sweep, engine, &folder);
     options.shard = arguments.shard;
     options.jobs = arguments.jobs.map_or(options.jobs, usize::from);
     options.fresh = arguments.fresh;
@@ -241,7 +243,7 @@ fn text(result: &Output<'_>) -> String {
         "all of them were there already: nothing to do".to_owned()
     } else {
         let resumed = if *resumed_from > 0 { format!(", after {resumed_from} that were there") } else { String::new() };
-        let (rate, seconds) = (format::significant(*rate_runs_per_s, 3), format::significant(*elapsed_s, 3));
+        let (rate, seconds) = (format::rate(*rate_runs_per_s), format::significant(*elapsed_s, 3));
         format!("{rate} runs/s, {seconds} s{resumed}")
     };
     format!(

@@ -4,6 +4,7 @@ use videg_circuit::{Circuit, Settings, State};
 
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::scenario::Setting;
+use fmu_import::unit_hint;
 
 /// The solver of `videg-circuit`, called directly.
 pub struct EmbeddedCircuit {
@@ -41,7 +42,10 @@ impl EmbeddedCircuit {
                     Ok(true)
                 }
                 Ok(_) => fail(format!("allowed: {} to {} {}", quantity.min, quantity.max, quantity.unit)),
-                Err(_) => fail(format!("not a number [{}]", quantity.unit)),
+                Err(_) => {
+                    let hint = unit_hint(&setting.value, Some(quantity.unit)).map(|hint| format!(" {hint}"));
+                    fail(format!("not a number{}", hint.unwrap_or_else(|| format!(" [{}]", quantity.unit))))
+                }
             };
         }
         let Some(choice) = Settings::CHOICES.iter().find(|choice| choice.name == setting.name) else {
@@ -93,6 +97,7 @@ mod tests {
             ("topology=star", "--set topology: topology = star: allowed: sharedNode, isolated"),
             ("load.resistance=-1", "--set load.resistance: load.resistance = -1: allowed: 0 to inf Ohm"),
             ("load.resistance=NaN", "--set load.resistance: load.resistance = NaN: allowed: 0 to inf Ohm"),
+            ("supply.voltage=2kV", "--set supply.voltage: supply.voltage = 2kV: not a number in V; did you mean 2000?"),
             ("supply.voltage=much", "--set supply.voltage: supply.voltage = much: not a number [V]"),
         ] {
             assert_eq!(apply(text).unwrap_err().to_string(), expected);

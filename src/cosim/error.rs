@@ -46,6 +46,10 @@ pub enum CosimError {
     Located { cause: Box<CosimError>, places: String },
     #[error("stopped at {time} s")]
     Stopped { time: f64 },
+    #[error(
+        "--sample {sample} s: must lie above 0 s and not above {until} s, the end of the run; step: each communication point"
+    )]
+    Sample { sample: f64, until: f64 },
     #[error("{place}: {name} = {value}: {bound}")]
     Setting { place: String, name: String, value: String, bound: String },
     #[error("cannot write {}: {cause}", path.display())]

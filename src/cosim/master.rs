@@ -14,6 +14,8 @@ use crate::scenario::Scenario;
 pub struct Row<'a> {
     /// Time, s.
     pub time: f64,
+    /// Whether the harvester announced the time: an impact, or a kink or peak of C(t).
+    pub is_knot: bool,
     /// The harvester.
     pub harvester: &'a HarvesterSample,
     /// The circuits, in their order.
@@ -69,6 +71,8 @@ pub struct Master {
 /// A communication point with the data for the next step.
 struct Point {
     time: f64,
+    /// Whether the harvester announced the time.
+    is_knot: bool,
     harvester: HarvesterSample,
     /// dC/dt, F/s.
     capacitance_rate: [f64; 2],
@@ -119,7 +123,8 @@ impl Master {
         let (mut gains, mut ledgers, mut mechanical) = ([None; 2], [None, None], [None; 2]);
         loop {
             let harvester = &point.harvester;
-            let row = Row { time: point.time, harvester, circuits: &point.circuits, probes: &point.probes };
+            let (time, is_knot) = (point.time, point.is_knot);
+            let row = Row { time, is_knot, harvester, circuits: &point.circuits, probes: &point.probes };
             observers.iter_mut().try_for_each(|observer| observer.observe(&row))?;
             for (gain, edge) in gains.iter_mut().zip(window) {
                 if gain.is_none() && point.time >= edge {
@@ -183,6 +188,7 @@ impl Master {
     fn point(&self, time: f64, given: [f64; 2], voltage: [Line; 2], step: f64) -> Result<Point, CosimError> {
         Ok(Point {
             time,
+            is_knot: false,
             harvester: self.harvester.sample()?,
             capacitance_rate: self.harvester.capacitance_rate()?,
             impacts: self.harvester.counts()?[0],
@@ -241,7 +247,8 @@ impl Master {
         for circuit in &mut self.circuits {
             circuit.step(now, step, start, end)?;
         }
-        self.point(next, end, voltage, step)
+        let is_knot = next >= from.harvester.next_knot();
+        Ok(Point { is_knot, ..self.point(next, end, voltage, step)? })
     }
 
     /// The voltages of the harvester for a `step`, s: those of the first circuit, extrapolated from the last step.

@@ -1,74 +1,8 @@
-//! Observers of a run: a CSV file with all points, the data of a figure in memory, and progress.
-
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+//! Observers of a run: the impacts, the data of a figure in memory, and progress.
 
 use super::{CircuitSample, CosimError, HarvesterSample, Observer, Row};
 use crate::progress::Progress;
 use crate::scenario::Scenario;
-use videg_system::atomic_file::{AtomicFile, partial};
-
-/// Writes every communication point to a CSV file during the run, so that memory does not grow with its length. Columns
-/// have the names of the FMU variables, units are SI. The file gets its name when it is complete; a run that ends
-/// early leaves it under another one ([`videg_system::atomic_file::partial`]).
-pub struct CsvRecorder {
-    path: PathBuf,
-    writer: csv::Writer<BufWriter<AtomicFile>>,
-    circuit: bool,
-    row: Vec<f64>,
-}
-
-impl CsvRecorder {
-    /// Begins the file that will be at `path`; with a `circuit`, the columns of the first circuit are in it, too, and the
-    /// waveforms called so.
-    pub fn create(path: &Path, circuit: Option<&[String]>) -> Result<Self, CosimError> {
-        let fail = |cause| CosimError::Write { path: path.to_owned(), cause };
-        let file = AtomicFile::create(path).map_err(fail)?;
-        let mut writer = csv::Writer::from_writer(BufWriter::new(file));
-        let names = ["time"].into_iter().chain(HarvesterSample::names().iter().copied());
-        let circuit_names =
-            circuit.map(|probes| CircuitSample::NAMES.into_iter().chain(probes.iter().map(String::as_str)));
-        writer.write_record(names.chain(circuit_names.into_iter().flatten())).map_err(|error| fail(error.into()))?;
-        Ok(Self { path: path.to_owned(), writer, circuit: circuit.is_some(), row: Vec::new() })
-    }
-
-    /// Writes the rest, and gives the file its name.
-    pub fn finish(self) -> Result<(), CosimError> {
-        let Self { path, writer, .. } = self;
-        let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
-        let file = written.and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error));
-        // A file that could not be written does not stay.
-        let finished = file.and_then(AtomicFile::finish).inspect_err(|_| drop(std::fs::remove_file(partial(&path))));
-        finished.map_err(|cause| CosimError::Write { path, cause })
-    }
-
-    /// Writes the rest of a run that ended early, under the other name.
-    pub fn leave(mut self) -> Result<(), CosimError> {
-        self.writer.flush().map_err(|cause| CosimError::Write { path: self.path, cause })
-    }
-
-    /// Removes the file of a run that ended early.
-    pub fn discard(self) {
-        // The user is told why the run ended.
-        let _ = std::fs::remove_file(partial(&self.path));
-    }
-}
-
-impl Observer for CsvRecorder {
-    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
-        self.row.clear();
-        self.row.push(row.time);
-        self.row.extend_from_slice(row.harvester.columns());
-        if self.circuit
-            && let Some(circuit) = row.circuits.first()
-        {
-            self.row.extend_from_slice(&circuit.columns());
-            self.row.extend_from_slice(row.probes);
-        }
-        let written = self.writer.serialize(&self.row);
-        written.map_err(|error| CosimError::Write { path: self.path.clone(), cause: error.into() })
-    }
-}
 
 /// An impact of the ball on a membrane.
 #[derive(Debug, Clone, Copy, PartialEq)]

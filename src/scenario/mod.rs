@@ -1,16 +1,21 @@
 //! Scenario of a run: a published case or a case file, settings on top of it, duration and averaging window.
 
 mod characters;
+mod distinct;
 mod file;
+mod harvester;
 mod origin;
 mod preset;
+mod start_values;
 mod times;
 mod user_file;
 
 pub(crate) use characters::{check as check_characters, with_plain_ends};
 pub use file::CaseFile;
 pub(crate) use file::{dotted, read_file, toml_error, value_text};
+pub use harvester::harvester_description;
 pub use origin::Origin;
+pub use start_values::{StartValue, start_values};
 pub use times::check_proposed_step;
 pub(crate) use user_file::{absolute as absolute_file, find as find_file, is_file};
 
@@ -25,7 +30,7 @@ const DEFAULT_CASE: &str = "fig14";
 #[allow(missing_docs, reason = "the message of each variant names its fields")]
 pub enum ScenarioError {
     /// No case has this name.
-    #[error("{given}: no such case; there are: {known}")]
+    #[error("{given}: no such case; {known}")]
     UnknownCase { given: String, known: String },
     /// A setting lacks its equals sign or one of its sides.
     #[error("--set {text}: not of the form variable.name=VALUE")]
@@ -131,6 +136,10 @@ pub struct Scenario {
     pub paper: PaperValues,
     /// How many of the settings are those of the case.
     of_case: usize,
+    /// What the options say other than case and case file: names and values.
+    pub distinct: Vec<(String, String)>,
+    /// Variables whose value is not the start value, each once, in the order of their names.
+    pub effective: Vec<Setting>,
     /// Name of the end where the user gave it, for an error about it.
     pub until_place: String,
 }
@@ -155,13 +164,11 @@ impl Request {
             ScenarioError::UnknownCase { given, known }
         })?;
         let times = times::resolve(&self, &file)?;
+        let distinct = distinct::options(&self, &file, case, &times);
         let mut changes = file.settings;
         changes.extend(self.settings);
         let mut description = file.description.unwrap_or_else(|| case.description.to_owned());
-        // The last of a name wins.
-        let is_last = |(k, change): &(usize, &Setting)| changes[k + 1..].iter().all(|later| later.name != change.name);
-        let others = changes.iter().enumerate().filter(is_last).map(|(_, change)| change);
-        let others = others.filter(|change| !preset::has(case, change));
+        let others = distinct::last_of_each(&changes).filter(|change| !preset::has(case, change));
         let shown: Vec<_> = others.map(|change| format!("{} = {}", change.name, change.value)).collect();
         let as_printed = shown.is_empty();
         if !as_printed {
@@ -170,6 +177,7 @@ impl Request {
         let mut settings = preset::settings(case);
         let of_case = settings.len();
         settings.extend(changes);
+        let effective = distinct::effective(&settings, case);
         let paper = PaperValues { voltage_gain: case.paper_voltage_gain, power: case.paper_power };
         Ok(Scenario {
             name: file.name.unwrap_or_else(|| case.name.to_owned()),
@@ -180,6 +188,8 @@ impl Request {
             window: times.window,
             paper: if as_printed { paper } else { PaperValues::default() },
             of_case,
+            distinct,
+            effective,
             until_place: times.until_place,
         })
     }

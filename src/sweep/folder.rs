@@ -3,15 +3,17 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::differences::told;
 use super::document::{DOCUMENT, identity};
 use super::files::{remove, rename, write_synced};
 use super::unfinished::{Unfinished, complete_name, unfinished};
-use super::{Shard, SweepError, statistics, table};
+use super::{Shard, Sweep, SweepError, statistics, table};
+use crate::differences::{digest, told};
 use videg_system::atomic_file::partial;
 
 /// Name of the results of a whole sweep.
 pub(super) const RESULTS: &str = "sweep.csv";
+/// Longest part of a name of a case in that of a folder, characters.
+const LONGEST: usize = 80;
 /// Advice for a folder of another sweep.
 const WAY_OUT: &str = "type the command with another --output to keep both, or with --fresh to replace what is there";
 
@@ -70,6 +72,25 @@ pub(super) fn check_document(folder: &Path, document: &str) -> Result<(), SweepE
         Some(there) if there != document => Err(foreign(folder, &there, document, "choose another --output")),
         _ => Ok(()),
     }
+}
+
+/// The folder at `path`, or if another sweep is in it the one beside it that has the digest of `sweep` in its name. Results that are
+/// in the latter already stay there.
+///
+/// # Errors
+/// A refusal of the file system.
+pub fn free_folder(sweep: &Sweep, path: &Path) -> Result<PathBuf, SweepError> {
+    let document = sweep.document();
+    let name = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '_' };
+    let case: String = sweep.name().chars().take(LONGEST).map(name).collect();
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(format!("-{case}-{}", digest(document)));
+    let is_own = match read_document(path)? {
+        Some(there) => there == document,
+        None => !path.exists() || results(path)?.is_empty(),
+    };
+    let beside = PathBuf::from(beside);
+    Ok(if is_own && !beside.exists() { path.to_owned() } else { beside })
 }
 
 fn foreign(folder: &Path, there: &str, here: &str, way_out: &str) -> SweepError {

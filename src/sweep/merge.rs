@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::io::{self, BufReader, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::differences::told;
 use super::document::{self, DOCUMENT, Kept};
 use super::folder::{self, RESULTS};
 use super::run::Report;
 use super::unfinished::Unfinished;
 use super::{Shard, SweepError, column, derived, files, lines, sums};
+use crate::differences::told;
 use videg_system::atomic_file::{self, Part};
 
 /// Version of this program: tables that another one writes may have other bytes.

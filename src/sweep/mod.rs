@@ -11,7 +11,6 @@ mod by_point;
 mod cases;
 mod column;
 mod derived;
-mod differences;
 mod document;
 mod electrical;
 mod elsewhere;
@@ -54,6 +53,7 @@ pub use electrical::{POWERS, is_electrical};
 pub use engine::{BuiltIn, Engine};
 pub use error::SweepError;
 pub use file::SweepFile;
+pub use folder::free_folder;
 pub use merge::merge;
 pub use plan::{Request, Sweep};
 pub use run::{Options, Report, run};
@@ -67,18 +67,10 @@ pub use vary::{Range, Scale, Spread, Vary};
 
 use std::path::Path;
 
+pub use crate::scenario::harvester_description;
 use fmu_import::{FmiError, ModelDescription};
 
-/// Model description of the harvester FMU; the model behind it has the same parameters.
-///
-/// # Errors
-/// None: it is part of this program.
-pub fn harvester_description() -> Result<ModelDescription, FmiError> {
-    let document = include_bytes!("../../modelDescription/VibroImpactHarvester.xml");
-    ModelDescription::parse(document, "modelDescription/VibroImpactHarvester.xml")
-}
-
-/// The same with the variables of the circuit and the mean powers, [`POWERS`]. A name that both have is the harvester's.
+/// The model description of the harvester with the variables of the circuit and the mean powers, [`POWERS`]. A name that both have is the harvester's.
 ///
 /// # Errors
 /// None: it is part of this program.

@@ -1,13 +1,14 @@
 //! Files written atomically: under another name, forced to the disk, then renamed. A crash leaves the old file or the new one,
 //! never part of one. A signal that ends the command-line tool removes its unfinished files (`remove_all`).
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use thiserror::Error;
+pub use crate::lock::{LockError, lock, own, remove_abandoned};
 
 /// Unfinished files of this process.
 static PARTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -101,22 +102,88 @@ impl AtomicFile {
         Ok(Self { file, part, path: path.to_owned() })
     }
 
-    /// Forces the file to the disk and renames it.
+    /// Forces the file to the disk and renames it, or leaves that to the [`Batch`] of its folder.
     ///
     /// # Errors
     /// A refusal of the file system; the old file stays.
     pub fn finish(self) -> io::Result<()> {
-        let finished = self.file.sync_all().and_then(|()| std::fs::rename(&self.part.path, &self.path));
-        if finished.is_err() {
+        match self.file.sync_all() {
+            Ok(()) => Batch::take(self).map_or(Ok(()), Self::rename),
+            Err(error) => {
+                self.discard();
+                Err(error)
+            }
+        }
+    }
+
+    fn rename(self) -> io::Result<()> {
+        let renamed = std::fs::rename(&self.part.path, &self.path);
+        if renamed.is_err() {
             self.discard();
         }
-        finished
+        renamed
     }
 
     /// Removes the file; the old one stays.
     fn discard(self) {
         // The user is told why it could not be written.
         let _ = std::fs::remove_file(&self.part.path);
+    }
+}
+
+thread_local! {
+    /// The folder of the batch of this thread, and its files that are complete.
+    static BATCH: RefCell<Option<(PathBuf, Vec<AtomicFile>)>> = const { RefCell::new(None) };
+}
+
+/// The files of a folder that this thread finishes get their names together, by [`Batch::commit`]; before, a signal removes all
+/// of them. Dropped, it removes them.
+#[derive(Debug)]
+#[must_use]
+pub struct Batch(());
+
+impl Batch {
+    /// Begins the batch of `folder`.
+    pub fn begin(folder: &Path) -> Self {
+        BATCH.set(Some((folder.to_owned(), Vec::new())));
+        Self(())
+    }
+
+    /// Takes `file` if it belongs to the batch, or gives it back.
+    fn take(file: AtomicFile) -> Option<AtomicFile> {
+        BATCH.with_borrow_mut(|batch| match batch {
+            Some((folder, files)) if file.path.starts_with(&*folder) => {
+                files.push(file);
+                None
+            }
+            _ => Some(file),
+        })
+    }
+
+    /// Gives the files their names. A signal comes before the first or after the last.
+    ///
+    /// # Errors
+    /// A refusal of the file system; files that have their names by then keep them.
+    pub fn commit(self) -> io::Result<()> {
+        let files = BATCH.take().map(|(_, files)| files).unwrap_or_default();
+        let renamed: Vec<_> = {
+            let _signals_wait = parts();
+            files.iter().map(|file| std::fs::rename(&file.part.path, &file.path)).collect()
+        };
+        let failed = files.into_iter().zip(renamed).filter_map(|(file, renamed)| {
+            let cause = renamed.err()?;
+            file.discard();
+            Some(cause)
+        });
+        // All of them, so that each file goes.
+        failed.collect::<Vec<_>>().into_iter().next().map_or(Ok(()), Err)
+    }
+}
+
+impl Drop for Batch {
+    fn drop(&mut self) {
+        let files = BATCH.take().map(|(_, files)| files).unwrap_or_default();
+        files.into_iter().for_each(AtomicFile::discard);
     }
 }
 
@@ -128,136 +195,6 @@ impl Write for AtomicFile {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
-}
-
-/// Why a file cannot be locked.
-#[derive(Debug, Error)]
-pub enum LockError {
-    /// It cannot be opened.
-    #[error("{0}")]
-    Open(io::Error),
-    /// Another process writes it.
-    #[error("another process is writing it: wait for that, or choose another folder")]
-    Busy,
-    /// It cannot be locked.
-    #[error("cannot lock it: {0}")]
-    Lock(io::Error),
-}
-
-impl From<LockError> for io::Error {
-    fn from(error: LockError) -> Self {
-        match error {
-            LockError::Open(cause) => cause,
-            LockError::Busy => Self::new(io::ErrorKind::WouldBlock, error),
-            LockError::Lock(ref cause) => Self::new(cause.kind(), error),
-        }
-    }
-}
-
-/// Opens and locks `part`, with its content. A file with hard links is refused: a backup may share it.
-///
-/// # Errors
-/// Another process that writes it; a refusal of the file system.
-pub fn lock(part: &Path) -> Result<File, LockError> {
-    const SHARED: &str =
-        "the file has other names (hard links), whose content would change with it; remove it, or replace it by a copy";
-    loop {
-        let file = open(part, true).map_err(LockError::Open)?;
-        if names(&file).map_err(LockError::Open)? > 1 {
-            return Err(LockError::Open(io::Error::other(SHARED)));
-        }
-        // The process that had it locked may have renamed it in between.
-        if own(&file, part)? {
-            return Ok(file);
-        }
-    }
-}
-
-/// Opens the file at `part` to read and write; `make` makes it if it is missing. A symbolic link is refused: somebody may have put
-/// it there to have another file overwritten.
-fn open(part: &Path, make: bool) -> io::Result<File> {
-    const LINK: &str = "it is a symbolic link, through which nothing is written; remove it";
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(make).truncate(false);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::OpenOptionsExt as _;
-        options.custom_flags(rustix::fs::OFlags::NOFOLLOW.bits().cast_signed());
-    }
-    if cfg!(not(unix)) && part.is_symlink() {
-        return Err(io::Error::other(LINK));
-    }
-    let is_link = |cause: io::Error| if part.is_symlink() { io::Error::new(cause.kind(), LINK) } else { cause };
-    options.open(part).map_err(is_link)
-}
-
-/// Locks `file`, which was opened at `part`; whether it is still there.
-///
-/// # Errors
-/// Another process that has locked it; a refusal of the file system.
-pub fn own(file: &File, part: &Path) -> Result<bool, LockError> {
-    match file.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => return Err(LockError::Busy),
-        // Some file systems of clusters have no locks: there, two processes may write the same file.
-        Err(TryLockError::Error(cause)) if has_no_locks(&cause) => {}
-        Err(TryLockError::Error(cause)) => return Err(LockError::Lock(cause)),
-    }
-    is_at(file, part).map_err(LockError::Lock)
-}
-
-/// Removes the file at `part` if no process has it locked: the one that wrote it has ended.
-///
-/// # Errors
-/// A process that writes it; no locks; a refusal of the file system.
-pub fn remove_abandoned(part: &Path) -> io::Result<()> {
-    let file = open(part, false)?;
-    file.try_lock()?;
-    if is_at(&file, part)? { std::fs::remove_file(part) } else { Ok(()) }
-}
-
-#[cfg(unix)]
-fn has_no_locks(cause: &io::Error) -> bool {
-    let code = Some(rustix::io::Errno::NOLCK.raw_os_error());
-    cause.kind() == io::ErrorKind::Unsupported || cause.raw_os_error() == code
-}
-
-#[cfg(not(unix))]
-fn has_no_locks(cause: &io::Error) -> bool {
-    cause.kind() == io::ErrorKind::Unsupported
-}
-
-/// How many names a file has.
-#[cfg(unix)]
-fn names(file: &File) -> io::Result<u64> {
-    Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?))
-}
-
-/// How many names a file has: unknown here.
-#[cfg(not(unix))]
-#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
-fn names(_file: &File) -> io::Result<u64> {
-    Ok(1)
-}
-
-/// Whether `file` is the one at `path`.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::MetadataExt as _;
-    let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
-    let own = identity(file.metadata()?);
-    match path.symlink_metadata() {
-        Ok(there) => Ok(identity(there) == own),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
-}
-
-/// Whether `file` is the one at `path`: here, an open file cannot be renamed.
-#[cfg(not(unix))]
-#[allow(clippy::unnecessary_wraps, reason = "as elsewhere")]
-fn is_at(_file: &File, _path: &Path) -> io::Result<bool> {
-    Ok(true)
 }
 
 #[cfg(test)]
@@ -284,6 +221,35 @@ mod tests {
         file.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(entries(folder.path()), ["result.json"]);
+    }
+
+    #[test]
+    fn the_files_of_a_batch_get_their_names_together_or_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let [other, own] = ["other", "own"].map(|name| folder.path().join(name));
+        fs::create_dir(&own).unwrap();
+        let write_both = || {
+            write(&own.join("a.csv"), "a").unwrap();
+            write(&own.join("b.csv"), "b").unwrap();
+            write(&other, "of no batch").unwrap();
+        };
+        let batch = Batch::begin(&own);
+        write_both();
+        assert_eq!((entries(&own), other.exists()), (vec!["a.csv.part".into(), "b.csv.part".into()], true));
+        drop(batch);
+        assert!(entries(&own).is_empty());
+        let batch = Batch::begin(&own);
+        write_both();
+        fs::create_dir(own.join("a.csv")).unwrap();
+        assert!(batch.commit().is_err());
+        assert_eq!(entries(&own), ["a.csv", "b.csv"]);
+        fs::remove_dir(own.join("a.csv")).unwrap();
+        let batch = Batch::begin(&own);
+        write_both();
+        batch.commit().unwrap();
+        assert_eq!(entries(&own), ["a.csv", "b.csv"]);
+        write(&own.join("c.csv"), "after it").unwrap();
+        assert_eq!(entries(&own), ["a.csv", "b.csv", "c.csv"]);
     }
 
     #[test]
@@ -374,19 +340,5 @@ mod tests {
         fs::hard_link(&backup, &path).unwrap();
         write(&path, "new").unwrap();
         assert_eq!(fs::read_to_string(&backup).unwrap(), "half");
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn a_file_that_got_its_last_name_is_not_the_one_that_is_locked() {
-        let folder = tempfile::tempdir().unwrap();
-        let [part, renamed] = ["sweep.csv.part", "sweep.csv"].map(|name| folder.path().join(name));
-        let file = lock(&part).unwrap();
-        assert!(is_at(&file, &part).unwrap());
-        fs::rename(&part, &renamed).unwrap();
-        assert!(!is_at(&file, &part).unwrap());
-        fs::write(&part, "").unwrap();
-        assert!(!is_at(&file, &part).unwrap());
-        assert!(has_no_locks(&io::Error::from(rustix::io::Errno::NOLCK)));
     }
 }

@@ -2,6 +2,8 @@
 //! atomically, and child processes that end with the program.
 
 pub mod atomic_file;
+pub mod folders;
+mod lock;
 pub mod output;
 pub mod processes;
 pub mod temporary;

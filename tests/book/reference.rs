@@ -114,7 +114,9 @@ fn scientific(value: f64) -> String {
 fn the_page_of_cases_is_that_of_the_model() {
     let mut page = format!(
         "# Cases\n\n{MADE}\nA case is a set of parameters. `--case NAME` starts from it, and so does `case = \"NAME\"` in a case \
-         file. All other parameters have their start values. [Case files](files.md#case-files) define other cases.\n\n\
+         file. All other parameters have their start values. [Case files](files.md#case-files) define other cases. \
+         `videg cases` lists the cases, and `videg cases NAME --format toml|json|python` prints every parameter of one with its unit: a case file to change, or the \
+         `start_values` of [FMPy](../tutorial/fmpy.md#simulate).\n\n\
          ## The paper\n\n| case | description | paper | sets |\n|---|---|---|---|\n"
     );
     let is_paper = |case: &&Case| case.source == Case::PAPER;

@@ -29,7 +29,7 @@ QUICK = ("--timeout", "4")
 def test_the_federation_is_one_process_to_the_last_bit(run, tmp_path, arguments):
     ended = run("helics/run.py", *arguments, "--output", tmp_path / "two")
     assert ended.returncode == 0, ended.stderr
-    expected = harness.videg("cosim", "--circuit", "fmu", *arguments, "--output", str(tmp_path / "one"))
+    expected = harness.videg("cosim", "--circuit", "fmu", *arguments, "--sample", "step", "--output", str(tmp_path / "one"))
     series = rows(tmp_path / "one" / "timeseries.csv")
     federates = [rows(tmp_path / "two" / f"{name}.csv") for name in ("harvester", "circuit")]
     assert [harvester | circuit for harvester, circuit in zip(*federates, strict=True)] == series

@@ -33,7 +33,7 @@ Series = dict[str, np.ndarray]
 def videg(step: float, steps: int, *arguments: str, master: str = "plain") -> Series:
     """`videg cosim`, at the points of the grid."""
     with tempfile.TemporaryDirectory() as folder:
-        until = ("--until", repr(steps * step), "--step", repr(step))
+        until = ("--until", repr(steps * step), "--step", repr(step), "--sample", "step")
         harness.videg("cosim", "--master", master, *until, "--output", folder, *arguments)
         with open(Path(folder) / "timeseries.csv", newline="") as file:
             rows = {float(row["time"]): row for row in csv.DictReader(file)}

@@ -123,7 +123,7 @@ fn cases_that_make_no_axis_are_refused() {
     let two = |other: &str| vec![at("one.toml"), at(other)];
     let vary = |values: &str| vec!["--vary".to_owned(), format!("case={values}")];
     for (arguments, said) in [
-        (vary("fig10,fig8"), "--vary case: fig8: no such case; there are: fig9,"),
+        (vary("fig10,fig8"), "--vary case: fig8: no such case; did you mean fig9? There are: fig9,"),
         (vary("fig10,none.toml"), "cannot read none.toml: "),
         (vary("1:2:3"), "--vary case: names of cases or case files are expected"),
         (vary("fig10,fig10"), "--vary case: two cases are called fig10"),

@@ -23,7 +23,11 @@ fn interrupted(program: &mut Command, signal: &str, mark: &Path, temporary: &Pat
     assert!(left.is_empty(), "{signal}: {left:?} stays");
     wait_for(|| has_ended(child.trim()).then_some(()));
     let told = std::io::read_to_string(program.stderr.take().unwrap()).unwrap();
-    assert!(!told.contains("videg: "), "that the child was ended is nothing to tell: {told}");
+    let told: Vec<_> = told.lines().filter(|line| line.starts_with("videg: ")).collect();
+    assert!(
+        told.len() == 1 && told[0].starts_with("videg: interrupted"),
+        "that the child was ended is nothing to tell: {told:?}"
+    );
     status.code()
 }
 

@@ -1,6 +1,7 @@
 //! The tool as users and scripts meet it. One binary for all of these tests: each further one would link the whole tool.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+mod cases;
 #[path = "../support/command.rs"]
 mod command;
 #[cfg(target_os = "linux")]
@@ -15,6 +16,8 @@ mod isolation;
 mod paths;
 #[cfg(target_os = "linux")]
 mod read_only;
+#[cfg(target_os = "linux")]
+mod results;
 #[path = "../support/signals.rs"]
 mod signals;
 mod ssp;
@@ -28,6 +31,8 @@ mod toy;
 #[cfg(target_os = "linux")]
 #[path = "../support/waiting.rs"]
 mod waiting;
+#[cfg(target_os = "linux")]
+mod widths;
 
 /// Whether a process, by its number, is gone, or a zombie that waits for its parent.
 #[cfg(target_os = "linux")]

@@ -51,6 +51,7 @@ mod request;
 mod slave;
 mod state;
 mod suggest;
+mod unit;
 mod value;
 mod xml;
 
@@ -70,4 +71,5 @@ pub use library::{HOST_PLATFORM, LIBRARY_EXTENSION, library_extension};
 pub use logging::{LogRecord, LogSink, Logging, Status};
 pub use state::FmuState;
 pub use suggest::nearest as nearest_name;
+pub use unit::hint as unit_hint;
 pub use value::Value;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::description::{EnumerationType, Kind, ModelDescription, Variable};
 use super::error::ValueError;
-use super::suggest;
+use super::{suggest, unit};
 
 /// A value of any base type.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,8 @@ impl Value {
             Kind::Real { .. } => {
                 // Infinity is a value to some models, such as a load that is not there; bounds say so if it is not.
                 let value = trimmed.parse().ok().filter(|value: &f64| !value.is_nan());
-                value.map(Self::Real).ok_or_else(|| unreadable(variable, text, "a number"))
+                let hint = || unit::hint(trimmed, variable.unit()).map_or_else(String::new, |hint| format!(" {hint}"));
+                value.map(Self::Real).ok_or_else(|| unreadable(variable, text, &format!("a number{}", hint())))
             }
             Kind::Integer { .. } => {
                 let value = trimmed.parse().map_err(|_| unreadable(variable, text, "an integer of 32 bits"))?;
@@ -176,6 +177,8 @@ mod tests {
     fn errors_name_variable_found_and_allowed() {
         for (name, text, message) in [
             ("mass", "heavy", "mass = \"heavy\": allowed is a number"),
+            ("mass", "11g", "mass = \"11g\": allowed is a number in kg; did you mean 0.011?"),
+            ("mass", "11mm", "mass = \"11mm\": allowed is a number in kg, and mm is no such unit"),
             ("mass", "NaN", "mass = \"NaN\": allowed is a number"),
             ("mass", "inf", "mass = inf kg is out of range: allowed is 0 .. 10 kg"),
             ("mass", "11", "mass = 11 kg is out of range: allowed is 0 .. 10 kg"),

@@ -7,11 +7,11 @@ use serde::Serialize;
 
 use super::both_report::{self, LawResult, Laws};
 use super::law::Law;
-use super::record;
-use crate::cli::options::RunOptions;
+use super::{Arguments, record};
+use crate::cli::results::Results as Claimed;
 use crate::cli::run_output::{self, RunOutput, file_list, heading};
-use crate::cli::{Exit, excitation, output, parameter_table};
-use crate::cosim::Device;
+use crate::cli::{Exit, excitation, parameter_table};
+use crate::cosim::{Device, SeriesOptions};
 use crate::scenario::Scenario;
 use crate::simulate::Results;
 use fmu_import::Fmu;
@@ -25,10 +25,12 @@ struct Output<'a> {
 }
 
 /// Runs both laws of the harvester `fmu`.
-pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Result<Exit> {
-    let folder = output::folder(options.output.as_deref(), "simulate", scenario)?;
-    let (impulsive, impulsive_csv) = under(Law::Impulsive, fmu, scenario, &folder)?;
-    let (compliant, compliant_csv) = under(Law::Compliant, fmu, scenario, &folder)?;
+pub fn run(arguments: &Arguments, fmu: &Fmu, scenario: &Scenario, claimed: Claimed<'_>) -> anyhow::Result<Exit> {
+    let series = &arguments.series.options();
+    let folder = &claimed.folder;
+    let (impulsive, impulsive_series) = under(Law::Impulsive, fmu, scenario, series, folder)?;
+    let (compliant, compliant_series) = under(Law::Compliant, fmu, scenario, series, folder)?;
+    let written: Vec<_> = impulsive_series.into_iter().chain(compliant_series).collect();
     let laws = Laws { impulsive: LawResult::new(&impulsive), compliant: LawResult::new(&compliant) };
     let warnings = warnings([&impulsive, &compliant], &laws);
     let svg = both_report::figure([&impulsive, &compliant], scenario)?;
@@ -37,22 +39,28 @@ pub fn run(options: &RunOptions, fmu: &Fmu, scenario: &Scenario) -> anyhow::Resu
     let device = Device::of(fmu, scenario)?;
     let report = report.section(parameter_table::section(&device, scenario));
     let html = videg_report::render_html(&excitation::described(report, &device, scenario.until)?)?;
-    let files = run_output::write(&folder, &[impulsive_csv, compliant_csv], &svg, &html)?;
-    let run = RunOutput::new(scenario, impulsive.mechanics, &warnings, &files);
+    let files = run_output::write(folder, &written, &svg, &html)?;
+    let run = RunOutput::new(&claimed.identity, scenario, impulsive.mechanics, &warnings, &files);
     let words = both_report::words(scenario, &laws).join("\n");
     let table = both_report::table(&laws).text();
     let text = [heading("simulate", scenario), table, words, file_list(&files)];
-    run_output::conclude(&folder, options.json, &Output { run, laws: &laws }, &text, &warnings)?;
+    let json = run_output::json(&Output { run, laws: &laws })?;
+    run_output::conclude(claimed, arguments.run.json, &json, &text, &warnings)?;
     Ok(Exit::Passed)
 }
 
 /// The run under `law`, and its time series.
-fn under(law: Law, fmu: &Fmu, scenario: &Scenario, folder: &Path) -> anyhow::Result<(Results, PathBuf)> {
+fn under(
+    law: Law,
+    fmu: &Fmu,
+    scenario: &Scenario,
+    series: &SeriesOptions,
+    folder: &Path,
+) -> anyhow::Result<(Results, Option<PathBuf>)> {
     let mut scenario = scenario.clone();
     scenario.settings.push(law.setting());
-    let csv = folder.join(format!("timeseries-{}.csv", law.name()));
-    let run = record(fmu, &scenario, &csv).with_context(|| format!("--law both, {} law", law.name()))?;
-    Ok((run, csv))
+    let name = format!("timeseries-{}", law.name());
+    record(fmu, &scenario, series, (folder, &name)).with_context(|| format!("--law both, {} law", law.name()))
 }
 
 /// Warnings of both runs, shared ones once, and those about durations.

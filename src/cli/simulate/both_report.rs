@@ -55,11 +55,9 @@ const QUANTITIES: [Quantity; 9] = [
 const HEADINGS: [&str; 6] = ["quantity", "unit", "impulsive", "compliant", "difference", "in per cent"];
 
 /// The definition of a contact, for the reader of the durations.
-const CONTACTS: [&str; 3] = [
-    "A contact lasts as long as its membrane is deflected, from communication point to communication point; those include",
-    "impacts and ends of pulses. Under the impulsive law that is the pulse after an impact, while the ball is gone already,",
-    "under the compliant law the time for which the ball is in the membrane. Impacts within a pulse make one contact.",
-];
+const CONTACTS: &str = "A contact lasts as long as its membrane is deflected, from communication point to communication point; \
+    those include impacts and ends of pulses. Under the impulsive law that is the pulse after an impact, while the ball is gone \
+    already, under the compliant law the time for which the ball is in the membrane. Impacts within a pulse make one contact.";
 
 const CAPTION: &str = "(a) Relative displacement and (b) capacitance of one membrane in the last seconds of the run under both \
     laws; (c) the deepest contact of each in (b), from its start.";
@@ -112,7 +110,7 @@ pub fn words(scenario: &Scenario, laws: &Laws) -> Vec<String> {
         words.push(format!("The time in contact, of both membranes together, is {time} in {} s.", scenario.until));
     }
     words.push(format!("The largest deflection is {deflection}, the largest C(t) {capacitance}."));
-    words.extend(CONTACTS.map(str::to_owned));
+    words.push(CONTACTS.to_owned());
     words
 }
 

@@ -1,6 +1,7 @@
-//! Differences of two sweeps in words: each setting as a user types it, with its value in either.
+//! Differences of two runs or sweeps in words: each setting as a user types it, with its value in either.
 
 use serde_json::{Map, Value};
+use sha2::{Digest as _, Sha256};
 
 /// Longest value that is shown, characters, and most settings: advice follows them, and a message has at most some 2000
 /// characters.
@@ -10,12 +11,18 @@ const MOST: usize = 8;
 /// A setting that differs, as a user types it, with its values in the one document and in the other.
 type Difference = [String; 3];
 
-/// The differences of two documents of sweeps, each in the words of `said`.
-pub(super) fn told(there: &str, here: &str, said: impl Fn(&Difference) -> String) -> String {
+/// The differences of two documents of runs or sweeps, each in the words of `said`.
+pub fn told(there: &str, here: &str, said: impl Fn(&Difference) -> String) -> String {
     let found = differences(there, here);
     let shown = found.iter().take(MOST).map(said);
     let more = found.len().checked_sub(MOST).filter(|more| *more > 0).map(|more| format!("and {more} more"));
     shown.chain(more).collect::<Vec<_>>().join("; ")
+}
+
+/// A short name of `text`, which no other text has: hexadecimal digits.
+pub fn digest(text: &str) -> String {
+    let number = Sha256::digest(text).iter().take(4).fold(0_u32, |number, byte| number << 8 | u32::from(*byte));
+    format!("{number:08x}")
 }
 
 /// The differences of two documents of sweeps.
@@ -70,15 +77,14 @@ fn of_named(what: &str, there: &[Value], here: &[Value]) -> Vec<Difference> {
 fn typed(key: &str) -> String {
     match key {
         "settings" => "--set".to_owned(),
-        "until" | "step" | "window" | "design" | "vary" | "points" | "samples" | "confidence" | "until_precision"
-        | "precision_of" | "seed" | "common_seeds" | "seed_variable" => format!("--{}", key.replace('_', "-")),
         "videg" => "the version of videg".to_owned(),
-        "case" | "cases" | "model" | "isolation" => format!("the {key}"),
+        "verb" | "case" | "cases" | "model" | "isolation" => format!("the {key}"),
         "guid" => "the GUID of the model".to_owned(),
         "fmu" => "the SHA-256 of the FMU".to_owned(),
         "columns" => "the column".to_owned(),
         "runs" => "the number of runs".to_owned(),
-        other => other.to_owned(),
+        "items" => "the items".to_owned(),
+        option => format!("--{}", option.replace('_', "-")),
     }
 }
 
