@@ -1,14 +1,16 @@
 //! A local search for the largest value, without derivatives.
 //!
 //! Around the best place so far, eight places on a circle are tried. The best of them is taken if it is better, and the circle grows; else it
-//! shrinks to the half. It is turned from round to round, so that a narrow ridge and the border of a region that is allowed do not
-//! end the search (the idea of mesh adaptive direct search: Audet and Dennis 2006, SIAM Journal on Optimization 17, 188).
+//! shrinks to the half. It is turned from round to round, so that a narrow ridge does not end the search. At the border of the region that is
+//! allowed, where the ways up may lie in a narrow angle, several turned circles are tried before it shrinks (the idea of mesh adaptive direct search: Audet and Dennis 2006, SIAM Journal on Optimization 17, 188).
 
 /// Radii of the circle, in distances of the grid: the largest one, and where the search ends.
 const LARGEST: f64 = 1.0;
 const SMALLEST: f64 = 1.0 / 128.0;
 /// Places on the circle.
 const PLACES: u32 = 8;
+/// Circles of one size that are tried where some of the places do not count: ways up of a few degrees are seen then.
+const TURNS: u32 = 8;
 /// Rounds at most.
 const ROUNDS: u32 = 200;
 /// Turn from round to round: the golden part of the angle between two places comes back to none.
@@ -30,19 +32,21 @@ pub(super) fn climb<T, E>(
     last: [f64; 2],
     mut evaluate: impl FnMut(&[[f64; 2]]) -> Result<Vec<Spot<T>>, E>,
 ) -> Result<Spot<T>, E> {
-    let (mut best, mut radius) = (start, LARGEST / 2.0);
+    let (mut best, mut radius, mut tried) = (start, LARGEST / 2.0, 0);
     for round in 0..ROUNDS {
         if radius < SMALLEST {
             break;
         }
         let places = circle(best.at, radius, f64::from(round) * TURN, last);
-        let found = evaluate(&places)?.into_iter().max_by(|a, b| a.score.total_cmp(&b.score));
-        match found {
+        let found = evaluate(&places)?;
+        let is_at_border = found.iter().any(|spot| spot.score == f64::NEG_INFINITY);
+        match found.into_iter().max_by(|a, b| a.score.total_cmp(&b.score)) {
             Some(better) if better.score > best.score => {
                 best = better;
-                radius = (2.0 * radius).min(LARGEST);
+                (radius, tried) = ((2.0 * radius).min(LARGEST), 0);
             }
-            _ => radius /= 2.0,
+            _ if is_at_border && tried + 1 < TURNS => tried += 1,
+            _ => (radius, tried) = (radius / 2.0, 0),
         }
     }
     Ok(best)
