@@ -27,7 +27,8 @@ from find_videg import run
 run("videg simulate --case fig14 --until 10 --output out/ngspice")
 
 # %% [markdown]
-# The time series has the columns `left.capacitance` and `right.capacitance` in F, a row each millisecond and at each kink and peak.
+# The time series has the columns `left.capacitance` and `right.capacitance` in F, a row each millisecond and at each kink and peak
+# ([time series](../reference/files.md#time-series)).
 # ngspice reads tables of numbers, here in pF, so that 1 V stands for 1 pF:
 
 # %%

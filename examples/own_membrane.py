@@ -87,7 +87,7 @@ print(f"r = {restitution:.3f}; by impact {np.round(after / before, 2)}")
 #
 # ## Fit K and n, or the constants of a film
 #
-# A law with few constants smooths noise, and goes on beyond the last point as the material does. Fit by least squares of the forces, not of their
+# A law with few constants smooths noise, and it extrapolates beyond the last point. Fit by least squares of the forces, not of their
 # logarithms: these would give the noise of the smallest forces the largest weight.
 
 # %%

@@ -10,10 +10,11 @@ use crate::clone::Clone;
 use crate::has_ngspice;
 
 /// Sections of the page, those whose keys they have as well, and runs that print all of them.
-const RUNS: [(&str, &[&str], &str); 7] = [
+const RUNS: [(&str, &[&str], &str); 8] = [
     ("simulate", &[], "simulate --until 1"),
     ("cosim", &["simulate"], "cosim --until 1 --set contact.law=compliant --set contact.electrostaticFeedback=true"),
     ("sweep", &[], "sweep --vary membrane.restitution=0.3,0.6 --until 1 --samples 2"),
+    ("map", &[], "map membrane.restitution=0.3:0.6:2 excitation.amplitude=0.4:0.5:2 --until 1"),
     (
         "dynamics",
         &[],
