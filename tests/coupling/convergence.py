@@ -27,7 +27,8 @@ Runs = dict[str, list[Run]]
 
 
 def cosim(*arguments: str) -> dict:
-    return harness.videg("cosim", "--until", str(SECONDS), "--output", str(harness.ROOT / "target" / "coupling"), *arguments)
+    folder = str(harness.ROOT / "target" / "coupling")
+    return harness.videg("cosim", "--until", str(SECONDS), "--output", folder, "--fresh", *arguments)
 
 
 def run(exact: float, option: str, *arguments: str) -> Run:

@@ -59,7 +59,7 @@ def couple(harvester, circuit, times) -> None:
 
 
 def test_fmpy_as_the_master_gets_the_energies_of_the_command_line(slave, tmp_path):
-    arguments = ["cosim", "--case", "fig14", "--until", "10", "--output", str(tmp_path)]
+    arguments = ["cosim", "--case", "fig14", "--until", "10", "--sample", "step", "--output", str(tmp_path)]
     expected = harness.videg(*arguments)
     harvester, circuit = slave("VibroImpactHarvester"), slave(CIRCUIT)
     harvester.start(harness.fig14())
@@ -76,7 +76,7 @@ def test_fmpy_as_the_master_gets_the_energies_of_the_command_line(slave, tmp_pat
 
 def test_the_fmu_within_the_command_line_agrees_with_the_embedded_circuit(tmp_path):
     def run(circuit):
-        return harness.videg("cosim", "--until", "10", "--circuit", circuit, "--output", str(tmp_path))["energy"]
+        return harness.videg("cosim", "--until", "10", "--circuit", circuit, "--output", str(tmp_path / circuit))["energy"]
 
     embedded = run("embedded")
     assert run("fmu") == pytest.approx(embedded, abs=1e-9 * embedded["supply"])

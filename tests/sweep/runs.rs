@@ -17,7 +17,7 @@ fn a_run_of_a_sweep_is_the_run_that_simulate_makes() {
     for (index, restitution) in ["0.3", "0.7"].iter().enumerate() {
         let setting = format!("membrane.restitution={restitution}");
         let mut simulate = videg(&["simulate", "--case", "fig15", "--set", &setting, "--output"]);
-        let simulated = json(simulate.arg(alone.path()).args(SHORT));
+        let simulated = json(simulate.arg(alone.path().join(restitution)).args(SHORT));
         for name in ["average_voltage_gain", "average_power_eq13"] {
             let swept: f64 = column(&folder, name)[index].parse().unwrap();
             assert_eq!(swept, simulated[name].as_f64().unwrap(), "{name} at r = {restitution}");
