@@ -111,9 +111,12 @@ fn quoted(text: &str) -> String {
 
 fn toml(scenario: &Scenario, values: &[StartValue]) -> String {
     let Scenario { name, description, until, step, window: [from, to], .. } = scenario;
+    // The second half follows from the end, also of a run with another --until.
+    let is_plain = [*from, *to] == [0.5 * until, *until];
+    let window = if is_plain { String::new() } else { format!("window = [{from:?}, {to:?}]  # s\n") };
     let head = format!(
         "# {description}\n# videg simulate --case-file FILE.toml\ncase = {}\nuntil = {until:?}  # s\nstep = {step:?}  # s\n\
-         window = [{from:?}, {to:?}]  # s\n\n[set]\n",
+         {window}\n[set]\n",
         quoted(name)
     );
     let line = |value: &StartValue| {
