@@ -101,9 +101,13 @@ impl Balance {
         self.gets - self.gives
     }
 
+    /// The larger of what goes in and what comes out.
+    fn through(&self) -> f64 {
+        self.gets.max(self.gives)
+    }
+
     fn words(&self, unit: &str) -> String {
-        let Self { name, gets, gives } = self;
-        let through = gets.max(*gives);
+        let (Self { name, gets, gives }, through) = (self, self.through());
         let relative = if through > 0.0 { self.residual().abs() / through } else { 0.0 };
         let (gets, gives) = (short(*gets), short(*gives));
         format!(

@@ -1,6 +1,6 @@
 //! Places of the nodes and bands of a Sankey diagram, px.
 
-use super::{Kind, Sankey, Stage, Term};
+use super::{Balance, Kind, Sankey, Stage, Term};
 
 const WIDTH: f64 = 720.0;
 const EDGE: f64 = 14.0;
@@ -70,98 +70,127 @@ enum Entry<'a> {
     Sink(usize, &'a str, f64, Kind),
 }
 
+/// A source or sink of a stage that is placed, and whose band is not drawn yet.
+struct Leaf {
+    stage: usize,
+    is_source: bool,
+    /// Upper corner of the side at which the band ends.
+    at: (f64, f64),
+    /// Number of its node.
+    node: usize,
+}
+
+/// A layout in the making.
+struct Placing<'a> {
+    stages: &'a [Stage],
+    balances: Vec<Balance>,
+    /// Height of a flow of 1.
+    scale: f64,
+    /// Where the next band that enters each stage ends, and where the next one that leaves it begins.
+    ports: Vec<[(f64, f64); 2]>,
+    leaves: Vec<Leaf>,
+    layout: Layout,
+}
+
 impl Layout {
     /// Sources of a stage stand in the column before it, its sinks in the one behind it.
     pub fn of(sankey: &Sankey) -> Self {
-        let (stages, balances) = (&sankey.stages, sankey.balances());
-        let largest = balances.iter().map(|balance| balance.gets.max(balance.gives)).fold(0.0, f64::max);
-        let least = SEEN * largest;
-        let columns: Vec<Vec<Entry<'_>>> = (0..stages.len() + 2).map(|column| entries(stages, column, least)).collect();
-        let flow = |entry: &Entry<'_>| match entry {
-            Entry::Source(_, _, flow, _) | Entry::Sink(_, _, flow, _) => *flow,
-            Entry::Stage(stage) => balances[*stage].gets.max(balances[*stage].gives),
-        };
-        let fullest = columns.iter().map(|column| column.iter().map(flow).sum::<f64>()).fold(0.0, f64::max);
+        let (stages, balances) = (&sankey.stages[..], sankey.balances());
+        let largest = balances.iter().map(Balance::through).fold(0.0, f64::max);
+        let columns: Vec<_> = (0..stages.len() + 2).map(|column| entries(stages, column, SEEN * largest)).collect();
+        let flows = |column: &Vec<Entry<'_>>| column.iter().map(|entry| entry.flow(&balances)).sum::<f64>();
+        let fullest = columns.iter().map(flows).fold(0.0, f64::max);
         let scale = if fullest > 0.0 { FLOWS / fullest } else { 0.0 };
+        let (ports, leaves) = (vec![[(0.0, 0.0); 2]; stages.len()], Vec::new());
+        let mut placing = Placing { stages, balances, scale, ports, leaves, layout: Self::default() };
         // Labels of the last column run to the left, those of the one before it to the right.
         let pitch = (WIDTH - 2.0 * EDGE - BAR) / (columns.len() as f64 - 2.0 + LAST);
-        let mut layout = Self::default();
-        // Where the next band of each stage begins and ends.
-        let mut ports = vec![[(0.0, 0.0); 2]; stages.len()];
-        let mut leaves = Vec::new();
         for (column, entries) in columns.iter().enumerate() {
             let is_last = column + 1 == columns.len();
-            let (x, mut y) = (if is_last { WIDTH - EDGE - BAR } else { EDGE + pitch * column as f64 }, 0.0);
-            for entry in entries {
-                y += LABEL;
-                let (name, kind) = match entry {
-                    Entry::Source(_, name, _, kind) | Entry::Sink(_, name, _, kind) => ((*name).to_owned(), *kind),
-                    Entry::Stage(stage) => {
-                        ports[*stage] = [(x, y), (x + BAR, y)];
-                        (stages[*stage].name.clone(), Kind::Handed)
-                    }
-                };
-                let height = scale * flow(entry);
-                match entry {
-                    Entry::Source(stage, ..) => leaves.push((*stage, true, (x + BAR, y), layout.nodes.len())),
-                    Entry::Sink(stage, ..) => leaves.push((*stage, false, (x, y), layout.nodes.len())),
-                    Entry::Stage(_) => {}
-                }
-                layout.nodes.push(Node { name, kind, flow: flow(entry), x, y, height, is_last });
-                y += height.max(1.0) + GAP;
-            }
-            layout.height = layout.height.max(y);
+            placing.column(entries, if is_last { WIDTH - EDGE - BAR } else { EDGE + pitch * column as f64 }, is_last);
         }
-        layout.join(stages, &leaves, ports, scale);
-        layout
+        placing.join()
+    }
+}
+
+impl Placing<'_> {
+    /// Places the nodes of a column, whose left edge is at `x`.
+    fn column(&mut self, entries: &[Entry<'_>], x: f64, is_last: bool) {
+        let mut y = 0.0;
+        for entry in entries {
+            y += LABEL;
+            let node = self.layout.nodes.len();
+            let (name, kind) = match *entry {
+                Entry::Source(stage, name, _, kind) => {
+                    self.leaves.push(Leaf { stage, is_source: true, at: (x + BAR, y), node });
+                    (name, kind)
+                }
+                Entry::Sink(stage, name, _, kind) => {
+                    self.leaves.push(Leaf { stage, is_source: false, at: (x, y), node });
+                    (name, kind)
+                }
+                Entry::Stage(stage) => {
+                    self.ports[stage] = [(x, y), (x + BAR, y)];
+                    (self.stages[stage].name.as_str(), Kind::Handed)
+                }
+            };
+            let flow = entry.flow(&self.balances);
+            let height = self.scale * flow;
+            self.layout.nodes.push(Node { name: name.to_owned(), kind, flow, x, y, height, is_last });
+            y += height.max(1.0) + GAP;
+        }
+        self.layout.height = self.layout.height.max(y);
     }
 
     /// Bands from top to bottom at both sides of each stage: those from its sources before that of the stage before it, that to the next
     /// stage before those to its sinks.
-    fn join(
-        &mut self,
-        stages: &[Stage],
-        leaves: &[(usize, bool, (f64, f64), usize)],
-        mut ports: Vec<[(f64, f64); 2]>,
-        scale: f64,
-    ) {
-        let mut take = |stage: usize, side: usize, width: f64| {
-            let place = ports[stage][side];
-            ports[stage][side].1 += width;
-            place
-        };
-        for &(stage, _, from, node) in leaves.iter().filter(|leaf| leaf.1) {
-            let Node { flow, kind, name, height: width, .. } = self.nodes[node].clone();
-            let names = [name, stages[stage].name.clone()];
-            self.bands.push(Band {
-                flow,
-                kind,
-                stages: [None, Some(stage)],
-                from,
-                to: take(stage, 0, width),
-                width,
-                names,
-            });
+    fn join(mut self) -> Layout {
+        let (sources, sinks): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.leaves).into_iter().partition(|leaf| leaf.is_source);
+        for leaf in sources {
+            self.join_leaf(&leaf);
         }
-        for (stage, pair) in stages.windows(2).enumerate().filter(|(_, pair)| pair[0].onward > 0.0) {
-            let (flow, width) = (pair[0].onward, scale * pair[0].onward);
-            let (from, to) = (take(stage, 1, width), take(stage + 1, 0, width));
+        for (stage, pair) in self.stages.windows(2).enumerate().filter(|(_, pair)| pair[0].onward > 0.0) {
+            let (flow, width) = (pair[0].onward, self.scale * pair[0].onward);
+            let (from, to) = (self.take(stage, 1, width), self.take(stage + 1, 0, width));
             let names = [pair[0].name.clone(), pair[1].name.clone()];
             let stages = [Some(stage), Some(stage + 1)];
-            self.bands.push(Band { flow, kind: Kind::Handed, stages, from, to, width, names });
+            self.layout.bands.push(Band { flow, kind: Kind::Handed, stages, from, to, width, names });
         }
-        for &(stage, _, to, node) in leaves.iter().filter(|leaf| !leaf.1) {
-            let Node { flow, kind, name, height: width, .. } = self.nodes[node].clone();
-            let names = [stages[stage].name.clone(), name];
-            self.bands.push(Band {
-                flow,
-                kind,
-                stages: [Some(stage), None],
-                from: take(stage, 1, width),
-                to,
-                width,
-                names,
-            });
+        for leaf in sinks {
+            self.join_leaf(&leaf);
+        }
+        self.layout
+    }
+
+    /// The band between a stage and its source or sink.
+    fn join_leaf(&mut self, leaf: &Leaf) {
+        let &Leaf { stage, is_source, at, node } = leaf;
+        let Node { flow, kind, name, height: width, .. } = self.layout.nodes[node].clone();
+        let (own, port) = (self.stages[stage].name.clone(), self.take(stage, usize::from(!is_source), width));
+        let (stages, names, from, to) = if is_source {
+            ([None, Some(stage)], [name, own], at, port)
+        } else {
+            ([Some(stage), None], [own, name], port, at)
+        };
+        self.layout.bands.push(Band { flow, kind, stages, from, to, width, names });
+    }
+
+    /// The next place for a band of this width at a side of a stage: 0 where bands enter, 1 where they leave.
+    fn take(&mut self, stage: usize, side: usize, width: f64) -> (f64, f64) {
+        let port = &mut self.ports[stage][side];
+        let place = *port;
+        port.1 += width;
+        place
+    }
+}
+
+impl Entry<'_> {
+    /// The flow that its height shows.
+    fn flow(&self, balances: &[Balance]) -> f64 {
+        match self {
+            Self::Source(_, _, flow, _) | Self::Sink(_, _, flow, _) => *flow,
+            Self::Stage(stage) => balances[*stage].through(),
         }
     }
 }
