@@ -48,7 +48,7 @@ pub fn columns_of(text: &str) -> usize {
 }
 
 /// `text` with its prose broken at spaces for a terminal of these columns, or for none. Tables stay as they are: lines from one rule
-/// to the third.
+/// to the third, and without a terminal each line whose cells stand two columns apart, which a program reads.
 pub fn wrapped(text: &str, terminal: Option<usize>) -> String {
     let limit = terminal.map_or(PROSE, |columns| columns.min(PROSE));
     let left = terminal.map_or(LEFT, |_| limit);
@@ -56,7 +56,8 @@ pub fn wrapped(text: &str, terminal: Option<usize>) -> String {
     let lines = text.split('\n').map(|line| {
         let is_rule = is_rule(line);
         rules += usize::from(is_rule);
-        if is_rule || rules % RULES != 0 || line.width() <= left { line.to_owned() } else { broken(line, limit) }
+        let is_row = is_rule || rules % RULES != 0 || terminal.is_none() && line.trim().contains("  ");
+        if is_row || line.width() <= left { line.to_owned() } else { broken(line, limit) }
     });
     lines.collect::<Vec<_>>().join("\n")
 }
@@ -165,6 +166,8 @@ mod tests {
         let narrow = wrapped(&prose, Some(60));
         assert!(narrow.lines().all(|line| line.width() <= 60) && narrow.lines().count() == 3, "{narrow}");
         assert_eq!(narrow.split_whitespace().count(), 30);
+        let checked = format!("FAILED  {prose}");
+        assert_eq!([None, Some(90)].map(|columns| wrapped(&checked, columns).lines().count()), [1, 2]);
         // Where there is no terminal, lines of up to 110 columns stay.
         let almost = "word ".repeat(21);
         assert_eq!((wrapped(&almost, None).lines().count(), wrapped(&almost, Some(200)).lines().count()), (1, 2));
