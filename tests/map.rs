@@ -183,7 +183,9 @@ fn the_best_point_is_that_of_a_grid_three_times_as_fine() {
 fn net_power_of_the_best_pair_is_that_of_co_simulation_and_of_ngspice() {
     let (_guard, folder) = folder();
     let axes = ["zener.voltage=2000:3500:7", "load.resistance=log:1e9:1e12:10"];
-    let result = map(&folder.join("map"), &[&axes[..], &BETTER].concat());
+    // Periodic by then.
+    let times = ["--until", "30", "--window", "20,30"];
+    let result = map(&folder.join("map"), &[&axes[..], &BETTER, &times].concat());
     let best = number(&result, "best", "net_power");
     let [voltage, load] = ["zener.voltage", "load.resistance"].map(|name| set(&result, name));
     let pair = [&BETTER[..], &["--set", &voltage, "--set", &load]].concat();
@@ -191,7 +193,7 @@ fn net_power_of_the_best_pair_is_that_of_co_simulation_and_of_ngspice() {
         let command = [&["cosim"], &pair[..], more, &["--output"]].concat();
         json(videg(&command).arg(folder.join(name)))["net_power"].as_f64().unwrap()
     };
-    let fine = run("fine", &["--step", "1e-5"]);
+    let fine = run("fine", &[&times[..], &["--step", "1e-5"]].concat());
     assert!((best / fine - 1.0).abs() < 1e-4, "{best:e} W against {fine:e} W");
     // The engine of the map, and ngspice in step with the harvester.
     let short = ["--until", "10", "--window", "5,10"];
