@@ -37,7 +37,7 @@ fn powers_are_those_of_co_simulation() {
         let sweep = [&["sweep", "--until", "6"][..], &what, &given, &varied, &["--output"]].concat();
         done(videg(&sweep).arg(&swept));
         let single = ["cosim", "--until", "6", "--step", "1e-4", "--set", "membrane.restitution=0.8", "--output"];
-        let run = json(videg(&[&single[..1], &what, &single[1..]].concat()).arg(folder.join("cosim")));
+        let run = json(videg(&[&single[..1], &what, &single[1..]].concat()).arg(swept.join("cosim")));
         let expected = run["net_power"].as_f64().unwrap();
         let supply = run["supply_power"].as_f64().unwrap();
         let found = numbers(&swept, "net_power")[1];
