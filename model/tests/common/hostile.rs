@@ -36,14 +36,17 @@ pub fn watched(body: impl FnOnce(&Label) + Send + 'static) {
         body(&of_body);
         done.send(()).unwrap();
     });
-    match ended.recv_timeout(WATCH) {
-        Err(mpsc::RecvTimeoutError::Timeout) => panic!("no end after {WATCH:?}: {}", label.0.lock().unwrap()),
-        Ok(()) | Err(mpsc::RecvTimeoutError::Disconnected) => {
-            if let Err(cause) = thread.join() {
-                eprintln!("while running {}", label.0.lock().unwrap());
-                std::panic::resume_unwind(cause);
-            }
-        }
+    let now = || label.0.lock().unwrap().clone();
+    let mut before = None;
+    while let Err(mpsc::RecvTimeoutError::Timeout) = ended.recv_timeout(WATCH) {
+        // All runs together may take longer.
+        let running = Some(now());
+        assert!(running != before, "no end after {WATCH:?}: {}", now());
+        before = running;
+    }
+    if let Err(cause) = thread.join() {
+        eprintln!("while running {}", now());
+        std::panic::resume_unwind(cause);
     }
 }
 
