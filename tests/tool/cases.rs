@@ -63,7 +63,7 @@ fn all_cases_are_in_one_table_and_mistakes_are_told() {
     let listed: Value = serde_json::from_str(&printed(&["--format", "json"])).unwrap();
     assert_eq!(listed.as_array().unwrap().len(), videg_model::Case::ALL.len());
     let (_, said) = refused(&mut videg(&["cases", "fig41"]));
-    assert!(said.contains("fig41: no such case; did you mean fig14? There are: fig9"), "{said}");
+    assert!(said.contains("fig41: no such case; did you mean fig11? There are: fig9"), "{said}");
     let (_, said) = refused(&mut videg(&["cases", "--format", "python"]));
     assert!(said.contains("start values are those of one case"), "{said}");
 }
