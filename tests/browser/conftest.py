@@ -25,7 +25,11 @@ VERBS = {
     "crosscheck": ["crosscheck", "--until", "2"],
     "dynamics": ["dynamics", "--orbits"],
     "reproduce": ["reproduce", "--quick", "all"],
+    "map": ["map", "zener.voltage=2000:4300:6", "load.resistance=log:1e8:1e12:5", "--set", "topology=isolated", "--set", "release=switch",
+            "--window", "5,10", "--until", "10"],
 }
+# Names of pages that are not called report.html.
+PAGES = {"map": "map.html"}
 
 
 def make_report(kind, folder):
@@ -33,7 +37,7 @@ def make_report(kind, folder):
         run("--example", "figures", "--", str(folder / "report.html"))
     else:
         run("--", *VERBS[kind], "--output", str(folder))
-    return folder / "report.html"
+    return folder / PAGES.get(kind, "report.html")
 
 
 def kinds():

@@ -163,6 +163,8 @@ def test_paper_shows_pictures_even_of_open_charts(visit):
     page.emulate_media(media="print")
     assert all(picture.is_visible() for picture in page.locator("figure .plot > svg").all())
     assert not any(button.is_visible() for button in page.locator("figure button").all())
+    # They lead to sections of a page that paper shows whole.
+    assert not any(links.is_visible() for links in page.locator("nav, .thumbnails").all())
     pdf = page.pdf(format="A4", print_background=False)
     assert pdf.startswith(b"%PDF") and len(re.findall(rb"/Type\s*/Page\b", pdf)) >= 1
 
