@@ -52,6 +52,21 @@ fn a_map_leaves_its_grid_figure_report_and_result_and_marks_what_is_best() {
 }
 
 #[test]
+fn two_maps_in_a_row_have_a_folder_each_and_the_same_one_again_goes_on() {
+    let guard = tempfile::tempdir().unwrap();
+    let run = |case: &str, axes: &[&str]| {
+        let mut command = videg(&[&["map", "--json", "--case", case], axes, &BETTER, &SHORT].concat());
+        let result: Value = serde_json::from_slice(&done(command.current_dir(guard.path())).stdout).unwrap();
+        (result["files"][0].as_str().unwrap().to_owned(), result["resumed_from"].as_u64().unwrap())
+    };
+    let other = ["membrane.restitution=0.4:0.6:2", SMALL[1]];
+    let ((first, _), (second, _), (third, _)) = (run("fig14", &SMALL), run("fig14", &other), run("fig15", &SMALL));
+    assert_eq!([first.as_str(), third.as_str()], ["out/map-fig14/sweep.csv", "out/map-fig15/sweep.csv"]);
+    assert!(second.starts_with("out/map-fig14-") && second.matches("fig14").count() == 1, "{second}");
+    assert_eq!([run("fig14", &SMALL), run("fig14", &other)], [(first, 20), (second, 10)]);
+}
+
+#[test]
 fn a_map_goes_on_after_shards_and_gives_the_same_bytes() {
     let (_guard, folder) = folder();
     let [whole, shared, merged] = ["whole", "shared", "merged"].map(|name| folder.join(name));

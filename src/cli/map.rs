@@ -1,6 +1,6 @@
 //! `videg map`: a quantity over two variables of harvester and circuit, its best point, and the limits of the film.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -58,7 +58,8 @@ pub struct Arguments {
     /// Number of parallel runs [default: one on each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Folder for results, figure and report; the same command with the same folder resumes [default: out/map-CASE]
+    /// Folder for results, figure and report; the same command with the same folder resumes [default: out/map-CASE, or if another map is there
+    /// out/map-CASE-DIGEST]
     #[arg(long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Start again; discards the results in the folder
@@ -74,8 +75,8 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
     let started = Instant::now();
     let plan = arguments.plan()?;
     let name = plan.sweep.name().to_owned();
-    let default = || PathBuf::from("out").join(format!("map-{}", output::safe(&name)));
-    let folder = arguments.output.clone().unwrap_or_else(default);
+    let default = || sweep::free_folder(&plan.sweep, &Path::new("out").join(format!("map-{}", output::safe(&name))));
+    let folder = arguments.output.clone().map_or_else(default, Ok)?;
     let harvester = || IsolationOptions::default().open_own("VibroImpactHarvester");
     let engine = Engine::System(Box::new(System::new(&plan.sweep, harvester)?));
     let mut options = Options::new(&plan.sweep, &engine, &folder);
@@ -104,7 +105,7 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
             let html = videg_report::render_html(&page::report(&found, drawn))?;
             let path = folder.join("map.html");
             output::write(&path, html)?;
-            paths.extend([path, folder.join("result.json")]);
+            paths.extend([path, folder.join(RESULT)]);
             let text = page::text(&found, &paths);
             let json = run_output::json(&page::Output::new(&found, &paths))?;
             output::write(&folder.join(RESULT), &json)?;

@@ -95,7 +95,7 @@ impl<'a> Output<'a> {
             resumed_from: report.resumed_from,
             elapsed_s: elapsed.as_secs_f64(),
             best: numbers(plan, &map.best),
-            best_exceeds: exceeded(plan, &map.best).collect(),
+            best_exceeds: exceeded(plan, &map.best).map(|(name, _)| name).collect(),
             best_of_grid: numbers(plan, &map.grid_best),
             best_within_limits: map.admissible.as_ref().map(|point| numbers(plan, point)),
             points_beyond_limits: beyond(found),
@@ -113,8 +113,9 @@ const LIMITS: [&str; 4] = [
     "deflection over the last point measured",
 ];
 
-fn exceeded(plan: &Plan, point: &Point) -> impl Iterator<Item = &'static str> {
-    OVER_LIMITS.into_iter().filter(|name| plan.number(&point.cell, name) > 1.0)
+/// Names and words of the limits that a point exceeds.
+fn exceeded(plan: &Plan, point: &Point) -> impl Iterator<Item = (&'static str, &'static str)> {
+    OVER_LIMITS.into_iter().zip(LIMITS).filter(|(name, _)| plan.number(&point.cell, name) > 1.0)
 }
 
 fn beyond(found: &Found<'_>) -> usize {
@@ -162,20 +163,18 @@ fn table(found: &Found<'_>) -> Sheet {
 /// What limits the best point, in a sentence.
 fn limits(found: &Found<'_>) -> String {
     let Found { plan, map, .. } = found;
-    let points = map.cells.len();
-    let words: Vec<_> =
-        OVER_LIMITS.iter().zip(LIMITS).filter(|(name, _)| plan.number(&map.best.cell, name) > 1.0).collect();
-    let words: Vec<_> = words.into_iter().map(|(_, words)| words).collect();
+    let (points, beyond) = (map.cells.len(), beyond(found));
+    let words: Vec<_> = exceeded(plan, &map.best).map(|(_, words)| words).collect();
     match (words.is_empty(), &map.admissible) {
-        (true, _) if beyond(found) == 0 => "No point of the map exceeds a limit of the film.".to_owned(),
-        (true, _) => format!(
-            "The best point is within the limits of the film; {} of {points} points of the grid exceed one.",
-            beyond(found)
-        ),
+        (true, _) if beyond == 0 => "No point of the map exceeds a limit of the film.".to_owned(),
+        (true, _) => {
+            format!(
+                "The best point is within the limits of the film; {beyond} of {points} points of the grid exceed one."
+            )
+        }
         (false, Some(_)) => format!(
-            "The best point exceeds limits of the film ({}), and so do {} of {points} points of the grid.",
-            words.join(", "),
-            beyond(found)
+            "The best point exceeds limits of the film ({}), and so do {beyond} of {points} points of the grid.",
+            words.join(", ")
         ),
         (false, None) => {
             format!(

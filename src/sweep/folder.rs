@@ -84,7 +84,11 @@ pub fn free_folder(sweep: &Sweep, path: &Path) -> Result<PathBuf, SweepError> {
     let name = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '_' };
     let case: String = sweep.name().chars().take(LONGEST).map(name).collect();
     let mut beside = path.as_os_str().to_owned();
-    beside.push(format!("-{case}-{}", digest(document)));
+    // The name may have the case already.
+    if !path.to_string_lossy().ends_with(&case) {
+        beside.push(format!("-{case}"));
+    }
+    beside.push(format!("-{}", digest(document)));
     let is_own = match read_document(path)? {
         Some(there) => there == document,
         None => !path.exists() || results(path)?.is_empty(),
