@@ -54,22 +54,24 @@ impl Intervals {
 
     /// The statistics of `values`.
     pub fn statistics(&mut self, values: &[f64]) -> Statistics {
-        let mean = self.mean(values);
         let moments = Moments::of(values);
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let is_finite = values.iter().all(|value| value.is_finite());
         let quantiles = QUANTILES.map(|share| if is_finite { quantile(&sorted, share) } else { f64::NAN });
-        Statistics { mean, deviation: moments.deviation, quantiles }
+        Statistics { mean: self.interval(values.len(), &moments), deviation: moments.deviation, quantiles }
     }
 
     /// The mean of `values` and its interval: Student's t, transformed so that it has no skewness to first order (Hall,
     /// J. R. Statist. Soc. B 54 (1992) 221-228). It leans to the side of a heavy tail, and needs no random draws.
     pub fn mean(&mut self, values: &[f64]) -> Mean {
-        let Moments { mean, deviation, skewness } = Moments::of(values);
-        let root = (values.len() as f64).sqrt();
-        if self.last.0 != values.len() {
-            self.last = (values.len(), student(values.len(), self.probability));
+        self.interval(values.len(), &Moments::of(values))
+    }
+
+    fn interval(&mut self, samples: usize, &Moments { mean, deviation, skewness }: &Moments) -> Mean {
+        let root = (samples as f64).sqrt();
+        if self.last.0 != samples {
+            self.last = (samples, student(samples, self.probability));
         }
         // The inverse of the transformation, times the root: 3 / g (cbrt(1 + a) - 1) without the division by g.
         let end = |t: f64| {

@@ -116,7 +116,7 @@ struct Circuit {
     result: Value,
 }
 
-/// The best load at 2100 V in the map of `reproduce tuning`.
+/// The best load at 2100 V, to a digit; `reproduce tuning` finds the best pair near it.
 const SLOW_LOAD: &str = "load.resistance=2.5e10";
 
 fn circuits() -> Vec<Circuit> {
