@@ -13,7 +13,8 @@ fn shown(folder: &Path, columns: usize, environment: &str, arguments: &str) -> S
     let line = format!("stty cols {columns} rows 50 && {environment} exec '{tool}' {arguments}");
     let mut script = Command::new("script");
     script.args(["--quiet", "--return", "--command", &line, "/dev/null"]).current_dir(folder);
-    for name in ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "COLUMNS"] {
+    // A service of continuous integration sets CI, which asks for colours on any terminal.
+    for name in ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "CI", "COLUMNS"] {
         script.env_remove(name);
     }
     let output = script.env("TERM", "xterm-256color").stdin(std::process::Stdio::null()).output().unwrap();
