@@ -79,14 +79,8 @@ print(f"{result['impact.count'][-1]} impacts, <U> = {(gain[100_000] - gain[50_00
 
 # %% [markdown]
 # `videg cases fig14 --format python` prints every parameter of the case as such a dict, with unit and meaning (`--format json` and `toml` print it for others), and
-# `videg cases` lists the cases:
-
-# %%
-from find_videg import run
-
-run("videg cases fig14 --format python | grep \"initial.*Position\\\"\\|initial.ballVelocity\"")
-
-# %% [markdown]
+# `videg cases` lists the cases.
+#
 # The paper prints 8079 V/s in Table 2. `output_interval` sets only the times of the output. The motion between events is a closed form,
 # so another interval gives the same numbers to the last bit.
 

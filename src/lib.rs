@@ -46,10 +46,8 @@
 mod artefact;
 #[cfg(doctest)]
 mod book;
-mod circuit_sample;
 pub mod cli;
 pub mod cosim;
-pub mod coupled;
 pub mod crosscheck;
 mod differences;
 pub mod dynamics;
@@ -64,3 +62,5 @@ pub mod simulate;
 pub mod statistics;
 pub mod sweep;
 pub(crate) mod threads;
+
+pub use videg_coupled as coupled;

@@ -10,9 +10,10 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 12] = [
+const PACKAGES: [(&str, &[&str]); 13] = [
     ("model", &[]),
     ("circuit", &[]),
+    ("coupled", &["circuit", "model"]),
     ("input", &[]),
     ("data", &["input", "model"]),
     ("system", &[]),
@@ -22,7 +23,7 @@ const PACKAGES: [(&str, &[&str]); 12] = [
     ("fmu/import", &["fmu/abi", "input", "system"]),
     ("fmu/harvester", &["data", "fmu/export", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
-    (".", &["circuit", "data", "fmu/import", "input", "model", "report", "system"]),
+    (".", &["circuit", "coupled", "data", "fmu/import", "input", "model", "report", "system"]),
 ];
 
 /// Dependencies that serve the command line, and have no place in a shared library.
@@ -30,7 +31,7 @@ const OF_THE_COMMAND_LINE: [&str; 8] =
     ["anstream", "anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook", "terminal_size"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 19] = [
+const DOWNWARDS: [&str; 17] = [
     "cli",
     "paper",
     "dynamics",
@@ -40,11 +41,9 @@ const DOWNWARDS: [&str; 19] = [
     "package",
     "simulate",
     "export",
-    "coupled",
     "cosim",
     "ngspice",
     "scenario",
-    "circuit_sample",
     "artefact",
     "statistics",
     "differences",

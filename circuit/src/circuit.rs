@@ -114,16 +114,56 @@ impl Circuit {
         self.check_numbers().inspect_err(|_| self.state = before)
     }
 
+    /// Advances by `length` seconds, the capacitances (left, right) (F) running along straight lines through `knots`, which are evenly spaced in
+    /// time; the first knot is where they are now. The same as a call of [`Circuit::advance`] for each line, but lines that can be taken as one
+    /// ([`Circuit::is_path_independent`]) are. `seen` gets the number of each knot that ends a line, and the voltages there.
+    ///
+    /// # Errors
+    /// As [`Circuit::advance`]. The circuit is unchanged then.
+    pub fn advance_along(
+        &mut self,
+        length: f64,
+        knots: &[[f64; 2]],
+        mut seen: impl FnMut(usize, [f64; 2]),
+    ) -> Result<(), Error> {
+        not_negative(names::STEP, length, "s")?;
+        knots.iter().try_for_each(|knot| check_capacitances(*knot))?;
+        finite("time", self.state.time + length, "s")?;
+        let last = knots.len().saturating_sub(1);
+        let before = self.state;
+        if self.parameters.diodes != Diodes::Ideal {
+            for (k, knot) in knots.iter().enumerate().skip(1) {
+                self.advance(length / last as f64, *knot).inspect_err(|_| self.state = before)?;
+                seen(k, self.voltage());
+            }
+            return Ok(());
+        }
+        let mut network = self.network();
+        let mut start = 0;
+        while start < last {
+            let goes_on = |k: &usize| {
+                network.is_path_independent(self.node_capacitances(knots[k + 1])) && !turns(&knots[start..=k + 1])
+            };
+            let end = start + 1 + (start + 1..last).take_while(goes_on).count();
+            // A line that is the whole way takes the time to the last bit.
+            let part = (end - start) as f64 / last as f64;
+            self.advance_network(&mut network, length * part, knots[end])?;
+            seen(end, self.voltages(&network.nodes));
+            start = end;
+        }
+        self.accept(network);
+        self.update_ideal_outputs(&network);
+        self.state.capacitance = knots.last().copied().unwrap_or(before.capacitance);
+        self.state.time += length;
+        self.check_numbers().inspect_err(|_| self.state = before)
+    }
+
     /// Whether all that happens while both capacitances (F), and their sum, go to `capacitance` without turning round
     /// follows from where they end: with ideal diodes, no leak, and no charge that the load would get. One call of
     /// [`Circuit::advance`] is then as good as many.
     pub fn is_path_independent(&self, capacitance: [f64; 2]) -> bool {
-        let p = &self.parameters;
-        let elements = Elements::new(p);
-        let ends = self.node_capacitances(capacitance);
-        let stays_below = |j: usize| elements.open() || self.state.charge[j] <= elements.threshold * ends[j];
-        let is_calm = |j: usize| !self.state.releasing[j] && stays_below(j);
-        p.diodes == Diodes::Ideal && elements.leak == 0.0 && (0..p.nodes()).all(is_calm)
+        self.parameters.diodes == Diodes::Ideal
+            && self.network().is_path_independent(self.node_capacitances(capacitance))
     }
 
     /// That no voltage, current or energy has left the range of numbers, as it does beside a capacitance of 1e308 F.
@@ -145,15 +185,20 @@ impl Circuit {
 
     fn advance_ideal(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
         let mut network = self.network();
-        let ends = self.node_capacitances(capacitance);
-        if dt == 0.0 {
-            network.jump(ends);
-        } else {
-            network.advance(dt, ends).ok_or(Error::TooManyEvents { time: self.state.time, step: dt, bound: EVENTS })?;
-        }
+        self.advance_network(&mut network, dt, capacitance)?;
         self.accept(network);
         self.update_ideal_outputs(&network);
         Ok(())
+    }
+
+    /// Lets `dt` seconds pass in the `network` of this circuit.
+    fn advance_network(&self, network: &mut Network, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+        let ends = self.node_capacitances(capacitance);
+        if dt == 0.0 {
+            network.jump(ends);
+            return Ok(());
+        }
+        network.advance(dt, ends).ok_or(Error::TooManyEvents { time: self.state.time, step: dt, bound: EVENTS })
     }
 
     fn advance_exponential<const LEAKS: bool>(
@@ -209,7 +254,10 @@ impl Circuit {
 
     /// Voltages `U_DE` of the membranes, left and right (V).
     pub fn voltage(&self) -> [f64; 2] {
-        let nodes = self.state.nodes(self.parameters.nodes());
+        self.voltages(&self.state.nodes(self.parameters.nodes()))
+    }
+
+    fn voltages(&self, nodes: &[Node; 2]) -> [f64; 2] {
         match self.parameters.topology {
             Topology::SharedNode => [nodes[0].voltage(); 2],
             Topology::Isolated => nodes.map(|node| node.voltage()),
@@ -316,7 +364,31 @@ impl Circuit {
     }
 }
 
+/// Whether one of the capacitances, or their sum, which had not turned round before, does so at the last knot but one of
+/// `knots`. From the first on: between a rise and a fall, two knots may be equal.
+fn turns(knots: &[[f64; 2]]) -> bool {
+    let [first, .., here, after] = knots else { return false };
+    let steps = |a: &[f64; 2], b: &[f64; 2]| [b[0] - a[0], b[1] - a[1], b[0] + b[1] - a[0] - a[1]];
+    steps(first, here).iter().zip(steps(here, after)).any(|(so_far, next)| so_far * next < 0.0)
+}
+
 fn check_capacitances([left, right]: [f64; 2]) -> Result<(), Error> {
     positive(names::LEFT_CAPACITANCE, left, "F")?;
     positive(names::RIGHT_CAPACITANCE, right, "F")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_is_seen_in_each_capacitance_and_in_the_sum_and_behind_a_plateau() {
+        let turn = |knots: &[[f64; 2]]| turns(&knots.iter().map(|c| c.map(|c| c * 1e-12)).collect::<Vec<_>>());
+        assert!(turn(&[[1.0, 1.0], [2.0, 1.0], [1.0, 1.0]]));
+        assert!(turn(&[[1.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0, 1.0]]));
+        assert!(turn(&[[1.0, 5.0], [4.0, 4.0], [5.0, 1.0]]));
+        assert!(!turn(&[[1.0, 1.0], [1.0, 1.0], [2.0, 1.0]]));
+        assert!(!turn(&[[1.0, 1.0], [2.0, 3.0], [2.0, 3.0], [3.0, 4.0]]));
+        assert!(!turn(&[[1.0, 1.0], [2.0, 2.0]]));
+    }
 }

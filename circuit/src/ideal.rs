@@ -3,7 +3,7 @@
 
 use crate::network::{NOISE, Network};
 use crate::parameters::Release;
-use crate::release::Discharge;
+use crate::release::{Discharge, Span};
 use crate::roots::Curve;
 use crate::state::{Mode, Node};
 
@@ -44,11 +44,13 @@ impl Network {
         let mut remaining = dt;
         self.change(Self::settle);
         for _ in 0..EVENTS {
-            let Some((t, event)) = self.next_event(remaining) else {
-                self.flow(remaining, ends);
+            let discharge = self.discharge().map(|leader| (leader, leader.span(remaining)));
+            let Some((t, event)) = self.next_event(remaining, discharge) else {
+                self.flow(remaining, ends, discharge);
                 return Some(());
             };
-            self.flow(t, self.nodes.map(|node| node.capacitance + node.rate * t));
+            let discharge = discharge.map(|(leader, _)| (leader, leader.span(t)));
+            self.flow(t, self.nodes.map(|node| node.capacitance + node.rate * t), discharge);
             remaining -= t;
             self.change(|network| {
                 network.apply(event);
@@ -66,13 +68,13 @@ impl Network {
         self.events += changed.count() as u64;
     }
 
-    /// The first switching instant within `span` seconds.
-    fn next_event(&self, span: f64) -> Option<(f64, Event)> {
-        let discharge = self.discharge();
+    /// The first switching instant within `span` seconds, in which the releasing nodes have this `discharge` if there is none.
+    fn next_event(&self, span: f64, discharge: Option<(Discharge, Span)>) -> Option<(f64, Event)> {
         let leaks = self.elements.leak > 0.0;
         let threshold = self.elements.threshold;
         // Without a leak the load voltage is monotonic: mostly its least value tells that nothing happens.
-        let lowest = discharge.filter(|_| !leaks).map_or(0.0, |leader| least(leader.excess, leader.excess_at(span)));
+        let lowest = discharge.filter(|_| !leaks).map_or(0.0, |(leader, whole)| least(leader.excess, whole.excess));
+        let discharge = discharge.map(|(leader, _)| leader);
         let fall = discharge.and_then(|leader| {
             if leaks {
                 return leader.time_to_leak_to(threshold, span);

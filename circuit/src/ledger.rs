@@ -48,6 +48,22 @@ impl Ledger {
         self.load - self.supply
     }
 
+    /// Mean flows since the ledger was `before`, `time` seconds ago: powers (W), and currents (A) in place of charges.
+    pub fn flows_since(&self, before: &Self, time: f64) -> Self {
+        let rate = |of: fn(&Self) -> f64| (of(self) - of(before)) / time;
+        Self {
+            supply: rate(|it| it.supply),
+            load: rate(|it| it.load),
+            zener: rate(|it| it.zener),
+            diode: rate(|it| it.diode),
+            leakage: rate(|it| it.leakage),
+            stored: rate(|it| it.stored),
+            mechanical: rate(|it| it.mechanical),
+            supply_charge: rate(|it| it.supply_charge),
+            load_charge: rate(|it| it.load_charge),
+        }
+    }
+
     /// Difference of the two sums of what the mechanics gave (J): converted - mechanical; zero but for rounding
     /// (ideal diodes) or the integrator's tolerance (exponential diodes).
     pub fn residual(&self) -> f64 {

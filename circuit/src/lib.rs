@@ -23,6 +23,7 @@ mod node_equations;
 mod parameters;
 mod release;
 mod roots;
+mod sample;
 mod settings;
 mod state;
 
@@ -30,5 +31,6 @@ pub use circuit::Circuit;
 pub use error::{Error, Failure};
 pub use ledger::Ledger;
 pub use parameters::{DiodeParameters, Diodes, Parameters, Release, Solver, Topology, names};
+pub use sample::CircuitSample;
 pub use settings::{Choice, Quantity, Settings};
 pub use state::State;

@@ -2,7 +2,7 @@
 
 use crate::ledger::Ledger;
 use crate::parameters::{Parameters, Release};
-use crate::release::Discharge;
+use crate::release::{Discharge, Span};
 use crate::state::{Mode, Node};
 
 /// Relative size of what rounding may do to a comparison of two nodes.
@@ -117,6 +117,16 @@ impl Network {
         own.capacitance * other.rate - other.capacitance * own.rate
     }
 
+    /// Whether what happens while the capacitances go to `ends` without turning round follows from where they end, see
+    /// [`Circuit::is_path_independent`](crate::Circuit::is_path_independent).
+    pub fn is_path_independent(&self, ends: [f64; 2]) -> bool {
+        let Elements { threshold, leak, .. } = self.elements;
+        let is_calm = |(node, end): (&Node, f64)| {
+            node.mode != Mode::Releasing && (self.elements.open() || node.charge <= threshold * end)
+        };
+        leak == 0.0 && self.nodes[..self.count].iter().zip(ends).all(is_calm)
+    }
+
     /// Current into node `j` that holds its voltage, over this voltage (S): `k + l C` with the rate `l` of the leak.
     #[inline]
     pub fn drift(&self, j: usize) -> f64 {
@@ -206,11 +216,11 @@ impl Network {
         (drawn + pushed, drawn.abs() + pushed.abs())
     }
 
-    /// Lets `t` seconds pass in the present modes, the capacitances running to `ends`.
-    pub fn flow(&mut self, t: f64, ends: [f64; 2]) {
-        let work = self.discharge().map(|d| {
-            self.excess = d.excess_at(t).max(0.0);
-            d.work(t)
+    /// Lets `t` seconds pass in the present modes, the capacitances running to `ends`; `discharge` is that of these seconds.
+    pub fn flow(&mut self, t: f64, ends: [f64; 2], discharge: Option<(Discharge, Span)>) {
+        let work = discharge.map(|(discharge, span)| {
+            self.excess = span.excess.max(0.0);
+            discharge.work(&span)
         });
         for (j, end) in ends.into_iter().enumerate().take(self.count) {
             if self.elements.leak > 0.0 {

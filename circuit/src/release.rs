@@ -35,6 +35,17 @@ pub(crate) struct Discharge {
     pub leak: f64,
 }
 
+/// A stretch of time from the start of a [`Discharge`] on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span {
+    /// Length (s).
+    pub t: f64,
+    /// The same as logarithmic time (s/F); not worked out with a leak.
+    tau: f64,
+    /// Load voltage `w` at the end (V).
+    pub excess: f64,
+}
+
 /// Integrals over a span of a [`Discharge`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Work {
@@ -77,6 +88,16 @@ impl Discharge {
     /// Capacitance after `t` seconds (F).
     pub fn capacitance_at(&self, t: f64) -> f64 {
         self.capacitance + self.rate * t
+    }
+
+    /// The first `t` seconds.
+    #[inline]
+    pub fn span(&self, t: f64) -> Span {
+        if self.leak > 0.0 {
+            return Span { t, tau: f64::NAN, excess: self.leaking_excess_at(t) };
+        }
+        let tau = self.tau(t);
+        Span { t, tau, excess: self.excess_at_tau(tau) }
     }
 
     /// Load voltage `w` after `t` seconds (V).
@@ -157,13 +178,13 @@ impl Discharge {
         Some(self.time((above / pull * stretch).max(0.0)))
     }
 
-    /// Energies over the first `t` seconds.
+    /// Energies over a span.
     #[inline]
-    pub fn work(&self, t: f64) -> Work {
+    pub fn work(&self, span: &Span) -> Work {
         if self.leak > 0.0 {
-            return self.leaking_work(t);
+            return self.leaking_work(span.t);
         }
-        let tau = self.tau(t);
+        let tau = span.tau;
         let a_tau = (self.decay() * tau).abs();
         let (load, field) = if self.drop == 0.0 {
             // One exponential: there is nothing to multiply out.
@@ -250,7 +271,7 @@ mod tests {
         let d = discharge(0.0, 1e9, 2000.0, 2100.0);
         assert_relative_eq!(d.excess_at(0.03), 100.0 * (-1.0_f64).exp(), max_relative = 1e-14);
         let energy = 0.5 * 30e-12 * 1e4 * (1.0 - (-2.0_f64).exp());
-        assert_relative_eq!(d.work(0.03).load, energy, max_relative = 1e-13);
+        assert_relative_eq!(d.work(&d.span(0.03)).load, energy, max_relative = 1e-13);
     }
 
     #[test]
@@ -275,7 +296,7 @@ mod tests {
                 let tau = part * SHORT / (2.0 * d.decay().abs() + rate.abs());
                 let (load, field) = d.squares_on_panel(tau, 0.5 * tau, &GAUSS_LEGENDRE_8);
                 let t = d.time(tau);
-                let work = d.work(t);
+                let work = d.work(&d.span(t));
                 let scale = d.conductance * d.capacitance;
                 assert_relative_eq!(work.load, scale * load, max_relative = 2e-14);
                 assert_relative_eq!(work.mechanical, -0.5 * rate * d.capacitance * field, max_relative = 2e-14);
@@ -291,7 +312,7 @@ mod tests {
             for offset in [1e-9, -1e-9] {
                 let near = discharge(singular + offset / resistance, resistance, 2000.0, 2100.0);
                 assert_relative_eq!(at.excess_at(t), near.excess_at(t), max_relative = 1e-7);
-                assert_relative_eq!(at.work(t).load, near.work(t).load, max_relative = 1e-7);
+                assert_relative_eq!(at.work(&at.span(t)).load, near.work(&near.span(t)).load, max_relative = 1e-7);
             }
         }
     }
@@ -323,7 +344,7 @@ mod tests {
         for resistance in [1e-250, 1e-3, 1e250] {
             for rate in [-1e-10, 0.0, 1e-10] {
                 let d = discharge(rate, resistance, 2000.0, 2000.5);
-                let work = d.work(0.1);
+                let work = d.work(&d.span(0.1));
                 assert!(d.excess_at(0.1).is_finite() && work.load.is_finite());
                 assert!(work.mechanical.is_finite());
             }

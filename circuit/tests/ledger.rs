@@ -64,6 +64,36 @@ proptest! {
     }
 
     #[test]
+    fn lines_in_one_call_are_those_of_a_call_each(
+        parameters in parameters(),
+        ramps in ramps(),
+        length in prop_oneof![Just(0.0), 1e-6..1.0_f64],
+    ) {
+        let knots: Vec<[f64; 2]> = std::iter::once(START).chain(ramps.iter().map(|(_, ends)| *ends)).collect();
+        let (mut one, mut many) = [(); 2].map(|()| Circuit::new(parameters, START).unwrap()).into();
+        let (mut throughput, mut voltages) = (0.0, Vec::new());
+        for ends in &knots[1..] {
+            let before = many.ledger();
+            many.advance(length * (1.0 / ramps.len() as f64), *ends).unwrap();
+            throughput += moved(&common::difference(&many.ledger(), &before));
+            voltages.push(many.voltage());
+        }
+        let mut ends = Vec::new();
+        one.advance_along(length, &knots, |k, seen| ends.push((k, seen))).unwrap();
+        prop_assert_eq!(ends.last().map(|end| end.0), Some(ramps.len()));
+        let is_exact = parameters.leakage_time_constant > 0.0;
+        prop_assert!(!is_exact || ends.len() == ramps.len());
+        for (k, seen) in ends {
+            for (a, b) in seen.into_iter().zip(voltages[k - 1]) {
+                prop_assert!((a - b).abs() <= 1e-11 * b && (!is_exact || a == b), "{a} V and {b} V at knot {k}");
+            }
+        }
+        let off = moved(&common::difference(&one.ledger(), &many.ledger()));
+        prop_assert!(off <= 1e-11 * throughput && (!is_exact || off == 0.0), "{:?}, {:?}", one.ledger(), many.ledger());
+        prop_assert_eq!(one.capacitance(), many.capacitance());
+    }
+
+    #[test]
     fn voltages_stay_between_the_elements(parameters in parameters(), ramps in ramps()) {
         let mut circuit = Circuit::new(parameters, START).unwrap();
         for &(dt, ends) in &ramps {

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use indexmap::IndexMap;
 use serde::Serialize;
+use videg_coupled::OVER_LIMITS;
 use videg_report::{Report, Section};
 
 use super::format::{Sheet, significant};
 use super::{output, run_output};
 use crate::artefact::Picture;
-use crate::coupled::OVER_LIMITS;
 use crate::map::{ClosedForms, Map, Plan, Point, scaled_unit};
 use crate::sweep;
 

@@ -20,18 +20,7 @@ pub struct Flows {
 impl Flows {
     /// The flows over `window`, s, from the sums at its edges.
     pub(super) fn over([from, to]: [f64; 2], energies: [Option<Energies>; 2], ledgers: [Option<&Ledger>; 2]) -> Self {
-        let rate = |before: f64, after: f64| (after - before) / (to - from);
-        let circuit = ledgers[0].zip(ledgers[1]).map(|(before, after)| Ledger {
-            supply: rate(before.supply, after.supply),
-            load: rate(before.load, after.load),
-            zener: rate(before.zener, after.zener),
-            diode: rate(before.diode, after.diode),
-            leakage: rate(before.leakage, after.leakage),
-            stored: rate(before.stored, after.stored),
-            mechanical: rate(before.mechanical, after.mechanical),
-            supply_charge: rate(before.supply_charge, after.supply_charge),
-            load_charge: rate(before.load_charge, after.load_charge),
-        });
+        let circuit = ledgers[0].zip(ledgers[1]).map(|(before, after)| after.flows_since(before, to - from));
         let mechanics = energies[0].zip(energies[1]).map(|(before, after)| {
             let [before, after] = [before, after].map(|energies| energies.map(|energy| energy / (to - from)));
             EnergyBalance::new(before, after, &circuit.unwrap_or_default())

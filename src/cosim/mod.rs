@@ -32,7 +32,6 @@ mod signal;
 mod spectrum;
 mod summary;
 
-pub use crate::circuit_sample::CircuitSample;
 pub use balance::EnergyBalance;
 pub use circuit::CircuitSlave;
 pub use circuit_fmu::{FmuCircuit, ForeignCircuit};
@@ -56,5 +55,7 @@ pub use run::{CircuitSolver, Cosimulation, LabelledCircuit, Options, Results, ru
 pub(crate) use schedule::Schedule;
 pub use series::{Sample, SeriesFormat, SeriesOptions, SeriesRecorder};
 pub(crate) use settings::{CircuitRequest, label, voltage_warning};
-pub(crate) use summary::{Averages, Gains};
-pub use summary::{Charges, CircuitSummary, Energies, MechanicsSummary, Powers};
+pub use summary::{Charges, CircuitSummary, Energies, MechanicsSummary};
+pub use videg_circuit::CircuitSample;
+pub use videg_coupled::Powers;
+pub(crate) use videg_coupled::{Averages, Gains};

@@ -1,8 +1,8 @@
 //! Numbers of a point of a map, from the rows of its samples.
 
 use csv::StringRecord;
+use videg_coupled::OVER_LIMITS;
 
-use crate::coupled::OVER_LIMITS;
 use crate::sweep::{Sweep, Type};
 
 /// The columns of the results that a point has a number of.

@@ -1,11 +1,11 @@
 //! The map that a user asks for, checked.
 
 use fmu_import::ModelDescription;
+use videg_coupled::OVER_LIMITS;
 
 use super::axis::{Axis, labelled};
 use super::columns::{Cell, Columns, largest};
 use super::error::MapError;
-use crate::coupled::OVER_LIMITS;
 use crate::scenario::Scenario;
 use crate::sweep::{self, Design, Engine, POWERS, Sampling, Sweep, System, Times, Vary};
 

@@ -5,11 +5,10 @@
 //! and the flows take it in proportion to the change of their currents. Integrators within the netlist would have tolerances
 //! of their own and would weigh in the control of the step.
 
-use videg_circuit::{Ledger, Release, Topology};
+use videg_circuit::{CircuitSample, Ledger, Release, Topology};
 
 use super::capacitance::PICO;
 use super::elements::{Elements, Start};
-use crate::circuit_sample::CircuitSample;
 
 /// The circuit at one time point of ngspice.
 #[derive(Debug, Clone, Copy, Default)]

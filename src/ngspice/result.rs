@@ -2,12 +2,13 @@
 
 use std::io::BufRead;
 
+use videg_circuit::CircuitSample;
+
 use super::capacitance::CapacitanceTable;
 use super::elements::{Elements, Start};
 use super::ledger::TrapezoidalLedger;
 use super::raw::RawReader;
 use super::{NgspiceError, Waveforms};
-use crate::circuit_sample::CircuitSample;
 
 /// Reads a run point by point and keeps the rows of the table.
 pub(super) struct ResultReader<'a> {

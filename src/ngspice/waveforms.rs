@@ -1,10 +1,9 @@
 //! Results: the circuit at the times of a table, from ngspice or from the embedded solver.
 
-use videg_circuit::{Circuit, Ledger, Parameters};
+use videg_circuit::{Circuit, CircuitSample, Ledger, Parameters};
 
 use super::NgspiceError;
 use super::capacitance::CapacitanceTable;
-use crate::circuit_sample::CircuitSample;
 
 /// A circuit over a run.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,12 +1,12 @@
 //! Circuits driven by one run of the harvester, and their mean power.
 
 use videg_circuit::{Ledger, Release, Settings, Topology};
+use videg_coupled::Impacts;
 
 use super::{PaperError, Study};
 use crate::cosim::{
     CircuitSlave, CosimError, Coupling, EmbeddedCircuit, HarvesterFmu, ImpactLog, Master, Observer, Row,
 };
-use crate::coupled::Impacts;
 use crate::scenario::{Request, Setting};
 
 /// A run of a case of the paper that drives circuits.

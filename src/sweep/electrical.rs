@@ -2,9 +2,9 @@
 
 use fmu_import::{Causality, FmiError, Kind, ModelDescription, Variability, Variable};
 use videg_circuit::Settings;
+use videg_coupled::OVER_LIMITS;
 
 use crate::cosim::CircuitSample;
-use crate::coupled::OVER_LIMITS;
 
 /// Mean powers over the averaging window, W, that runs with a circuit have.
 pub const POWERS: [&str; 3] = ["net_power", "load_power", "supply_power"];

@@ -118,9 +118,7 @@ impl Driven for Harvester {
     }
 
     fn gains(&self) -> Result<Gains, ModelError> {
-        let totals = self.totals();
-        let impacts = i32::try_from(totals.impacts).unwrap_or(i32::MAX);
-        Ok(Gains { voltage: totals.voltage_gain, energy: totals.energy, impacts })
+        Ok(Gains::from(self.totals()))
     }
 }
 

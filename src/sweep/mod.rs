@@ -43,6 +43,7 @@ mod sums;
 mod system;
 mod table;
 mod times;
+mod tracks;
 mod unfinished;
 mod vary;
 mod waves;

@@ -6,15 +6,16 @@ use std::sync::Arc;
 
 use fmu_import::{Fmu, Value, Variable};
 use videg_circuit::{Release, Settings, Topology, names};
-use videg_model::{ContactLaw, ForceTable, Parameters, Recording, Setup};
+use videg_coupled::{CoupledError, Film, Impacts, OVER_LIMITS, TOLERANCE, Times, Watch};
+use videg_model::{ContactLaw, ForceTable, Parameters, Recording};
 
 use super::electrical::POWERS;
 use super::instance::run_fmu;
 use super::plan::{Results, Run};
 use super::setter::Setter;
+use super::tracks::{Mechanics, Tracks};
 use super::{Sweep, SweepError};
 use crate::cosim::{CircuitRequest, CircuitSample};
-use crate::coupled::{self, Film, Impacts, OVER_LIMITS, TOLERANCE, Times};
 
 /// How a variable is set.
 #[derive(Clone, Copy)]
@@ -43,6 +44,7 @@ pub struct System {
     /// Whether the films are looked at.
     watches: bool,
     files: Files,
+    tracks: Tracks,
     /// The FMU and the recorded variables that it has, if there are any.
     harvester: Option<(Fmu, Vec<Variable>)>,
 }
@@ -59,12 +61,10 @@ pub struct DrivenImpacts {
 /// What a run is made from.
 #[derive(Clone)]
 struct Inputs {
-    parameters: Parameters,
+    mechanics: Mechanics,
     circuit: Settings,
     /// Quantities of the circuit that were asked for.
     given: Vec<&'static str>,
-    recording: Option<Arc<Recording>>,
-    table: Option<Arc<ForceTable>>,
 }
 
 /// Files by the names that the user gave.
@@ -87,11 +87,9 @@ impl System {
         }
         let mut files = Files::default();
         let mut base = Inputs {
-            parameters: Parameters::default(),
+            mechanics: Mechanics { parameters: Parameters::default(), recording: None, table: None },
             circuit: Settings::default(),
             given: Vec::new(),
-            recording: None,
-            table: None,
         };
         sweep.written().try_for_each(|(variable, value)| files.read(variable, sweep, value))?;
         base.set(sweep.settings.iter().map(|(variable, value)| (variable, value)), &files);
@@ -100,17 +98,17 @@ impl System {
         let mechanical: Vec<_> = mechanical.map(|(_, variable)| variable.clone()).collect();
         let harvester = if mechanical.is_empty() { None } else { Some((harvester()?, mechanical)) };
         let watches = record.iter().any(|it| matches!(it, Recorded::OverLimit(_)));
-        Ok(Self { base, record, watches, files, harvester })
+        Ok(Self { base, record, watches, files, tracks: Tracks::default(), harvester })
     }
 
     /// Impacts of sample number `sample` at these `values` of the varied variables, all of them Real; none under the compliant law, which
     /// has no closed forms. An error says why the run failed.
     pub fn impacts_at(&self, sweep: &Sweep, values: &[f64], sample: u64) -> Result<Option<DrivenImpacts>, String> {
         let inputs = self.inputs(sweep, &sweep.run_at(values, sample));
-        if inputs.parameters.contact_law != ContactLaw::Impulsive {
+        if inputs.mechanics.parameters.contact_law != ContactLaw::Impulsive {
             return Ok(None);
         }
-        let impacts = Impacts::of(inputs.setup(), sweep.times.window).map_err(|error| error.to_string())?;
+        let impacts = Impacts::of(inputs.mechanics.setup(), sweep.times.window).map_err(|error| error.to_string())?;
         Ok(Some(DrivenImpacts { impacts, topology: inputs.circuit.circuit.topology }))
     }
 
@@ -124,9 +122,14 @@ impl System {
     pub(super) fn run(&self, sweep: &Sweep, run: &Run) -> Result<Results, String> {
         let inputs = self.inputs(sweep, run);
         let times = Times { until: sweep.times.window[1], window: sweep.times.window, tolerance: TOLERANCE };
-        let mut film = self.watches.then(Film::default);
-        let outcome = inputs.run(&times, film.as_mut()).map_err(|error| error.to_string())?;
-        let over_limits = film.map_or([f64::NAN; OVER_LIMITS.len()], |film| film.over_limits());
+        let mut film = Film::default();
+        let outcome = if self.watches {
+            inputs.run(&times, &self.tracks, &mut film)
+        } else {
+            inputs.run(&times, &self.tracks, &mut ())
+        };
+        let outcome = outcome.map_err(|error| error.to_string())?;
+        let over_limits = film.over_limits();
         let mechanical = self.harvester.as_ref().map(|(fmu, record)| run_fmu(fmu, sweep, run, record));
         let mut mechanical =
             mechanical.transpose().map_err(|error| error.to_string())?.map(|results| results.recorded.into_iter());
@@ -205,7 +208,7 @@ impl Inputs {
     fn set<'a>(&mut self, values: impl Iterator<Item = (&'a Variable, &'a Value)>, files: &Files) {
         for (variable, value) in values {
             match (SystemSetter::of(variable), value) {
-                (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.parameters, value),
+                (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.mechanics.parameters, value),
                 (Some(SystemSetter::Quantity(name, set)), Value::Real(number)) => {
                     set(&mut self.circuit, *number);
                     self.given.push(name);
@@ -215,28 +218,31 @@ impl Inputs {
                     Value::Integer(number) | Value::Enumeration { value: number, .. },
                 ) => set(&mut self.circuit, *number),
                 (Some(SystemSetter::Recording), Value::String(name)) => {
-                    self.recording = files.recordings.get(name).cloned();
+                    self.mechanics.recording = files.recordings.get(name).cloned();
                 }
-                (Some(SystemSetter::Table), Value::String(name)) => self.table = files.tables.get(name).cloned(),
+                (Some(SystemSetter::Table), Value::String(name)) => {
+                    self.mechanics.table = files.tables.get(name).cloned();
+                }
                 // `System::new` has refused others, and no value of a variable is of another type than the variable.
                 _ => debug_assert!(false, "{} = {value} of type {}", variable.name, value.type_name()),
             }
         }
     }
 
-    fn setup(&self) -> Setup<'_> {
-        self.parameters.with_recording(self.recording.as_deref()).with_table(self.table.as_deref())
-    }
-
-    fn run(&self, times: &Times, film: Option<&mut Film>) -> Result<coupled::Results, coupled::CoupledError> {
-        let setup = self.setup();
+    fn run<W: Watch>(
+        &self,
+        times: &Times,
+        tracks: &Tracks,
+        watch: &mut W,
+    ) -> Result<videg_coupled::Results, CoupledError> {
+        let setup = self.mechanics.setup();
         let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
         let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
         let ratio = if chooses { Impacts::of(setup, [0.0, times.until])?.best_ratio() } else { 1.0 };
-        let settings = request.resolve(self.parameters.bias_voltage, ratio);
-        match film {
-            Some(film) => coupled::run_watched(setup, &settings, times, film),
-            None => coupled::run(setup, &settings, times),
+        let settings = request.resolve(self.mechanics.parameters.bias_voltage, ratio);
+        match tracks.of(&self.mechanics, times)? {
+            Some(track) => track.run(&settings, watch),
+            None => videg_coupled::run_watched(setup, &settings, times, watch),
         }
     }
 }

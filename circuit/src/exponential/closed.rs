@@ -356,9 +356,10 @@ impl Ramp {
         let [half, whole] = [middle, last].map(growth);
         let mean = (4.0 * half + whole) / 6.0;
         let fine = discharge(drop + mean);
-        let voltage = fine.excess_at(h) + fine.drop;
+        let span = fine.span(h);
+        let voltage = span.excess + fine.drop;
         let after = voltage - (drop + whole);
-        let (work, gone) = (fine.work(h), self.charge - to * voltage);
+        let (work, gone) = (fine.work(&span), self.charge - to * voltage);
         let part = from.max(to) * (g * h / from.min(to)).min(1.0);
         let missed = part * ((half - 0.5 * whole).abs() + mean.abs() * (steep / excess.min(after)).abs());
         let turned = (d.charging(voltage).0 - supplied).abs() * h;

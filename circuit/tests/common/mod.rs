@@ -58,17 +58,7 @@ pub fn last_cycle(circuit: &mut Circuit, ramps: &[Ramp], cycles: usize) -> Ledge
 }
 
 pub fn difference(a: &Ledger, b: &Ledger) -> Ledger {
-    Ledger {
-        supply: a.supply - b.supply,
-        load: a.load - b.load,
-        zener: a.zener - b.zener,
-        diode: a.diode - b.diode,
-        leakage: a.leakage - b.leakage,
-        stored: a.stored - b.stored,
-        mechanical: a.mechanical - b.mechanical,
-        supply_charge: a.supply_charge - b.supply_charge,
-        load_charge: a.load_charge - b.load_charge,
-    }
+    a.flows_since(b, 1.0)
 }
 
 /// Sum of all energies, the scale of the ledger's error.

@@ -1,6 +1,6 @@
 //! The outputs of a circuit; they are the same for every solver.
 
-use videg_circuit::{Circuit, Ledger};
+use crate::{Circuit, Ledger};
 
 /// Outputs of a circuit at one communication point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

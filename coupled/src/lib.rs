@@ -1,0 +1,145 @@
+//! Harvester and embedded circuit in one process, without communication steps: the energies of a co-simulation in its limit of small
+//! steps, as fast as C(t) can be worked out.
+//!
+//! The harvester goes from knot to knot of C(t): begins, peaks and ends of pulses. Between two knots the circuit gets C(t) as straight
+//! lines, as many as keep their distance from C(t) below a bound; at the knots C(t) is exact, and the circuit is exact on each line.
+//! A [`Track`] keeps C(t), so that many circuits can follow it.
+#![forbid(unsafe_code)]
+
+mod averages;
+mod film;
+mod impacts;
+mod mechanics;
+mod pulses;
+mod track;
+
+use thiserror::Error;
+use videg_circuit::{Circuit, CircuitSample, Ledger, Settings};
+use videg_model::{ModelError, Setup};
+
+pub use averages::{Averages, Gains, Powers};
+pub use film::{Film, OVER_LIMITS, Watch};
+pub use impacts::Impacts;
+use mechanics::{Follower, Mechanics, Piece};
+pub use track::Track;
+
+/// Bound of the distance of the straight lines from C(t), over C(t), unless another is asked for.
+pub const TOLERANCE: f64 = 1e-3;
+
+/// Why a coupled run failed.
+#[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the message of each variant names its fields")]
+pub enum CoupledError {
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    Circuit(#[from] videg_circuit::Error),
+    #[error(
+        "contact.electrostaticFeedback = true: the voltages do not act back in a sweep; allowed: false, or videg cosim"
+    )]
+    Feedback,
+}
+
+/// When a run ends, what it averages over, and how closely the circuit follows C(t).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
+    /// End of the run, s.
+    pub until: f64,
+    /// Averaging window, s.
+    pub window: [f64; 2],
+    /// Bound of the distance of the lines from C(t), over C(t).
+    pub tolerance: f64,
+}
+
+/// Results of a coupled run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Results {
+    /// Of the mechanics, over the window.
+    pub averages: Averages,
+    /// Of the circuit, over the window.
+    pub powers: Powers,
+    /// The circuit at the end.
+    pub circuit: CircuitSample,
+    /// Straight lines that the circuit was given.
+    pub lines: u64,
+}
+
+/// Runs the harvester of `setup` with a circuit of `settings` from 0 s on, both membranes charged.
+///
+/// # Errors
+/// Parameters that harvester or circuit refuse; electrostatic feedback; more events than can be resolved.
+pub fn run<'a>(setup: impl Into<Setup<'a>>, settings: &Settings, times: &Times) -> Result<Results, CoupledError> {
+    run_watched(setup, settings, times, &mut ())
+}
+
+/// The same, while `watch` looks at the films.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_watched<'a>(
+    setup: impl Into<Setup<'a>>,
+    settings: &Settings,
+    times: &Times,
+    watch: &mut impl Watch,
+) -> Result<Results, CoupledError> {
+    let mut mechanics = Mechanics::new(setup.into(), times.tolerance)?;
+    watch.begin(mechanics.membrane());
+    let mut electrics = Electrics::new(settings, mechanics.now(), watch)?;
+    let [before, after] = times.window;
+    let before = mechanics.follow(before, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;
+    let after = mechanics.follow(after, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;
+    mechanics.follow(times.until, &mut electrics)?;
+    let averages = Averages::over(times.window, &before.0, &after.0);
+    Ok(electrics.results(averages, times.window, [before.1, after.1]))
+}
+
+/// The circuit of a run, which follows C(t).
+struct Electrics<'w, W> {
+    circuit: Circuit,
+    watch: &'w mut W,
+    lines: u64,
+}
+
+impl<'w, W: Watch> Electrics<'w, W> {
+    /// A circuit of `settings` with charged membranes, where `start` ends.
+    fn new(settings: &Settings, start: Piece<'_>, watch: &'w mut W) -> Result<Self, CoupledError> {
+        let circuit = Circuit::new(settings.parameters(), start.end())?;
+        watch.look(start.deflection(0), circuit.voltage());
+        Ok(Self { circuit, watch, lines: 0 })
+    }
+
+    fn results(&self, averages: Averages, window: [f64; 2], [before, after]: [Ledger; 2]) -> Results {
+        Results {
+            averages,
+            powers: Powers::over(window, &before, &after),
+            circuit: CircuitSample::from(&self.circuit),
+            lines: self.lines,
+        }
+    }
+}
+
+impl<W: Watch> Follower for Electrics<'_, W> {
+    type Error = CoupledError;
+
+    const LOOKS: bool = W::LOOKS;
+
+    fn needs_ends_only(&self, last: [f64; 2]) -> bool {
+        self.circuit.is_path_independent(last)
+    }
+
+    fn take(&mut self, piece: Piece<'_>) -> Result<(), CoupledError> {
+        let Self { circuit, watch, lines } = self;
+        let last = piece.capacitances.len() - 1;
+        if piece.is_monotone && circuit.is_path_independent(piece.end()) {
+            circuit.advance(piece.length, piece.end())?;
+            watch.look(piece.deflection(last), circuit.voltage());
+            *lines += 1;
+            return Ok(());
+        }
+        circuit.advance_along(piece.length, piece.capacitances, |k, voltages| {
+            watch.look(piece.deflection(k), voltages);
+            *lines += 1;
+        })?;
+        Ok(())
+    }
+}
