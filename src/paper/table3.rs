@@ -49,7 +49,7 @@ struct Compared {
     power: f64,
     /// Impacts in the window by the FMU.
     impacts: i32,
-    /// The paper's method, in the order of [`STEPS`].
+    /// The paper's method, in the order of [`STEPS`], of which a quick look has the first ones.
     stepped: Vec<Stepped>,
 }
 
@@ -108,8 +108,10 @@ fn compare(study: &Study<'_>) -> Result<Vec<Compared>, PaperError> {
         .map(|printed| Ok(Run { settings: Study::case(printed.case)?, window: WINDOW }))
         .collect::<Result<Vec<_>, PaperError>>()?;
     let averages = study.averages(&runs)?;
+    // A quick look goes to the paper's step; each after it takes twice as long as the one before.
+    let steps = study.effort.of(STEPS.len(), 1 + STEPS.iter().position(|&step| step == STEP).unwrap_or_default());
     // The longest first, so that all cores end together.
-    let tasks: Vec<_> = STEPS.iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
+    let tasks: Vec<_> = STEPS[..steps].iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
     let mut stepped = study.each(&tasks, |(printed, step)| {
         let parameters = Case::find(printed.case).map(|case| (case.parameters)());
         Ok(parameters.and_then(|p| FixedStep::new(&p, &[p.ball_velocity], *step).run(WINDOW).pop()))
@@ -192,16 +194,22 @@ fn sheet(compared: &[Compared]) -> Sheet {
         let of = |c: &Compared| [c.stepped[k].power, c.stepped[k].impacts as f64, c.power, f64::from(c.impacts)];
         std::iter::once(*step).chain(compared.iter().flat_map(of)).collect()
     };
-    Sheet::new("table3", columns, STEPS.iter().enumerate().map(row))
+    Sheet::new("table3", columns, steps(compared).iter().enumerate().map(row))
+}
+
+/// Those of [`STEPS`] that were taken.
+fn steps(compared: &[Compared]) -> &'static [f64] {
+    &STEPS[..compared.first().map_or(0, |it| it.stepped.len())]
 }
 
 fn picture(compared: &[Compared]) -> Result<Picture, PaperError> {
-    let ends = [STEPS[0], STEPS[STEPS.len() - 1]];
+    let steps = steps(compared);
+    let ends = [steps[0], steps[steps.len() - 1]];
     let curves: Vec<_> = compared
         .iter()
         .map(|c| {
             let over_steps = |value: fn(&Stepped) -> f64| -> Vec<_> {
-                STEPS.iter().zip(&c.stepped).map(|(&step, stepped)| (step, value(stepped))).collect()
+                steps.iter().zip(&c.stepped).map(|(&step, stepped)| (step, value(stepped))).collect()
             };
             let exact = |value: f64| ends.map(|step| (step, value));
             let impacts = (over_steps(|stepped| stepped.impacts as f64), exact(f64::from(c.impacts)));
