@@ -44,7 +44,11 @@ pub fn is_electrical(variable: &Variable) -> bool {
     POWERS.contains(&name) || OVER_LIMITS.contains(&name) || names.any(|known| known == name)
 }
 
+/// Energy that the mechanics gave, which follows from the others.
+pub const CONVERTED: &str = "converted.energy";
+
 /// Outputs of the circuit alone: the names of the others are those of inputs of the harvester.
 fn outputs() -> impl Iterator<Item = &'static str> {
-    CircuitSample::NAMES.into_iter().filter(|name| !matches!(*name, "left.voltage" | "right.voltage"))
+    let alone = |name: &&str| !matches!(*name, "left.voltage" | "right.voltage");
+    CircuitSample::NAMES.into_iter().filter(alone).chain([CONVERTED])
 }

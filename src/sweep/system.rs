@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fmu_import::{Fmu, Value, Variable};
-use videg_circuit::{Release, Settings, Topology, names};
+use videg_circuit::{Choice, Release, Settings, Topology, names};
 use videg_coupled::{CoupledError, Film, Impacts, OVER_LIMITS, TOLERANCE, Times, Watch};
 use videg_model::{ContactLaw, ForceTable, Parameters, Recording};
 
-use super::electrical::POWERS;
+use super::electrical::{CONVERTED, POWERS};
 use super::instance::run_fmu;
 use super::plan::{Results, Run};
 use super::setter::Setter;
@@ -31,6 +31,11 @@ enum SystemSetter {
 enum Recorded {
     Power(usize),
     Circuit(usize),
+    /// What the mechanics gave.
+    Converted,
+    /// A parameter of the circuit.
+    Quantity(fn(&Settings) -> f64),
+    Choice(&'static Choice),
     /// How much is taken of a limit of the film.
     OverLimit(usize),
     /// A variable of the harvester, which its FMU tells.
@@ -123,10 +128,11 @@ impl System {
         let inputs = self.inputs(sweep, run);
         let times = Times { until: sweep.times.window[1], window: sweep.times.window, tolerance: TOLERANCE };
         let mut film = Film::default();
+        let settings = inputs.settings(&times).map_err(|error| error.to_string())?;
         let outcome = if self.watches {
-            inputs.run(&times, &self.tracks, &mut film)
+            inputs.run(&settings, &times, &self.tracks, &mut film)
         } else {
-            inputs.run(&times, &self.tracks, &mut ())
+            inputs.run(&settings, &times, &self.tracks, &mut ())
         };
         let outcome = outcome.map_err(|error| error.to_string())?;
         let over_limits = film.over_limits();
@@ -138,6 +144,9 @@ impl System {
         let value = |recorded: &Recorded| match recorded {
             Recorded::Power(index) => Value::Real(powers[*index]),
             Recorded::Circuit(index) => Value::Real(columns[*index]),
+            Recorded::Converted => Value::Real(outcome.circuit.ledger.converted()),
+            Recorded::Quantity(get) => Value::Real(get(&settings)),
+            Recorded::Choice(choice) => item(choice, &settings),
             Recorded::OverLimit(index) => Value::Real(over_limits[*index]),
             Recorded::Mechanical => mechanical.as_mut().and_then(Iterator::next).unwrap_or(Value::Real(f64::NAN)),
         };
@@ -172,9 +181,19 @@ impl Recorded {
             return Self::OverLimit(index);
         }
         // Beside a circuit, the voltages that the harvester takes are those that the circuit gives.
-        let index = CircuitSample::NAMES.iter().position(|output| *output == name);
-        index.map_or(Self::Mechanical, Self::Circuit)
+        let output = CircuitSample::NAMES.iter().position(|output| *output == name).map(Self::Circuit);
+        let quantity = || Settings::QUANTITIES.iter().find(|it| it.name == name).map(|it| Self::Quantity(it.get));
+        let choice = || Settings::CHOICES.iter().find(|it| it.name == name).map(Self::Choice);
+        let converted = || (name == CONVERTED).then_some(Self::Converted);
+        output.or_else(converted).or_else(quantity).or_else(choice).unwrap_or(Self::Mechanical)
     }
+}
+
+/// The item that is chosen.
+fn item(choice: &Choice, settings: &Settings) -> Value {
+    let value = (choice.get)(settings);
+    let item = usize::try_from(value - 1).ok().and_then(|index| choice.items.get(index));
+    Value::Enumeration { value, name: item.map_or_else(String::new, |(name, _)| (*name).to_owned()) }
 }
 
 impl Files {
@@ -229,20 +248,24 @@ impl Inputs {
         }
     }
 
+    /// Those of the circuit, with what follows from the harvester where nothing else was asked for.
+    fn settings(&self, times: &Times) -> Result<Settings, CoupledError> {
+        let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
+        let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
+        let ratio = if chooses { Impacts::of(self.mechanics.setup(), [0.0, times.until])?.best_ratio() } else { 1.0 };
+        Ok(request.resolve(self.mechanics.parameters.bias_voltage, ratio))
+    }
+
     fn run<W: Watch>(
         &self,
+        settings: &Settings,
         times: &Times,
         tracks: &Tracks,
         watch: &mut W,
     ) -> Result<videg_coupled::Results, CoupledError> {
-        let setup = self.mechanics.setup();
-        let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
-        let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
-        let ratio = if chooses { Impacts::of(setup, [0.0, times.until])?.best_ratio() } else { 1.0 };
-        let settings = request.resolve(self.mechanics.parameters.bias_voltage, ratio);
         match tracks.of(&self.mechanics, times)? {
-            Some(track) => track.run(&settings, watch),
-            None => videg_coupled::run_watched(setup, &settings, times, watch),
+            Some(track) => track.run(settings, watch),
+            None => videg_coupled::run_watched(self.mechanics.setup(), settings, times, watch),
         }
     }
 }

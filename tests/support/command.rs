@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -34,6 +34,19 @@ pub fn done(command: &mut Command) -> Output {
     let output = command.output().unwrap();
     assert!(output.status.success(), "{command:?}: {}", stderr(&output));
     output
+}
+
+/// Runs a command to its end, after it has been killed again and again.
+#[allow(dead_code, reason = "not every test that includes this kills")]
+pub fn run_though_killed(command: impl Fn() -> Command) {
+    let mut random = fastrand::Rng::with_seed(5);
+    for _ in 0..8 {
+        let mut child = command().stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(random.u64(5..300)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    done(&mut command());
 }
 
 /// The JSON object of a command that must be done.

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::command::{assert_same_results, column, done, folder, json, refused, rows, stderr, sweep, videg};
+use crate::command::{
+    assert_same_results, column, done, folder, json, refused, rows, run_though_killed, stderr, sweep, videg,
+};
 
 /// The circuit with isolated membranes and a switch.
 const BETTER: [&str; 4] = ["--set", "topology=isolated", "--set", "release=switch"];
@@ -72,6 +74,84 @@ fn coupled_sweeps_have_the_same_bytes_in_shards_and_after_a_cut() {
     let said = json(&mut sweep(&cut, &what));
     assert!(said["resumed_from"].as_u64().unwrap() > 10, "{said}");
     assert_same_results(&whole, &cut);
+}
+
+#[test]
+fn a_coupled_sweep_that_is_killed_again_and_again_comes_to_the_same_bytes() {
+    let (_guard, folder) = folder();
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
+    let what =
+        [&BETTER[..], &["--vary", "membrane.restitution=0.3:0.9:40", "--vary", "zener.voltage=2100:2700:30"]].concat();
+    done(&mut sweep(&whole, &what));
+    run_though_killed(|| sweep(&killed, &what));
+    assert_same_results(&whole, &killed);
+}
+
+/// C(t) of a harvester that runs with many circuits is worked out once, whichever axis comes first and however many threads there are.
+#[test]
+fn the_order_of_runs_leaves_their_numbers() {
+    let (_guard, folder) = folder();
+    let films = [("0.3", "2100.0"), ("0.3", "2700.0"), ("0.6", "2100.0"), ("0.6", "2700.0")];
+    let axes = ["membrane.restitution=0.3,0.6", "zener.voltage=2100,2300,2500,2700"];
+    let of = |name: &str, order: [&str; 2], jobs: &str| {
+        let to = folder.join(name);
+        done(&mut sweep(&to, &[&BETTER[..], &["--vary", order[0], "--vary", order[1], "--jobs", jobs]].concat()));
+        let names = ["membrane.restitution", "zener.voltage", "net_power", "load_power", "average_voltage_gain"];
+        let mut rows: Vec<_> = (0..8).map(|k| names.map(|name| column(&to, name)[k].clone())).collect();
+        rows.sort();
+        rows
+    };
+    let one = of("one", axes, "1");
+    assert_eq!(one, of("two", axes, "2"));
+    assert_eq!(one, of("other", [axes[1], axes[0]], "2"));
+    for (k, (restitution, voltage)) in films.into_iter().enumerate() {
+        let (single, varied) = (folder.join(k.to_string()), format!("zener.voltage={voltage}"));
+        let set = format!("membrane.restitution={restitution}");
+        let set = ["--set", &set, "--vary", &varied];
+        done(&mut sweep(&single, &[&BETTER[..], &set].concat()));
+        let row = one.iter().find(|row| row[0] == restitution && row[1] == voltage).unwrap();
+        assert_eq!(column(&single, "net_power"), [row[2].clone()]);
+    }
+}
+
+/// What the two FMUs and the sweep have, by their own lists.
+#[test]
+fn every_variable_can_be_recorded_and_every_quantity_varied() {
+    let (_guard, folder) = folder();
+    let harvester = fmu_import::ModelDescription::parse(&description("VibroImpactHarvester"), "harvester").unwrap();
+    let circuit = fmu_import::ModelDescription::parse(&description("HarvestingCircuit"), "circuit").unwrap();
+    let variables = || harvester.variables.iter().chain(circuit.variables.iter().filter(|it| !it.is_input()));
+    let texts = |it: &&fmu_import::Variable| !matches!(it.kind, fmu_import::Kind::String { .. });
+    let mut names: Vec<String> = variables().filter(texts).map(|it| it.name.clone()).collect();
+    names.retain(|name| name != "switch.band");
+    names.extend(["net_power", "load_power", "supply_power", "field_over_limit"].map(str::to_owned));
+    names.sort();
+    names.dedup();
+    assert!(names.len() > 120, "{}", names.len());
+    let record: Vec<&str> = names.iter().flat_map(|name| ["--record", name]).collect();
+    done(&mut sweep(&folder.join("recorded"), &[&BETTER[..], &["--vary", "switch.band=0.02,0.03"], &record].concat()));
+    let head = rows(&folder.join("recorded"))[0].clone();
+    for name in &names {
+        assert!(head.contains(name), "{name} is not among {head:?}");
+    }
+    let mut varied = 0;
+    for variable in variables().filter(|it| it.is_settable()) {
+        let fmu_import::Kind::Real { start: Some(start), .. } = variable.kind else { continue };
+        let vary = format!("{}={start:?}", variable.name);
+        let to = folder.join(&variable.name);
+        let output = sweep(&to, &["--set", "topology=isolated", "--vary", &vary]).output().unwrap();
+        if variable.is_input() {
+            assert!(stderr(&output).contains("a sweep with a circuit cannot set it"), "{vary}: {}", stderr(&output));
+            continue;
+        }
+        assert!(output.status.success() || stderr(&output).contains("runs failed"), "{vary}: {}", stderr(&output));
+        varied += 1;
+    }
+    assert!(varied > 50, "{varied}");
+}
+
+fn description(name: &str) -> Vec<u8> {
+    fs::read(format!("{}/modelDescription/{name}.xml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 #[test]

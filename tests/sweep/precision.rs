@@ -1,9 +1,8 @@
 //! Sweeps that take samples until means are precise.
 
 use std::fs;
-use std::process::Stdio;
 
-use crate::command::{assert_same_results, done, folder, json, rows, stderr, sweep, videg};
+use crate::command::{assert_same_results, done, folder, json, rows, run_though_killed, stderr, sweep, videg};
 use crate::sweep::statistics::{NOISE, statistics};
 
 const WHAT: [&str; 4] = ["--vary", "membrane.restitution=0.3:0.9:4", "--until-precision", "0.004"];
@@ -71,14 +70,7 @@ fn killed_again_and_again_it_comes_to_the_same_bytes() {
     let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
     let what = [&WHAT[..], &NOISE, &["--samples", "200"]].concat();
     done(&mut sweep(&whole, &what));
-    let mut random = fastrand::Rng::with_seed(5);
-    for _ in 0..8 {
-        let mut child = sweep(&killed, &what).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(random.u64(5..300)));
-        child.kill().unwrap();
-        child.wait().unwrap();
-    }
-    done(&mut sweep(&killed, &what));
+    run_though_killed(|| sweep(&killed, &what));
     assert_same_results(&whole, &killed);
 }
 
