@@ -8,7 +8,7 @@ use clap::Args;
 use super::options::{Window, mechanical, parse_window};
 use super::sweep_cases::{cases, under};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
-use crate::sweep::{Case, POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
+use crate::sweep::{NamedCase, POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
 use fmu_import::{Bounds, ModelDescription};
 
 /// Options that describe a sweep. An option wins over the same key of the file.
@@ -126,13 +126,13 @@ impl What {
         cases: Vec<CaseFile>,
         description: &ModelDescription,
     ) -> anyhow::Result<Planned> {
-        let mut planned: Vec<(Case, Times)> = Vec::new();
+        let mut planned: Vec<(NamedCase, Times)> = Vec::new();
         for case in cases {
             let case = under(case, on_top);
             let step = self.step.or(case.step);
             let scenario = self.scenario(case, description, true)?;
             let times = Times { until: scenario.until, step, window: scenario.window };
-            let case = Case { name: scenario.name.clone(), settings: mechanical(description, &scenario, "sweep")? };
+            let case = NamedCase { name: scenario.name.clone(), settings: mechanical(description, &scenario, "sweep")? };
             if let Some((first, other)) = planned.first()
                 && *other != times
             {
@@ -189,7 +189,7 @@ impl What {
 struct Planned {
     name: String,
     settings: Vec<Setting>,
-    cases: Vec<Case>,
+    cases: Vec<NamedCase>,
     times: Times,
 }
 

@@ -14,7 +14,7 @@ pub const AXIS: &str = "case";
 
 /// A case to vary over.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct NamedCase {
     /// Its name.
     pub name: String,
     /// All that it sets; the last of a name wins.
@@ -36,7 +36,7 @@ impl Cases {
     /// The cases, and what all of them set alike. What is varied besides is left out.
     pub fn new(
         description: &ModelDescription,
-        cases: &[Case],
+        cases: &[NamedCase],
         vary: &[Vary],
     ) -> Result<(Self, Vec<Setting>), SweepError> {
         let all: Vec<_> = cases.iter().map(|case| not_varied(&case.settings, vary)).collect();
@@ -53,7 +53,7 @@ impl Cases {
             own.map(typed).collect::<Result<Vec<_>, _>>()
         };
         let mut named = IndexMap::new();
-        for (Case { name, .. }, settings) in cases.iter().zip(&all) {
+        for (NamedCase { name, .. }, settings) in cases.iter().zip(&all) {
             if named.insert(name.clone(), own(settings)?).is_some() {
                 let reason = format!("two cases are called {name}; give one another name by the key name of its file");
                 return Err(SweepError::option("vary", AXIS, reason));

@@ -48,7 +48,7 @@ mod unfinished;
 mod vary;
 mod waves;
 
-pub use cases::{AXIS as CASE_AXIS, Case};
+pub use cases::{AXIS as CASE_AXIS, NamedCase};
 pub use column::{Column, Type};
 pub use electrical::{POWERS, is_electrical};
 pub use engine::{BuiltIn, Engine};

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 
 use super::axis::Axis;
-use super::cases::{Case, Cases};
+use super::cases::{Cases, NamedCase};
 use super::column::{self, Column, Type};
 use super::document::Document;
 use super::electrical::is_electrical;
@@ -37,7 +37,7 @@ pub struct Request<'a> {
     /// Variables that are the same in all runs; the last of a name wins.
     pub settings: Vec<Setting>,
     /// Cases to vary over, in the order of the values of the axis `case`; none without it.
-    pub cases: Vec<Case>,
+    pub cases: Vec<NamedCase>,
     /// Times of a run.
     pub times: Times,
     /// Variables that are not; the last of a name wins.
