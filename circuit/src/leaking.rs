@@ -10,19 +10,10 @@
 //! Gauss-Legendre sums over pieces on which no exponent changes by more than 2: exact to rounding, as the closed forms
 //! without a leak are.
 
+use crate::quadrature::{PANEL, rule};
+
 /// Exponents beyond this leave nothing that rounding would keep.
 const FORGOTTEN: f64 = 45.0;
-
-/// Change of an exponent over which the rule is exact to rounding.
-const PANEL: f64 = 2.0;
-
-/// Positive nodes and their weights of the 8-point Gauss-Legendre rule (Abramowitz and Stegun, Table 25.4).
-pub(crate) const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
-];
 
 /// `(1 - exp(-b tau)) / b`, without cancellation where `b tau` is small or zero.
 pub(crate) fn phi(b: f64, tau: f64) -> f64 {
@@ -62,10 +53,10 @@ pub(crate) struct Integrals {
     pub energy: f64,
 }
 
-/// Applies the rule to `f` on `[from, from + length]`: `f` gets places and weights.
-fn quadrature(from: f64, length: f64, mut f: impl FnMut(f64, f64)) {
+/// Integrates over `[from, from + length]`, where exponents change by `change` at most: `f` gets places and weights.
+fn quadrature(from: f64, length: f64, change: f64, mut f: impl FnMut(f64, f64)) {
     let half = 0.5 * length;
-    for (x, weight) in GAUSS_LEGENDRE_8 {
+    for (x, weight) in rule(change) {
         f(from + half * (1.0 - x), weight * half);
         f(from + half * (1.0 + x), weight * half);
     }
@@ -110,7 +101,9 @@ impl Leaking {
         while back < tau && exponent(back) < FORGOTTEN {
             let present = capacitance * (-self.rate * back).exp();
             let length = self.panel(tau - back, a.abs() + self.rate.abs(), present, true);
-            quadrature(back, length, |x, weight| {
+            let most = present.max(present * (-self.rate * length).exp());
+            let change = length * (a.abs() + 2.0 * self.rate.abs() + self.leak * most);
+            quadrature(back, length, change, |x, weight| {
                 let pull = self.rate + self.conductance_after(capacitance, -x);
                 sum += weight * pull * (-exponent(x)).exp();
             });
@@ -134,7 +127,10 @@ impl Leaking {
             } else {
                 panel(tau - at, PANEL * k)
             };
-            quadrature(0.0, length, |x, weight| {
+            let end = capacitance * (self.rate * length).exp();
+            // The square of an excess, with up to three factors of the capacitance.
+            let change = length * (2.0 * (a.abs() + self.leak * capacitance.max(end)) + 3.0 * k);
+            quadrature(0.0, length, change, |x, weight| {
                 let present = capacitance * (self.rate * x).exp();
                 let w = self.excess_after(excess, present, x);
                 let v = w + self.drop;
@@ -149,7 +145,6 @@ impl Leaking {
                 break;
             }
             at += length;
-            let end = capacitance * (self.rate * length).exp();
             exponent += a * length + self.leak * (end * phi(self.rate, length));
             excess = self.excess_after(excess, end, length);
             capacitance = end;
@@ -211,16 +206,18 @@ mod tests {
             (-2.5e-9, 2.4e-9, 80.0, 2000.0),
         ] {
             let leaking = Leaking { rate, conductance, drop, leak };
-            let (t, excess) = (0.01, 300.0);
-            let (end, span) = (C + rate * t, tau(rate, t));
-            let v = [excess, leaking.excess_after(excess, end, span)].map(|w| w + drop);
-            let found = leaking.integrals(excess, C, span);
-            let passed = C * v[0] - end * v[1] - leak * found.charge;
-            // g w V = g w^2 + U_d g w
-            let spent = conductance * found.excess_squared + drop * passed + leak * found.energy;
-            let work = -0.5 * rate * found.voltage_squared;
-            let stored = 0.5 * (end * v[1] * v[1] - C * v[0] * v[0]);
-            assert_relative_eq!(work, stored + spent, max_relative = 1e-11, epsilon = 1e-12 * C * v[0] * v[0]);
+            let excess = 300.0;
+            for t in [0.01, 1e-3, 1e-4, 1e-5] {
+                let (end, span) = (C + rate * t, tau(rate, t));
+                let v = [excess, leaking.excess_after(excess, end, span)].map(|w| w + drop);
+                let found = leaking.integrals(excess, C, span);
+                let passed = C * v[0] - end * v[1] - leak * found.charge;
+                // g w V = g w^2 + U_d g w
+                let spent = conductance * found.excess_squared + drop * passed + leak * found.energy;
+                let work = -0.5 * rate * found.voltage_squared;
+                let stored = 0.5 * (end * v[1] * v[1] - C * v[0] * v[0]);
+                assert_relative_eq!(work, stored + spent, max_relative = 1e-11, epsilon = 1e-12 * C * v[0] * v[0]);
+            }
         }
     }
 }

@@ -21,6 +21,7 @@ mod ledger;
 mod network;
 mod node_equations;
 mod parameters;
+mod quadrature;
 mod release;
 mod roots;
 mod sample;

@@ -9,14 +9,8 @@
 //! `R k -> -1` are ordinary points here, because only `phi(b) = (1 - exp(-b tau)) / b` appears. With a leak of the film the
 //! coefficients are not constant: see [`leaking`](crate::leaking).
 
-use crate::leaking::{GAUSS_LEGENDRE_8, Leaking, phi};
-
-/// Positive nodes and their weights of the 4-point Gauss-Legendre rule (Abramowitz and Stegun, Table 25.4).
-const GAUSS_LEGENDRE_4: [(f64, f64); 2] =
-    [(0.339_981_043_584_856_3, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_85)];
-
-/// Largest exponent for which that rule is exact to rounding: its error is 6e-10 of the eighth power.
-const SHORT: f64 = 0.15;
+use crate::leaking::{Leaking, phi};
+use crate::quadrature::{EIGHT, PANEL, SHORT, rule};
 
 /// A node, or two joined ones, releasing charge over a linear ramp of its capacitance.
 #[derive(Debug, Clone, Copy)]
@@ -221,10 +215,10 @@ impl Discharge {
     /// rule is exact to rounding for spans of 2, which sets the number of panels.
     fn squares_by_quadrature(&self, tau: f64, span: f64) -> (f64, f64) {
         if span < SHORT {
-            return self.squares_on_panel(tau, 0.5 * tau, &GAUSS_LEGENDRE_4);
+            return self.squares_on_panel(tau, 0.5 * tau, rule(span));
         }
         let mut panels = 1.0;
-        while span > 2.0 * panels {
+        while span > PANEL * panels {
             panels += 1.0;
         }
         let half = 0.5 * tau / panels;
@@ -232,7 +226,7 @@ impl Discharge {
         let mut panel = 0.0;
         while panel < panels {
             let centre = (2.0 * panel + 1.0) * half;
-            let squares = self.squares_on_panel(2.0 * half, centre, &GAUSS_LEGENDRE_8);
+            let squares = self.squares_on_panel(2.0 * half, centre, &EIGHT);
             sums.0 += squares.0;
             sums.1 += squares.1;
             panel += 1.0;
@@ -294,7 +288,7 @@ mod tests {
             let d = discharge(rate, 1e9, drop, 2300.0);
             for part in [1e-3, 0.3, 0.999] {
                 let tau = part * SHORT / (2.0 * d.decay().abs() + rate.abs());
-                let (load, field) = d.squares_on_panel(tau, 0.5 * tau, &GAUSS_LEGENDRE_8);
+                let (load, field) = d.squares_on_panel(tau, 0.5 * tau, &EIGHT);
                 let t = d.time(tau);
                 let work = d.work(&d.span(t));
                 let scale = d.conductance * d.capacitance;

@@ -132,7 +132,8 @@ impl What {
             let step = self.step.or(case.step);
             let scenario = self.scenario(case, description, true)?;
             let times = Times { until: scenario.until, step, window: scenario.window };
-            let case = NamedCase { name: scenario.name.clone(), settings: mechanical(description, &scenario, "sweep")? };
+            let case =
+                NamedCase { name: scenario.name.clone(), settings: mechanical(description, &scenario, "sweep")? };
             if let Some((first, other)) = planned.first()
                 && *other != times
             {
