@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::format::Sheet;
 use super::isolation::IsolationOptions;
-use super::progress::spinner;
-use super::{Exit, fmu_check, output, packaging};
+use super::progress::Spinner;
+use super::{Exit, fmu_check, output};
 use crate::package::{self, AddedBinary, Options};
 use fmu_import::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 
@@ -86,8 +86,8 @@ fn build(targets: &[String], added: &[String], options: Options, json: bool) -> 
         fmus: Vec<PathBuf>,
     }
     let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
-    let waiting = spinner("building the FMUs");
-    let (targets, progress) = (targets.to_vec(), packaging::follow);
+    let waiting = Spinner::new("building the FMUs");
+    let (targets, progress) = (targets.to_vec(), Spinner::tell as fn(&str));
     let options = Options { targets, added, progress, ..options };
     let built = Built { fmus: package::build_all(&options)? };
     drop(waiting);

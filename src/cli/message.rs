@@ -64,7 +64,7 @@ fn fitted(message: &str) -> String {
 }
 
 /// Writes a line of this program on stderr, as it is.
-pub fn show(line: &str) {
+fn show(line: &str) {
     let _ = writeln!(terminal::stderr(), "{line}");
 }
 

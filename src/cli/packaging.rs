@@ -1,29 +1,21 @@
 //! The FMUs of this project, put together when a verb needs them.
 
-use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::sync::Once;
 
 use anyhow::Context as _;
 
-use super::message::{say, show};
-use super::progress::spinner;
+use super::message::say;
+use super::progress::Spinner;
 use crate::package::{self, FMUS, Options, Placed};
 use fmu_import::Fmu;
 
-/// Shows what Cargo is at, where somebody may be looking.
-pub fn follow(line: &str) {
-    if std::io::stderr().is_terminal() {
-        show(line);
-    }
-}
-
 /// Packages the FMUs, with progress; returns the archives, in the order of [`FMUS`].
 pub fn build() -> anyhow::Result<Vec<PathBuf>> {
-    let waiting = spinner("packaging the FMUs");
+    let waiting = Spinner::new("packaging the FMUs");
     // Cargo sets CARGO for what it runs: `cargo run` and tests want what the sources say now.
     let as_is = std::env::var_os("CARGO").is_none();
-    let placed = package::build_for_use(&Options { as_is, progress: follow, ..Options::default() });
+    let placed = package::build_for_use(&Options { as_is, progress: Spinner::tell, ..Options::default() });
     drop(waiting);
     let Placed { archives, refused } = placed.context("cannot package the FMUs")?;
     if let (Some(refused), Some(folder)) = (refused, archives.first().and_then(|archive| archive.parent())) {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
@@ -128,10 +129,36 @@ fn show(bar: &ProgressBar, done: u64, total: u64) {
     bar.set_position(done);
 }
 
-/// A spinner for work of unknown length.
-pub fn spinner(message: &str) -> ProgressBar {
-    let spinner = ProgressBar::new_spinner().with_message(message.to_owned()).with_finish(ProgressFinish::AndClear);
-    ticking(spinner, Duration::from_millis(100))
+/// A spinner for work of unknown length. It goes when this is dropped.
+pub struct Spinner;
+
+/// The one that stands on the terminal.
+static STANDING: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+impl Spinner {
+    /// A spinner with the name of the `work`.
+    pub fn new(work: &'static str) -> Self {
+        let spinner = styled("{spinner} {prefix} {wide_msg}").with_prefix(work);
+        *Self::standing() = Some(ticking(spinner, Duration::from_millis(100)));
+        Self
+    }
+
+    /// Shows what the work is at, on the line of the spinner: a line of its own would begin where the spinner ends.
+    pub fn tell(part: &str) {
+        if let Some(spinner) = &*Self::standing() {
+            spinner.set_message(plain(part));
+        }
+    }
+
+    fn standing() -> MutexGuard<'static, Option<ProgressBar>> {
+        STANDING.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        *Self::standing() = None;
+    }
 }
 
 /// Redraws a visible bar at intervals, if the system gives a thread for that: without one the library would panic.
