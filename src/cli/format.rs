@@ -89,44 +89,54 @@ impl Sheet {
         }
     }
 
-    /// The table, which does not fit in `columns` as it is: with words on several lines, or else a block for each row.
+    /// The table, which does not fit in `columns` as it is: with words on several lines, or without spaces at its edges, too, or else a block
+    /// for each row.
     fn narrowed(&self, mut table: Table, columns: usize) -> String {
-        /// Columns between cells.
-        const BETWEEN: usize = 2;
-        let lower = |column: usize| {
+        let last = self.headings.len().saturating_sub(1);
+        let with_edges = self.arranged(&mut table, columns, |_| (1, 1));
+        let without = || self.arranged(&mut table, columns, |column| (0, u16::from(column < last)));
+        with_edges.or_else(without).unwrap_or_else(|| self.blocks(columns))
+    }
+
+    /// The `table` with words on several lines, and spaces to the left and right of the cells of each column, if it fits in `columns` so.
+    fn arranged(&self, table: &mut Table, columns: usize, padding: impl Fn(usize) -> (u16, u16)) -> Option<String> {
+        let least = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| row.get(column));
             // The first column and those of words break at spaces, as headings do; a number stays whole.
             let is_words = column == 0 || self.words.contains(&column);
             let least = |cell: &String| if is_words { longest_word(cell) } else { terminal::columns_of(cell) };
-            cells.map(least).chain([longest_word(&self.headings[column])]).max().unwrap_or_default() + BETWEEN
+            let content = cells.map(least).chain([longest_word(&self.headings[column])]).max().unwrap_or_default();
+            let (left, right) = padding(column);
+            content + usize::from(left + right)
         };
-        let least: Vec<_> = (0..self.headings.len()).map(lower).collect();
-        if least.iter().sum::<usize>() <= columns {
-            let bound = |least: &usize| {
-                ColumnConstraint::LowerBoundary(Width::Fixed(u16::try_from(*least).unwrap_or(u16::MAX)))
-            };
-            table.set_content_arrangement(ContentArrangement::Dynamic);
-            table.set_width(u16::try_from(columns).unwrap_or(u16::MAX)).set_constraints(least.iter().map(bound));
-            let shown = table.to_string();
-            if fits(&shown, columns) {
-                return shown;
-            }
+        let least: Vec<_> = (0..self.headings.len()).map(least).collect();
+        // Between columns stands one more space.
+        if least.iter().sum::<usize>() + least.len() > columns + 1 {
+            return None;
         }
-        self.blocks(columns)
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.set_width(u16::try_from(columns).unwrap_or(u16::MAX));
+        for (index, (column, least)) in table.column_iter_mut().zip(least).enumerate() {
+            let least = Width::Fixed(u16::try_from(least).unwrap_or(u16::MAX));
+            column.set_padding(padding(index)).set_constraint(ColumnConstraint::LowerBoundary(least));
+        }
+        let shown = table.to_string();
+        fits(&shown, columns).then_some(shown)
     }
 
     /// A block for each row, a line for each cell that is not empty, with its heading.
     fn blocks(&self, columns: usize) -> String {
         let widest = self.headings.iter().map(|heading| terminal::columns_of(heading)).max().unwrap_or_default();
         let indentation = widest.min(columns / 2) + 2;
+        let line = |(heading, cell): (&String, &String)| {
+            let indented =
+                terminal::broken(cell, columns - indentation).replace('\n', &format!("\n{:indentation$}", ""));
+            let beside = format!("{heading:<indentation$}{indented}");
+            if fits(&beside, columns) { beside } else { terminal::broken(&format!("{heading} {cell}"), columns) }
+        };
         let block = |row: &Vec<String>| {
             let cells = self.headings.iter().zip(row).filter(|(_, cell)| !cell.is_empty());
-            let lines = cells.flat_map(|(heading, cell)| {
-                let line = format!("{heading:<indentation$}{cell}");
-                let shown = if fits(&line, columns) { line } else { terminal::broken(&line, columns) };
-                shown.lines().map(str::to_owned).collect::<Vec<_>>()
-            });
-            lines.collect::<Vec<_>>().join("\n")
+            cells.map(line).collect::<Vec<_>>().join("\n")
         };
         self.rows.iter().map(block).collect::<Vec<_>>().join("\n\n")
     }
@@ -184,7 +194,22 @@ mod tests {
         for columns in 20..80 {
             let narrow = sheet.narrowed(sheet.laid_out(&sheet.headings, |column| column == 0), columns);
             assert!(fits(&narrow, columns) && narrow.contains("1.234567"), "{columns}:\n{narrow}");
+            // membranes, unit, 1.234567 and two columns between each.
+            assert_eq!(narrow.contains(terminal::RULE), columns >= 9 + 2 + 4 + 2 + 8, "{columns}:\n{narrow}");
         }
+    }
+
+    #[test]
+    fn a_cell_on_several_lines_stays_beside_its_heading() {
+        let rows =
+            vec![["Table 3, 2 Hz: P by the paper's stepping at 1e-5 s", "0.0612571"].map(str::to_owned).to_vec()];
+        let shown = Sheet::new(["where and what", "videg"], &[], rows).blocks(44);
+        let lines = [
+            "where and what  Table 3, 2 Hz: P by the",
+            "                paper's stepping at 1e-5 s",
+            "videg           0.0612571",
+        ];
+        assert_eq!(shown, lines.join("\n"));
     }
 
     #[test]

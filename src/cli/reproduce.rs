@@ -41,7 +41,10 @@ pub struct Arguments {
 const AUDIT: &str = "audit";
 const CROSSCHECK: &str = "crosscheck";
 
-/// End of the run of the latter, s, and that of a quick one.
+/// The file with all numbers.
+const SUMMARY: &str = "summary.csv";
+
+/// End of the run of the crosscheck, s, and that of a quick one.
 const CROSSCHECKED: [f64; 2] = [20.0, 5.0];
 
 #[derive(Serialize)]
@@ -99,7 +102,7 @@ fn make(arguments: &Arguments, wanted: &Wanted, identity: &Identity, folder: &Pa
     drop(bar);
     let passed = !made.solvers_disagree && !made.findings().any(|finding| finding.verdict == Verdict::Differs);
     let report = page::write(folder, &made.chapters, &made.warnings, &fmu, arguments.quick)?;
-    files::summary(&folder.join("summary.csv"), made.findings())?;
+    files::summary(&folder.join(SUMMARY), made.findings())?;
     let (items, warnings) = (&made.chapters[..], &made.warnings[..]);
     let result = Output { request: identity, quick: arguments.quick, passed, items, warnings, report: &report };
     let json = run_output::json(&result)?;
@@ -217,12 +220,11 @@ impl Reproduction<'_> {
         let headings = ["where and what", "unit", "paper", "videg", "deviation", "verdict"];
         let table = Sheet::new(headings, &[5], rows.collect()).text();
         let files: usize = self.chapters.iter().map(|chapter| chapter.files.len()).sum();
-        let summary = self.folder.join("summary.csv");
-        let summary = summary.display();
         let more = match left.len() {
-            0 => format!("these numbers are in {summary}, with reasons"),
-            left => format!("{left} more numbers, of which the paper says nothing, are in {summary}"),
+            0 => format!("these numbers are in {SUMMARY}, with reasons"),
+            left => format!("{left} more numbers, of which the paper says nothing, are in {SUMMARY}"),
         };
-        format!("{table}\n\n{more}; {files} files with data and pictures; the report: {}", report.display())
+        let written = run_output::file_list(&[self.folder.join(SUMMARY), report.to_owned()]);
+        format!("{table}\n\n{more}; {files} files with data and pictures are beside it\n\n{written}")
     }
 }

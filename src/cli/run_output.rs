@@ -6,8 +6,8 @@ use serde::Serialize;
 use videg_report::{KeyNumber, Report, Section};
 
 use super::format::{Sheet, deviation, significant};
-use super::output;
 use super::results::{Identity, Results};
+use super::{output, terminal};
 use crate::cosim::{Device, MechanicsSummary};
 use crate::scenario::{PaperValues, Scenario, Setting};
 
@@ -115,8 +115,23 @@ pub fn impact_rate(scenario: &Scenario, mechanics: &MechanicsSummary, device: &D
 
 /// The list of files written.
 pub fn file_list(files: &[PathBuf]) -> String {
-    let shown: Vec<_> = files.iter().map(|file| format!("  {}", file.display())).collect();
-    format!("written:\n{}", shown.join("\n"))
+    file_list_within(files, terminal::width())
+}
+
+/// The same for a terminal of these columns, or for none. Where paths are too long for it, it goes folder by folder.
+fn file_list_within(files: &[PathBuf], columns: Option<usize>) -> String {
+    let lines: Vec<_> = files.iter().map(|file| format!("  {}", file.display())).collect();
+    let fits = |columns: usize| lines.iter().all(|line| terminal::columns_of(line) <= columns);
+    if columns.is_none_or(fits) {
+        return format!("written:\n{}", lines.join("\n"));
+    }
+    let folder = |file: &PathBuf| file.parent().unwrap_or(Path::new("")).display().to_string();
+    let name = |file: &PathBuf| format!("  {}", Path::new(file.file_name().unwrap_or_default()).display());
+    let group = |files: &[PathBuf]| {
+        let folder = files.first().map(folder).unwrap_or_default();
+        format!("written in {folder}:\n{}", files.iter().map(name).collect::<Vec<_>>().join("\n"))
+    };
+    files.chunk_by(|one, other| one.parent() == other.parent()).map(group).collect::<Vec<_>>().join("\n")
 }
 
 /// Writes figure and report of a run into `folder`. Returns all files of the run, `series` first and the result, which is
@@ -154,4 +169,18 @@ pub fn show(is_json: bool, result: &str, text: &[String], warnings: &[String]) -
 /// The result of a run as JSON.
 pub fn json(result: &impl Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(result)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_with_long_paths_are_listed_folder_by_folder_on_a_narrow_terminal() {
+        let files = ["out/long-name/a.csv", "out/long-name/b.csv", "out/long-name/figures/c.svg"].map(PathBuf::from);
+        let whole = "written:\n  out/long-name/a.csv\n  out/long-name/b.csv\n  out/long-name/figures/c.svg";
+        assert_eq!([None, Some(29)].map(|columns| file_list_within(&files, columns)), [whole, whole]);
+        let narrow = "written in out/long-name:\n  a.csv\n  b.csv\nwritten in out/long-name/figures:\n  c.svg";
+        assert_eq!(file_list_within(&files, Some(28)), narrow);
+    }
 }

@@ -45,11 +45,11 @@ fn no_line_is_wider_than_the_terminal() {
         "cosim --help",
         "sweep --help",
         "cosim --until 2 --output cosim",
-        "simulate --until 2 --law both --output both",
+        "simulate --until 2 --law both",
         "simulate --until 2 --set membrane.restitutoin=0.5",
         "dynamics --samples 20 --transient 5 --orbits --periods 1 --output dynamics",
         "sweep --until 2 --vary membrane.restitution=0.5,0.6 --output sweep",
-        "reproduce table1 --output reproduce",
+        "reproduce --quick table1 fig8 fig9 fig14",
         "export --until 2 --output x.lib",
     ] {
         for columns in [60, 80, 120] {

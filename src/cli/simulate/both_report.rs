@@ -76,10 +76,15 @@ pub fn table(laws: &Laws) -> Sheet {
             shown(impulsive),
             shown(compliant),
             shown(pair.map(|(impulsive, compliant)| compliant - impulsive)),
-            relative.map_or_else(String::new, |(impulsive, compliant)| format::deviation(compliant, impulsive)),
+            relative.map_or_else(String::new, |(impulsive, compliant)| per_cent(impulsive, compliant)),
         ]
     };
     Sheet::new(HEADINGS, &[0, 1], QUANTITIES.iter().map(row).collect())
+}
+
+/// The relative change of a value; the heading says in which unit.
+fn per_cent(before: f64, after: f64) -> String {
+    format!("{:+.3}", 100.0 * (after / before - 1.0))
 }
 
 /// A count as it is, anything else with six digits.
