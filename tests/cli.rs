@@ -418,10 +418,16 @@ fn what_is_no_fmu_is_refused() {
 
 #[test]
 fn completions_and_help_are_data() {
-    let completions = videg(&["completions", "bash"]);
-    assert!(completions.code == Some(0) && completions.stdout.contains("_videg"));
-    for verb in ["cosim", "simulate", "fmu", "ssp", "completions"] {
-        assert!(completions.stdout.contains(&format!("videg__subcmd__{verb}\"")), "{verb}");
+    for (shell, registers) in [
+        ("bash", "complete -o bashdefault -F _videg videg"),
+        ("zsh", "compdef _videg videg"),
+        ("fish", "--command videg"),
+        ("elvish", "arg-completer[videg]"),
+        ("powershell", "-CommandName 'videg'"),
+    ] {
+        let completions = videg(&["completions", shell]);
+        assert!(completions.code == Some(0) && completions.stderr.is_empty(), "{shell}: {}", completions.stderr);
+        assert!(completions.stdout.contains(registers), "{}", completions.stdout);
     }
     let help = videg(&["--help"]);
     assert!(help.code == Some(0) && help.stdout.contains("cosim") && help.stderr.is_empty());

@@ -6,6 +6,7 @@
 // `output` and `message` write on both: these macros panic if the reader has closed them.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod candidates;
 mod cases;
 mod completions;
 mod cosim;
@@ -142,6 +143,9 @@ pub fn command() -> clap::Command {
 
 /// Runs the tool with the arguments of the process.
 pub fn main() -> ExitCode {
+    if completions::answer() {
+        return ExitCode::SUCCESS;
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),

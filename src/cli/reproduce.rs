@@ -40,6 +40,8 @@ pub struct Arguments {
 /// Made beside the items of the paper: the energy audit and the comparison with ngspice.
 const AUDIT: &str = "audit";
 const CROSSCHECK: &str = "crosscheck";
+/// The name of every item.
+pub const ALL: &str = "all";
 
 /// The file with all numbers.
 const SUMMARY: &str = "summary.csv";
@@ -70,7 +72,7 @@ struct Reproduction<'a> {
 /// Runs the verb.
 pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result<Exit> {
     let wanted = Wanted::new(&arguments.names)?;
-    let all = arguments.names.is_empty() || wanted.names_it("all");
+    let all = arguments.names.is_empty() || wanted.names_it(ALL);
     let items = listed(if all { &[] } else { &arguments.names });
     let identity = Identity::new("reproduce", [("items", items), ("quick", flag(arguments.quick))]);
     let folder = arguments.output.folder(&identity)?;
@@ -111,8 +113,14 @@ fn make(arguments: &Arguments, wanted: &Wanted, identity: &Identity, folder: &Pa
     Ok(if passed { Exit::Passed } else { Exit::Failed })
 }
 
+/// Names of all that is made, with their titles.
+pub fn items() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let beside = [(AUDIT, "Where the energy goes"), (CROSSCHECK, "Comparison with ngspice")];
+    ITEMS.iter().map(|item| (item.name, item.title)).chain(beside)
+}
+
 fn all_names() -> impl Iterator<Item = &'static str> {
-    ITEMS.iter().map(|item| item.name).chain([AUDIT, CROSSCHECK])
+    items().map(|(name, _)| name)
 }
 
 /// Names of the items to make.
@@ -122,7 +130,7 @@ struct Wanted {
 
 impl Wanted {
     fn new(names: &[String]) -> anyhow::Result<Self> {
-        let known: Vec<&str> = all_names().chain(["all"]).collect();
+        let known: Vec<&str> = all_names().chain([ALL]).collect();
         if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
             let hint = nearest_name(unknown, known.iter().copied());
             let hint = hint.map_or_else(String::new, |nearest| format!("did you mean {nearest}? "));
@@ -132,7 +140,7 @@ impl Wanted {
     }
 
     fn has(&self, name: &str) -> bool {
-        self.names.is_empty() || self.names.iter().any(|wanted| wanted == name || wanted == "all")
+        self.names.is_empty() || self.names.iter().any(|wanted| wanted == name || wanted == ALL)
     }
 
     /// Whether the user gave this name.

@@ -4,6 +4,8 @@
 mod cases;
 #[path = "../support/command.rs"]
 mod command;
+#[cfg(unix)]
+mod completions;
 #[cfg(target_os = "linux")]
 #[path = "../support/instance.rs"]
 mod instance;
