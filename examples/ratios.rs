@@ -42,6 +42,8 @@ const NOISE: (&str, &str) = ("noise", "phase noise, 100 s");
 const ENSEMBLE: (&str, &str) = ("noise", "phase noise, 8 runs of 20 s");
 const CIRCUIT: (&str, &str) = ("circuit", "10 s of fig14, shared node, series Zener");
 
+const COUPLED: (&str, &str) = ("circuit", "100 s of fig14, isolated, switch");
+
 const BALL: &str = "bouncing ball in C";
 const RUNGE_KUTTA: &str = "Runge-Kutta as the paper";
 const PAPER: &str = "fig14, Runge-Kutta as the paper";
@@ -60,7 +62,8 @@ const ROWS: &[Row] = &[
     row("8 runs of 20 s of Fig. 17 on two threads; on one", ENSEMBLE, "threads: 2", "threads: 1", Faster(1.8)),
     row("circuit, 10 s of Fig. 14, ideal diodes; ngspice", CIRCUIT, "embedded, ideal diodes", "ngspice, batch", Nothing),
     row("ngspice live with C(t), a communication step each 1 ms and a ledger of all elements; ngspice", CIRCUIT, "ngspice, live", "ngspice, batch", AtMost(1.5)),
-    row("circuit, 10 s of Fig. 14, exponential diodes; ngspice", CIRCUIT, "embedded, exponential diodes", "ngspice, batch", Nothing),
+    row("circuit, 10 s of Fig. 14, exponential diodes; ngspice", CIRCUIT, "embedded, exponential diodes", "ngspice, batch", Faster(100.0)),
+    row("harvester and circuit in one run, 100 s of Fig. 14, isolated, switch; ngspice on the same C(t)", COUPLED, "harvester and circuit", "ngspice, batch", Faster(5000.0)),
 ];
 
 const fn row(

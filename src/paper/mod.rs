@@ -16,7 +16,6 @@ mod fig17;
 mod fig4;
 mod fig7;
 mod fig8;
-mod fixed_step;
 mod leakage;
 mod motion;
 mod orbit;

@@ -1,9 +1,8 @@
 //! Figure 10 and the stability of its orbit: multipliers, growth of small perturbations, and the paper's stepping.
 
-use videg_model::Case;
+use videg_model::{Case, FixedStep};
 
 use super::excitation::set;
-use super::fixed_step::{FixedStep, STEP};
 use super::motion;
 use super::orbit::{Multipliers, Phase, SawTooth};
 use super::statistics::slope;
@@ -264,13 +263,16 @@ fn middles(orbit: &SawTooth) -> impl Iterator<Item = f64> + use<> {
 /// `<U>`, V/s, by the paper's method from the paper's start.
 fn stepped_gain(window: [f64; 2]) -> Option<f64> {
     let parameters = (Case::find(CASE)?.parameters)();
-    FixedStep::new(&parameters, &[parameters.ball_velocity], STEP).run(window).pop().map(|run| run.voltage_gain)
+    FixedStep::new(&parameters, &[parameters.ball_velocity], FixedStep::PAPER)
+        .run(window)
+        .pop()
+        .map(|run| run.voltage_gain)
 }
 
 /// The paper's method from the paper's start.
 fn stepped(orbit: &SawTooth) -> Option<Track> {
     let parameters = (Case::find(CASE)?.parameters)();
-    let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity], STEP);
+    let mut run = FixedStep::new(&parameters, &[parameters.ball_velocity], FixedStep::PAPER);
     let points = middles(orbit).filter_map(|time| {
         run.advance(time);
         run.first().map(|state| (time, orbit.distance(state)))

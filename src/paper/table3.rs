@@ -1,8 +1,7 @@
 //! Table 3: power and power density in the size of an electromagnetic flashlight, and what the paper's stepping makes of it.
 
-use videg_model::Case;
+use videg_model::{Case, FixedStep, Stepped};
 
-use super::fixed_step::{FixedStep, STEP, Stepped};
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study, VOLUME, Verdict, WINDOW, artefact};
 use videg_report::{Figure, Panel, Series, Style, Table};
 
@@ -55,7 +54,7 @@ struct Compared {
 
 impl Compared {
     fn of_the_paper(&self) -> Stepped {
-        let index = STEPS.iter().position(|&step| step == STEP).unwrap_or_default();
+        let index = STEPS.iter().position(|&step| step == FixedStep::PAPER).unwrap_or_default();
         self.stepped[index]
     }
 }
@@ -109,7 +108,8 @@ fn compare(study: &Study<'_>) -> Result<Vec<Compared>, PaperError> {
         .collect::<Result<Vec<_>, PaperError>>()?;
     let averages = study.averages(&runs)?;
     // A quick look goes to the paper's step; each after it takes twice as long as the one before.
-    let steps = study.effort.of(STEPS.len(), 1 + STEPS.iter().position(|&step| step == STEP).unwrap_or_default());
+    let steps =
+        study.effort.of(STEPS.len(), 1 + STEPS.iter().position(|&step| step == FixedStep::PAPER).unwrap_or_default());
     // The longest first, so that all cores end together.
     let tasks: Vec<_> = STEPS[..steps].iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
     let mut stepped = study.each(&tasks, |(printed, step)| {

@@ -2,10 +2,9 @@
 
 mod output;
 
-use videg_model::Case;
+use videg_model::{Case, FixedStep};
 
 use super::ensemble::{self, Ensemble, NUDGE, nearby, voltage_gains};
-use super::fixed_step::{FixedStep, STEP};
 use super::{Artefact, Finding, PaperError, Run, Study, Verdict, WINDOW};
 use crate::scenario::Setting;
 
@@ -138,7 +137,8 @@ fn stepped(study: &Study<'_>, printed: &Printed, nudges: &[f64]) -> Result<Optio
         .chunks(BATCH)
         .map(|batch| batch.iter().map(|nudge| parameters.ball_velocity + nudge).collect())
         .collect();
-    let gains = study.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities, STEP).run(WINDOW)))?;
+    let gains =
+        study.each(&batches, |velocities| Ok(FixedStep::new(&parameters, velocities, FixedStep::PAPER).run(WINDOW)))?;
     Ok(Some(Ensemble::new(gains.concat().iter().map(|run| run.voltage_gain).collect())))
 }
 

@@ -3,20 +3,18 @@
 
 use std::f64::consts::TAU;
 
-use videg_model::{Membrane, Parameters};
-
-/// The paper's time step, s (Section 4.2).
-pub(super) const STEP: f64 = 1e-5;
+use crate::membrane::Membrane;
+use crate::parameters::Parameters;
 
 /// Averages over a window of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Stepped {
+pub struct Stepped {
     /// `<U>`, Eq. (15), V/s.
-    pub(super) voltage_gain: f64,
+    pub voltage_gain: f64,
     /// P, Eq. (14), W.
-    pub(super) power: f64,
+    pub power: f64,
     /// Impacts counted.
-    pub(super) impacts: u64,
+    pub impacts: u64,
 }
 
 /// One ball.
@@ -33,7 +31,7 @@ struct Ball {
 const MOST: f64 = 4e6;
 
 /// A cylinder with many balls that do not feel each other.
-pub(super) struct FixedStep {
+pub struct FixedStep {
     parameters: Parameters,
     drive: Drive,
     membrane: Membrane,
@@ -46,8 +44,11 @@ pub(super) struct FixedStep {
 }
 
 impl FixedStep {
+    /// The paper's time step, s (Section 4.2).
+    pub const PAPER: f64 = 1e-5;
+
     /// Balls that start with `velocities`, m/s, to be followed by a `step`, s. One that starts beyond a membrane starts on it.
-    pub(super) fn new(parameters: &Parameters, velocities: &[f64], step: f64) -> Self {
+    pub fn new(parameters: &Parameters, velocities: &[f64], step: f64) -> Self {
         let p = *parameters;
         let half = p.travel() / 2.0;
         let position = p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half);
@@ -58,20 +59,20 @@ impl FixedStep {
     }
 
     /// Steps on to the point of the grid that is nearest to `time`, s.
-    pub(super) fn advance(&mut self, time: f64) {
+    pub fn advance(&mut self, time: f64) {
         while (self.steps as f64 + 0.5) * self.step < time {
             self.step();
         }
     }
 
     /// `z_M - z_m`, m, and its rate, m/s, for the first ball.
-    pub(super) fn first(&self) -> Option<[f64; 2]> {
+    pub fn first(&self) -> Option<[f64; 2]> {
         let [z, v, _] = self.cylinder;
         self.balls.first().map(|ball| [z - ball.position, v - ball.velocity])
     }
 
     /// Averages of each ball over a window, s.
-    pub(super) fn run(mut self, [from, to]: [f64; 2]) -> Vec<Stepped> {
+    pub fn run(mut self, [from, to]: [f64; 2]) -> Vec<Stepped> {
         self.advance(from);
         let before = self.balls.clone();
         self.advance(to);
@@ -152,7 +153,7 @@ fn acceleration(p: &Parameters, time: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use videg_model::{Case, Harvester};
+    use crate::{Case, Harvester};
 
     fn parameters(case: &str) -> Parameters {
         (Case::find(case).unwrap().parameters)()
@@ -177,8 +178,8 @@ mod tests {
     fn a_ball_goes_its_own_way_whoever_else_is_there() {
         let p = parameters("fig13");
         let velocities = [0.0, 1e-4, -1e-4];
-        let together = FixedStep::new(&p, &velocities, STEP).run([1.0, 5.0]);
-        let alone = velocities.map(|velocity| FixedStep::new(&p, &[velocity], STEP).run([1.0, 5.0])[0]);
+        let together = FixedStep::new(&p, &velocities, FixedStep::PAPER).run([1.0, 5.0]);
+        let alone = velocities.map(|velocity| FixedStep::new(&p, &[velocity], FixedStep::PAPER).run([1.0, 5.0])[0]);
         assert!(together[0].impacts > 0);
         assert_eq!(together, alone);
     }
@@ -186,7 +187,7 @@ mod tests {
     #[test]
     fn a_damped_motion_is_that_of_the_model_to_the_first_order_of_the_step() {
         let p = parameters("fig14");
-        let stepped = FixedStep::new(&p, &[p.ball_velocity], STEP).run([0.0, 10.0])[0].voltage_gain;
+        let stepped = FixedStep::new(&p, &[p.ball_velocity], FixedStep::PAPER).run([0.0, 10.0])[0].voltage_gain;
         let mut model = Harvester::new(&p, 0.0).unwrap();
         model.advance(10.0).unwrap();
         let exact = model.totals().voltage_gain / 10.0;
