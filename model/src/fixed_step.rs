@@ -17,11 +17,9 @@ pub struct Stepped {
     pub impacts: u64,
 }
 
-/// One ball.
-#[derive(Debug, Clone, Copy)]
-struct Ball {
-    position: f64,
-    velocity: f64,
+/// What the impacts of a ball gave.
+#[derive(Debug, Clone, Copy, Default)]
+struct Gain {
     /// Sum of `C_3` / `C_2` - 1.
     excess: f64,
     impacts: u64,
@@ -40,7 +38,10 @@ pub struct FixedStep {
     steps: u64,
     /// `z_M`, m, its rate, m/s, and that of the rate, m/s^2.
     cylinder: [f64; 3],
-    balls: Vec<Ball>,
+    /// Of the balls: `z_m`, m, its rate, m/s, and what they gained.
+    positions: Vec<f64>,
+    velocities: Vec<f64>,
+    gains: Vec<Gain>,
 }
 
 impl FixedStep {
@@ -52,10 +53,17 @@ impl FixedStep {
         let p = *parameters;
         let half = p.travel() / 2.0;
         let position = p.ball_position.clamp(p.cylinder_position - half, p.cylinder_position + half);
-        let drive = Drive::new(&p, step);
-        let balls = velocities.iter().map(|&velocity| Ball { position, velocity, excess: 0.0, impacts: 0 }).collect();
-        let cylinder = [p.cylinder_position, p.cylinder_velocity, acceleration(&p, 0.0)];
-        Self { parameters: p, drive, membrane: Membrane::new(&p), step, steps: 0, cylinder, balls }
+        Self {
+            parameters: p,
+            drive: Drive::new(&p, step),
+            membrane: Membrane::new(&p),
+            step,
+            steps: 0,
+            cylinder: [p.cylinder_position, p.cylinder_velocity, acceleration(&p, 0.0)],
+            positions: vec![position; velocities.len()],
+            velocities: velocities.to_vec(),
+            gains: vec![Gain::default(); velocities.len()],
+        }
     }
 
     /// Steps on to the point of the grid that is nearest to `time`, s.
@@ -68,21 +76,21 @@ impl FixedStep {
     /// `z_M - z_m`, m, and its rate, m/s, for the first ball.
     pub fn first(&self) -> Option<[f64; 2]> {
         let [z, v, _] = self.cylinder;
-        self.balls.first().map(|ball| [z - ball.position, v - ball.velocity])
+        self.positions.first().zip(self.velocities.first()).map(|(position, velocity)| [z - position, v - velocity])
     }
 
     /// Averages of each ball over a window, s.
     pub fn run(mut self, [from, to]: [f64; 2]) -> Vec<Stepped> {
         self.advance(from);
-        let before = self.balls.clone();
+        let before = self.gains.clone();
         self.advance(to);
         let bias = self.parameters.bias_voltage;
-        let ended = self.balls.iter().zip(before).map(|(ball, before)| {
-            let excess = (ball.excess - before.excess) / (to - from);
+        let ended = self.gains.iter().zip(before).map(|(gain, before)| {
+            let excess = (gain.excess - before.excess) / (to - from);
             Stepped {
                 voltage_gain: bias * excess,
                 power: 0.5 * bias * bias * self.membrane.rest_capacitance() * excess,
-                impacts: ball.impacts - before.impacts,
+                impacts: gain.impacts - before.impacts,
             }
         });
         ended.collect()
@@ -98,13 +106,26 @@ impl FixedStep {
         let v = v + dt / 6.0 * (start + 4.0 * middle + end);
         self.cylinder = [z, v, end];
         let half = p.travel() / 2.0;
-        for ball in &mut self.balls {
-            ball.position += dt * ball.velocity;
-            let (gap, closing) = (z - ball.position, v - ball.velocity);
+        // Mostly no ball is at a membrane: one look at all of them, in vectors.
+        let mut is_there = false;
+        for (position, velocity) in self.positions.iter_mut().zip(&self.velocities) {
+            *position += dt * velocity;
+            is_there |= (z - *position).abs() >= half;
+        }
+        if is_there {
+            self.impacts(z, v, half);
+        }
+    }
+
+    /// Eq. (11) for the balls that are beyond a membrane and go on.
+    fn impacts(&mut self, z: f64, v: f64, half: f64) {
+        let balls = self.positions.iter().zip(&mut self.velocities).zip(&mut self.gains);
+        for ((position, velocity), gain) in balls {
+            let (gap, closing) = (z - position, v - *velocity);
             if gap.abs() >= half && gap * closing > 0.0 {
-                ball.velocity = v + p.restitution * closing;
-                ball.excess += self.membrane.capacitance_excess(self.membrane.deflection(closing.abs()));
-                ball.impacts += 1;
+                *velocity = v + self.parameters.restitution * closing;
+                gain.excess += self.membrane.capacitance_excess(self.membrane.deflection(closing.abs()));
+                gain.impacts += 1;
             }
         }
     }
