@@ -49,6 +49,7 @@ impl Ledger {
     }
 
     /// Mean flows since the ledger was `before`, `time` seconds ago: powers (W), and currents (A) in place of charges.
+    #[must_use]
     pub fn flows_since(&self, before: &Self, time: f64) -> Self {
         let rate = |of: fn(&Self) -> f64| (of(self) - of(before)) / time;
         Self {

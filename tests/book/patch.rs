@@ -58,6 +58,7 @@ fn copy_sources(to: &Path) -> std::io::Result<()> {
         "README.md",
         "model",
         "circuit",
+        "coupled",
         "data",
         "fmu",
         "input",
