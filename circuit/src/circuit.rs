@@ -115,7 +115,7 @@ impl Circuit {
     }
 
     /// Advances by `length` seconds, the capacitances (left, right) (F) running along straight lines through `knots`, which are evenly spaced in
-    /// time; the first knot is where they are now. The same as a call of [`Circuit::advance`] for each line, but lines that can be taken as one
+    /// time; the first knot is where they are now, and fewer than two are no line. The same as a call of [`Circuit::advance`] for each line, but lines that can be taken as one
     /// ([`Circuit::is_path_independent`]) are. `seen` gets the number of each knot that ends a line, and the voltages there.
     ///
     /// # Errors
@@ -126,10 +126,13 @@ impl Circuit {
         knots: &[[f64; 2]],
         mut seen: impl FnMut(usize, [f64; 2]),
     ) -> Result<(), Error> {
+        if knots.len() < 2 {
+            return Ok(());
+        }
         not_negative(names::STEP, length, "s")?;
         knots.iter().try_for_each(|knot| check_capacitances(*knot))?;
         finite("time", self.state.time + length, "s")?;
-        let last = knots.len().saturating_sub(1);
+        let last = knots.len() - 1;
         let before = self.state;
         if self.parameters.diodes != Diodes::Ideal {
             for (k, knot) in knots.iter().enumerate().skip(1) {
@@ -147,13 +150,14 @@ impl Circuit {
             let end = start + 1 + (start + 1..last).take_while(goes_on).count();
             // A line that is the whole way takes the time to the last bit.
             let part = (end - start) as f64 / last as f64;
-            self.advance_network(&mut network, length * part, knots[end])?;
+            let begin = self.state.time + length * (start as f64 / last as f64);
+            self.advance_network(&mut network, begin, length * part, knots[end])?;
             seen(end, self.voltages(&network.nodes));
             start = end;
         }
         self.accept(network);
         self.update_ideal_outputs(&network);
-        self.state.capacitance = knots.last().copied().unwrap_or(before.capacitance);
+        self.state.capacitance = knots[last];
         self.state.time += length;
         self.check_numbers().inspect_err(|_| self.state = before)
     }
@@ -185,20 +189,20 @@ impl Circuit {
 
     fn advance_ideal(&mut self, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
         let mut network = self.network();
-        self.advance_network(&mut network, dt, capacitance)?;
+        self.advance_network(&mut network, self.state.time, dt, capacitance)?;
         self.accept(network);
         self.update_ideal_outputs(&network);
         Ok(())
     }
 
-    /// Lets `dt` seconds pass in the `network` of this circuit.
-    fn advance_network(&self, network: &mut Network, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
+    /// Lets `dt` seconds pass in the `network` of this circuit, from `time`, s, on.
+    fn advance_network(&self, network: &mut Network, time: f64, dt: f64, capacitance: [f64; 2]) -> Result<(), Error> {
         let ends = self.node_capacitances(capacitance);
         if dt == 0.0 {
             network.jump(ends);
             return Ok(());
         }
-        network.advance(dt, ends).ok_or(Error::TooManyEvents { time: self.state.time, step: dt, bound: EVENTS })
+        network.advance(dt, ends).ok_or(Error::TooManyEvents { time, step: dt, bound: EVENTS })
     }
 
     fn advance_exponential<const LEAKS: bool>(

@@ -42,6 +42,21 @@ fn parameters() -> impl Strategy<Value = Parameters> {
     })
 }
 
+#[test]
+fn knots_that_are_no_line_change_nothing_and_an_error_leaves_the_circuit() {
+    let mut circuit = Circuit::new(Parameters::default(), START).unwrap();
+    let before = circuit.state();
+    circuit.advance_along(1.0, &[], |_, _| ()).unwrap();
+    circuit.advance_along(1.0, &[START], |_, _| ()).unwrap();
+    assert_eq!(circuit.state(), before);
+    for bad in [f64::NAN, -1e-12, 0.0] {
+        let refused = circuit.advance_along(1.0, &[START, [20e-12, 15e-12], [20e-12, bad]], |_, _| ());
+        assert!(refused.unwrap_err().to_string().contains("right.capacitance"), "{bad}");
+    }
+    assert!(circuit.advance_along(-1.0, &[START, START], |_, _| ()).is_err());
+    assert_eq!(circuit.state(), before);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 

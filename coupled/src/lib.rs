@@ -38,6 +38,10 @@ pub enum CoupledError {
         "contact.electrostaticFeedback = true: the voltages do not act back in a sweep; allowed: false, or videg cosim"
     )]
     Feedback,
+    #[error("tolerance = {tolerance}: allowed: above 0")]
+    Tolerance { tolerance: f64 },
+    #[error("window = {from},{to} s and until = {until} s: allowed: 0 <= from < to <= until, finite")]
+    Times { from: f64, to: f64, until: f64 },
 }
 
 /// When a run ends, what it averages over, and how closely the circuit follows C(t).
@@ -49,6 +53,18 @@ pub struct Times {
     pub window: [f64; 2],
     /// Bound of the distance of the lines from C(t), over C(t).
     pub tolerance: f64,
+}
+
+impl Times {
+    fn check(&self) -> Result<(), CoupledError> {
+        let Self { until, window: [from, to], tolerance } = *self;
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(CoupledError::Tolerance { tolerance });
+        }
+        // NaN fails each comparison.
+        let are_times = 0.0 <= from && from < to && to <= until && until.is_finite();
+        if are_times { Ok(()) } else { Err(CoupledError::Times { from, to, until }) }
+    }
 }
 
 /// Results of a coupled run.
@@ -67,7 +83,7 @@ pub struct Results {
 /// Runs the harvester of `setup` with a circuit of `settings` from 0 s on, both membranes charged.
 ///
 /// # Errors
-/// Parameters that harvester or circuit refuse; electrostatic feedback; more events than can be resolved.
+/// Parameters that harvester or circuit refuse; electrostatic feedback; times that are none; more events than can be resolved.
 pub fn run<'a>(setup: impl Into<Setup<'a>>, settings: &Settings, times: &Times) -> Result<Results, CoupledError> {
     run_watched(setup, settings, times, &mut ())
 }
@@ -82,9 +98,9 @@ pub fn run_watched<'a>(
     times: &Times,
     watch: &mut impl Watch,
 ) -> Result<Results, CoupledError> {
-    let mut mechanics = Mechanics::new(setup.into(), times.tolerance)?;
+    let mut mechanics = Mechanics::new(setup.into(), times)?;
     watch.begin(mechanics.membrane());
-    let mut electrics = Electrics::new(settings, mechanics.now(), watch)?;
+    let mut electrics = Electrics::new(settings, mechanics.start(), watch)?;
     let [before, after] = times.window;
     let before = mechanics.follow(before, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;
     let after = mechanics.follow(after, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;

@@ -2,14 +2,14 @@
 
 use videg_model::{ContactLaw, Harvester, Membrane, ModelError, Pulse, Setup, Side};
 
-use crate::CoupledError;
 use crate::averages::Gains;
 use crate::pulses::SharedPulses;
+use crate::{CoupledError, Times};
 
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
 
 /// Most lines between two knots.
-const MOST: f64 = 1e4;
+const MOST_LINES: f64 = 1e4;
 
 /// C(t) between two of its knots as straight lines.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +64,8 @@ pub(crate) struct Mechanics {
 
 impl Mechanics {
     /// At 0 s.
-    pub fn new(setup: Setup<'_>, tolerance: f64) -> Result<Self, CoupledError> {
+    pub fn new(setup: Setup<'_>, times: &Times) -> Result<Self, CoupledError> {
+        times.check()?;
         if setup.parameters.electrostatic_feedback {
             return Err(CoupledError::Feedback);
         }
@@ -72,7 +73,7 @@ impl Mechanics {
         let mut start = Self {
             pulses: SharedPulses::of(setup.parameters),
             harvester,
-            tolerance,
+            tolerance: times.tolerance,
             capacitances: vec![],
             deflections: vec![],
         };
@@ -85,8 +86,8 @@ impl Mechanics {
         self.harvester.membrane()
     }
 
-    /// What was followed last.
-    pub fn now(&self) -> Piece<'_> {
+    /// C(t) at 0 s, before anything is followed.
+    pub fn start(&self) -> Piece<'_> {
         self.piece(0.0, false)
     }
 
@@ -209,8 +210,8 @@ impl Mechanics {
 
 /// Number of chords that are off by at most `tolerance` where the curvature is `curvature` at most, over one piece of the length 1.
 fn lines(curvature: f64, tolerance: f64) -> u32 {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1 to MOST
-    let count = (curvature / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, MOST) as u32;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1 to MOST_LINES
+    let count = (curvature / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, MOST_LINES) as u32;
     count
 }
 

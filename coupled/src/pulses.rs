@@ -11,7 +11,7 @@ pub(crate) struct SharedPulses {
 }
 
 impl SharedPulses {
-    /// Those of a power law under the impulsive law; none under others.
+    /// Those of the power law under the impulsive law; under other laws no two pulses share a shape.
     pub fn of(p: &Parameters) -> Option<Self> {
         let is_shared = p.contact_law == ContactLaw::Impulsive && p.membrane_law == MembraneLaw::Power;
         let shape = PulseShape::new(p.stiffness_exponent, p.restitution);

@@ -7,8 +7,8 @@ use crate::averages::{Averages, Gains};
 use crate::mechanics::{Follower, Mechanics, Piece};
 use crate::{CoupledError, Electrics, Results, Times, Watch};
 
-/// Most knots that are kept: 32 bytes each, with the deflections.
-const MOST: usize = 1 << 20;
+/// Most knots that are kept: 32 bytes each, with the deflections, and 24 for each piece. 100 s of Fig. 14 have 27,000.
+const MOST_KNOTS: usize = 1 << 19;
 
 /// C(t) of a run as straight lines. Circuits that follow it have the results of [`run`](crate::run), to the last bit.
 pub struct Track {
@@ -41,19 +41,20 @@ impl From<ModelError> for End {
 }
 
 impl Track {
-    /// That of the harvester of `setup`; none if it is too long to be kept.
+    /// Records C(t) of the harvester of `setup`; none if it is too long to be kept.
     ///
     /// # Errors
     /// As [`run`](crate::run), but for the circuit.
     pub fn of<'a>(setup: impl Into<Setup<'a>>, times: &Times) -> Result<Option<Self>, CoupledError> {
-        let mut mechanics = Mechanics::new(setup.into(), times.tolerance)?;
+        let mut mechanics = Mechanics::new(setup.into(), times)?;
         let mut knots = Knots::default();
-        let kept = knots.take(mechanics.now()).and_then(|()| knots.keep(&mut mechanics, times));
+        let kept = knots.take(mechanics.start()).and_then(|()| knots.keep(&mut mechanics, times));
         let (gains, edges) = match kept {
             Ok(kept) => kept,
             Err(End::TooLong) => return Ok(None),
             Err(End::Model(error)) => return Err(error.into()),
         };
+        knots.shrink();
         let averages = Averages::over(times.window, &gains[0], &gains[1]);
         let membrane = mechanics.membrane().clone();
         Ok(Some(Self { times: *times, membrane, averages, knots, edges }))
@@ -87,6 +88,12 @@ impl Knots {
         Ok(([before.0, after.0], [before.1, after.1]))
     }
 
+    fn shrink(&mut self) {
+        self.pieces.shrink_to_fit();
+        self.capacitances.shrink_to_fit();
+        self.deflections.shrink_to_fit();
+    }
+
     fn piece(&self, k: usize) -> Piece<'_> {
         let (length, end, is_monotone) = self.pieces[k];
         let knots = k.checked_sub(1).map_or(0, |before| self.pieces[before].1)..end;
@@ -112,6 +119,6 @@ impl Follower for Knots {
         self.capacitances.extend_from_slice(piece.capacitances);
         self.deflections.extend_from_slice(piece.deflections);
         self.pieces.push((piece.length, self.capacitances.len(), piece.is_monotone));
-        if self.capacitances.len() > MOST { Err(End::TooLong) } else { Ok(()) }
+        if self.capacitances.len() > MOST_KNOTS { Err(End::TooLong) } else { Ok(()) }
     }
 }

@@ -71,3 +71,26 @@ fn a_run_of_more_knots_than_memory_is_given_has_no_track() {
     assert!(Track::of(&p, &times(100.0)).unwrap().is_some());
     assert!(Track::of(&p, &times(10_000.0)).unwrap().is_none());
 }
+
+#[test]
+fn times_that_are_none_are_refused_and_nothing_hangs() {
+    let p = Parameters::default();
+    let good = Times { until: 2.0, window: [1.0, 2.0], tolerance: 1e-3 };
+    for (times, said) in [
+        (Times { tolerance: 0.0, ..good }, "tolerance = 0: allowed: above 0"),
+        (Times { tolerance: -1.0, ..good }, "tolerance = -1"),
+        (Times { tolerance: f64::NAN, ..good }, "tolerance = NaN"),
+        (Times { until: f64::INFINITY, ..good }, "window = 1,2 s and until = inf s"),
+        (Times { until: f64::NAN, ..good }, "window = 1,2 s and until = NaN s"),
+        (Times { until: 1.5, ..good }, "window = 1,2 s and until = 1.5 s: allowed: 0 <= from < to <= until, finite"),
+        (Times { window: [2.0, 1.0], ..good }, "window = 2,1 s"),
+        (Times { window: [-1.0, 1.0], ..good }, "window = -1,1 s"),
+        (Times { window: [f64::NAN, 1.0], ..good }, "window = NaN,1 s"),
+    ] {
+        let errors = [run(&p, &Settings::default(), &times).err(), Track::of(&p, &times).err()];
+        for error in errors {
+            let error = error.unwrap().to_string();
+            assert!(error.starts_with(said), "{error}");
+        }
+    }
+}

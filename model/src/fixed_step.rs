@@ -1,5 +1,6 @@
 //! The paper's own method for many nearby starts at once: Runge-Kutta of fourth order with a fixed step, and Eq. (11)
-//! where a step ends beyond a membrane. The cylinder does not feel the balls, so one serves them all.
+//! where a step ends beyond a membrane. The cylinder does not feel the balls, so one serves them all. Only what the paper has counts: the
+//! harmonic force on a free, level cylinder and the impulsive law; other parameters are not looked at.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +27,7 @@ struct Gain {
 }
 
 /// Most half steps of a period that are kept.
-const MOST: f64 = 4e6;
+const MOST_HALF_STEPS: f64 = 4e6;
 
 /// A cylinder with many balls that do not feel each other.
 pub struct FixedStep {
@@ -145,9 +146,13 @@ struct Drive {
 impl Drive {
     fn new(p: &Parameters, step: f64) -> Self {
         let steps = 1.0 / (p.frequency * step);
-        let is_whole = (steps / steps.round() - 1.0).abs() < 1e-12 && 2.0 * steps <= MOST;
+        let is_whole = (steps / steps.round() - 1.0).abs() < 1e-12 && 2.0 * steps <= MOST_HALF_STEPS;
         let at = |half: u64| acceleration(p, half as f64 * 0.5 * step);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and MOST at most")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive, and at most MOST_HALF_STEPS"
+        )]
         let period = if is_whole { (1..=2 * steps.round() as u64).map(at).collect() } else { Vec::new() };
         Self { parameters: *p, step, over: 0, period }
     }

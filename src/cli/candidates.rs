@@ -4,7 +4,7 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use clap::{Arg, Command, ValueHint};
+use clap::{Arg, Command};
 use clap_complete::engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter};
 use fmu_import::{FmiError, Kind, ModelDescription, Variable};
 use videg_model::{Case, Parameters};
@@ -43,15 +43,29 @@ fn of_argument(verb: &str, argument: Arg) -> Arg {
 }
 
 fn completed(argument: Arg, candidates: impl Fn(&str) -> Candidates + Send + Sync + 'static) -> Arg {
-    argument.add(ArgValueCompleter::new(move |typed: &OsStr| typed.to_str().map(&candidates).unwrap_or_default()))
+    completed_by(argument, move |typed: &OsStr| typed.to_str().map(&candidates).unwrap_or_default())
+}
+
+/// Without what the scripts cannot hand on: they take a line for each candidate.
+fn completed_by(argument: Arg, candidates: impl Fn(&OsStr) -> Candidates + Send + Sync + 'static) -> Arg {
+    let is_plain =
+        |it: &CompletionCandidate| it.get_value().to_str().is_some_and(|text| !text.chars().any(char::is_control));
+    argument.add(ArgValueCompleter::new(move |typed: &OsStr| {
+        let mut found = candidates(typed);
+        found.retain(is_plain);
+        found
+    }))
 }
 
 /// The files that the name of a value asks for: `FILE.toml` those with this ending, `DIR` folders.
 fn with_files(argument: Arg) -> Arg {
     let asked = argument.get_value_names().and_then(<[_]>::first).map(ToString::to_string).unwrap_or_default();
     match asked.strip_prefix("FILE.") {
-        Some(ending) => argument.add(ArgValueCompleter::new(files(ending))),
-        None if asked == "DIR" => argument.value_hint(ValueHint::DirPath),
+        Some(ending) => {
+            let files = files(ending);
+            completed_by(argument, move |typed| files.complete(typed))
+        }
+        None if asked == "DIR" => completed_by(argument, |typed| PathCompleter::dir().complete(typed)),
         None => argument,
     }
 }

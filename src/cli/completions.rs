@@ -34,6 +34,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
 /// Answers the script of a shell, and says whether one asked. A question that makes no sense has no answer: an error would stand in the
 /// line that the user types.
 pub fn answer() -> bool {
+    // A script asks behind `--`; whatever the environment says, another command is not its question.
+    if std::env::args_os().nth(1).is_none_or(|first| first != "--") {
+        return false;
+    }
     let folder = std::env::current_dir().ok();
     let engine = CompleteEnv::with_factory(|| candidates::of_all(command())).var(ASKED).shells(SHELLS);
     engine.bin(NAME).completer(NAME).try_complete(std::env::args_os(), folder.as_deref()).unwrap_or(true)

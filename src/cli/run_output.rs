@@ -128,8 +128,9 @@ fn file_list_within(files: &[PathBuf], columns: Option<usize>) -> String {
     let folder = |file: &PathBuf| file.parent().unwrap_or(Path::new("")).display().to_string();
     let name = |file: &PathBuf| format!("  {}", Path::new(file.file_name().unwrap_or_default()).display());
     let group = |files: &[PathBuf]| {
-        let folder = files.first().map(folder).unwrap_or_default();
-        format!("written in {folder}:\n{}", files.iter().map(name).collect::<Vec<_>>().join("\n"))
+        let folder = files.first().map(folder).filter(|folder| !folder.is_empty());
+        let place = folder.map_or_else(String::new, |folder| format!(" in {folder}"));
+        format!("written{place}:\n{}", files.iter().map(name).collect::<Vec<_>>().join("\n"))
     };
     files.chunk_by(|one, other| one.parent() == other.parent()).map(group).collect::<Vec<_>>().join("\n")
 }
@@ -182,5 +183,6 @@ mod tests {
         assert_eq!([None, Some(29)].map(|columns| file_list_within(&files, columns)), [whole, whole]);
         let narrow = "written in out/long-name:\n  a.csv\n  b.csv\nwritten in out/long-name/figures:\n  c.svg";
         assert_eq!(file_list_within(&files, Some(28)), narrow);
+        assert_eq!(file_list_within(&["long-name.csv".into()], Some(10)), "written:\n  long-name.csv");
     }
 }

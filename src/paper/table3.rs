@@ -8,6 +8,10 @@ use videg_report::{Figure, Panel, Series, Style, Table};
 /// Steps of the paper's method to show, s.
 const STEPS: [f64; 10] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6];
 
+/// That of the paper among them.
+const OF_THE_PAPER: usize = 6;
+const _: () = assert!(STEPS[OF_THE_PAPER] == FixedStep::PAPER);
+
 /// The numbers of the paper for a case.
 struct Printed {
     case: &'static str,
@@ -54,8 +58,7 @@ struct Compared {
 
 impl Compared {
     fn of_the_paper(&self) -> Stepped {
-        let index = STEPS.iter().position(|&step| step == FixedStep::PAPER).unwrap_or_default();
-        self.stepped[index]
+        self.stepped[OF_THE_PAPER]
     }
 }
 
@@ -108,10 +111,9 @@ fn compare(study: &Study<'_>) -> Result<Vec<Compared>, PaperError> {
         .collect::<Result<Vec<_>, PaperError>>()?;
     let averages = study.averages(&runs)?;
     // A quick look goes to the paper's step; each after it takes twice as long as the one before.
-    let steps =
-        study.effort.of(STEPS.len(), 1 + STEPS.iter().position(|&step| step == FixedStep::PAPER).unwrap_or_default());
+    let taken = study.effort.of(STEPS.len(), 1 + OF_THE_PAPER);
     // The longest first, so that all cores end together.
-    let tasks: Vec<_> = STEPS[..steps].iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
+    let tasks: Vec<_> = STEPS[..taken].iter().rev().flat_map(|&step| PRINTED.iter().map(move |p| (p, step))).collect();
     let mut stepped = study.each(&tasks, |(printed, step)| {
         let parameters = Case::find(printed.case).map(|case| (case.parameters)());
         Ok(parameters.and_then(|p| FixedStep::new(&p, &[p.ball_velocity], *step).run(WINDOW).pop()))

@@ -13,7 +13,7 @@ use super::electrical::{CONVERTED, POWERS};
 use super::instance::run_fmu;
 use super::plan::{Results, Run};
 use super::setter::Setter;
-use super::tracks::{Mechanics, Tracks};
+use super::tracks::{HarvesterInputs, Tracks};
 use super::{Sweep, SweepError};
 use crate::cosim::{CircuitRequest, CircuitSample};
 
@@ -66,7 +66,7 @@ pub struct DrivenImpacts {
 /// What a run is made from.
 #[derive(Clone)]
 struct Inputs {
-    mechanics: Mechanics,
+    harvester: HarvesterInputs,
     circuit: Settings,
     /// Quantities of the circuit that were asked for.
     given: Vec<&'static str>,
@@ -92,7 +92,7 @@ impl System {
         }
         let mut files = Files::default();
         let mut base = Inputs {
-            mechanics: Mechanics { parameters: Parameters::default(), recording: None, table: None },
+            harvester: HarvesterInputs { parameters: Parameters::default(), recording: None, table: None },
             circuit: Settings::default(),
             given: Vec::new(),
         };
@@ -110,10 +110,10 @@ impl System {
     /// has no closed forms. An error says why the run failed.
     pub fn impacts_at(&self, sweep: &Sweep, values: &[f64], sample: u64) -> Result<Option<DrivenImpacts>, String> {
         let inputs = self.inputs(sweep, &sweep.run_at(values, sample));
-        if inputs.mechanics.parameters.contact_law != ContactLaw::Impulsive {
+        if inputs.harvester.parameters.contact_law != ContactLaw::Impulsive {
             return Ok(None);
         }
-        let impacts = Impacts::of(inputs.mechanics.setup(), sweep.times.window).map_err(|error| error.to_string())?;
+        let impacts = Impacts::of(inputs.harvester.setup(), sweep.times.window).map_err(|error| error.to_string())?;
         Ok(Some(DrivenImpacts { impacts, topology: inputs.circuit.circuit.topology }))
     }
 
@@ -227,7 +227,7 @@ impl Inputs {
     fn set<'a>(&mut self, values: impl Iterator<Item = (&'a Variable, &'a Value)>, files: &Files) {
         for (variable, value) in values {
             match (SystemSetter::of(variable), value) {
-                (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.mechanics.parameters, value),
+                (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.harvester.parameters, value),
                 (Some(SystemSetter::Quantity(name, set)), Value::Real(number)) => {
                     set(&mut self.circuit, *number);
                     self.given.push(name);
@@ -237,10 +237,10 @@ impl Inputs {
                     Value::Integer(number) | Value::Enumeration { value: number, .. },
                 ) => set(&mut self.circuit, *number),
                 (Some(SystemSetter::Recording), Value::String(name)) => {
-                    self.mechanics.recording = files.recordings.get(name).cloned();
+                    self.harvester.recording = files.recordings.get(name).cloned();
                 }
                 (Some(SystemSetter::Table), Value::String(name)) => {
-                    self.mechanics.table = files.tables.get(name).cloned();
+                    self.harvester.table = files.tables.get(name).cloned();
                 }
                 // `System::new` has refused others, and no value of a variable is of another type than the variable.
                 _ => debug_assert!(false, "{} = {value} of type {}", variable.name, value.type_name()),
@@ -252,8 +252,8 @@ impl Inputs {
     fn settings(&self, times: &Times) -> Result<Settings, CoupledError> {
         let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
         let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
-        let ratio = if chooses { Impacts::of(self.mechanics.setup(), [0.0, times.until])?.best_ratio() } else { 1.0 };
-        Ok(request.resolve(self.mechanics.parameters.bias_voltage, ratio))
+        let ratio = if chooses { Impacts::of(self.harvester.setup(), [0.0, times.until])?.best_ratio() } else { 1.0 };
+        Ok(request.resolve(self.harvester.parameters.bias_voltage, ratio))
     }
 
     fn run<W: Watch>(
@@ -263,9 +263,10 @@ impl Inputs {
         tracks: &Tracks,
         watch: &mut W,
     ) -> Result<videg_coupled::Results, CoupledError> {
-        match tracks.of(&self.mechanics, times)? {
-            Some(track) => track.run(settings, watch),
-            None => videg_coupled::run_watched(self.mechanics.setup(), settings, times, watch),
+        // If the harvester fails, a run says why, so that the reason is the same in any order of runs.
+        match tracks.of(&self.harvester, times) {
+            Ok(Some(track)) => track.run(settings, watch),
+            Ok(None) | Err(_) => videg_coupled::run_watched(self.harvester.setup(), settings, times, watch),
         }
     }
 }

@@ -11,7 +11,7 @@ const MOST: usize = 8;
 
 /// What a harvester is made from.
 #[derive(Clone)]
-pub(super) struct Mechanics {
+pub(super) struct HarvesterInputs {
     pub parameters: Parameters,
     pub recording: Option<Arc<Recording>>,
     pub table: Option<Arc<ForceTable>>,
@@ -21,22 +21,22 @@ pub(super) struct Mechanics {
 enum Known {
     /// It ran once. Most harvesters of a sweep run once only, and are not worth more.
     Seen,
-    /// A thread works C(t) out, or it is too long to be kept.
-    Without,
+    /// A thread works C(t) out, or there is none that could be kept.
+    NotKept,
     Kept(Arc<Track>),
 }
 
 /// The last harvesters, the latest first.
 #[derive(Default)]
-pub(super) struct Tracks(Mutex<VecDeque<(Mechanics, Known)>>);
+pub(super) struct Tracks(Mutex<VecDeque<(HarvesterInputs, Known)>>);
 
-impl Mechanics {
+impl HarvesterInputs {
     pub fn setup(&self) -> Setup<'_> {
         self.parameters.with_recording(self.recording.as_deref()).with_table(self.table.as_deref())
     }
 }
 
-impl PartialEq for Mechanics {
+impl PartialEq for HarvesterInputs {
     /// Files are read once, so that the same file is the same data.
     fn eq(&self, other: &Self) -> bool {
         fn is_same<T>(a: Option<&Arc<T>>, b: Option<&Arc<T>>) -> bool {
@@ -49,24 +49,30 @@ impl PartialEq for Mechanics {
 }
 
 impl Tracks {
-    /// C(t) of `mechanics`, if it is asked for once more.
-    pub fn of(&self, mechanics: &Mechanics, times: &Times) -> Result<Option<Arc<Track>>, CoupledError> {
+    /// C(t) of the harvester of `inputs`, from the second time on that it is asked for.
+    ///
+    /// # Errors
+    /// As [`Track::of`].
+    pub fn of(&self, inputs: &HarvesterInputs, times: &Times) -> Result<Option<Arc<Track>>, CoupledError> {
         {
             let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            match last.iter_mut().find(|(it, _)| it == mechanics).map(|(_, known)| known) {
-                Some(Known::Kept(track)) => return Ok(Some(Arc::clone(track))),
-                Some(Known::Without) => return Ok(None),
-                Some(known @ Known::Seen) => *known = Known::Without,
-                None => {
-                    last.push_front((mechanics.clone(), Known::Seen));
-                    last.truncate(MOST);
-                    return Ok(None);
-                }
+            // One that is asked for again goes to the front.
+            let there = last.iter().position(|(it, _)| it == inputs).and_then(|place| last.remove(place));
+            let (next, found) = match there.map(|(_, known)| known) {
+                Some(Known::Kept(track)) => (Known::Kept(Arc::clone(&track)), Some(Ok(Some(track)))),
+                Some(Known::NotKept) => (Known::NotKept, Some(Ok(None))),
+                Some(Known::Seen) => (Known::NotKept, None),
+                None => (Known::Seen, Some(Ok(None))),
+            };
+            last.push_front((inputs.clone(), next));
+            last.truncate(MOST);
+            if let Some(found) = found {
+                return found;
             }
         }
-        let Some(track) = Track::of(mechanics.setup(), times)?.map(Arc::new) else { return Ok(None) };
+        let Some(track) = Track::of(inputs.setup(), times)?.map(Arc::new) else { return Ok(None) };
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = last.iter_mut().find(|(it, _)| it == mechanics) {
+        if let Some((_, known)) = last.iter_mut().find(|(it, _)| it == inputs) {
             *known = Known::Kept(Arc::clone(&track));
         }
         Ok(Some(track))

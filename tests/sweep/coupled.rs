@@ -87,7 +87,7 @@ fn a_coupled_sweep_that_is_killed_again_and_again_comes_to_the_same_bytes() {
     assert_same_results(&whole, &killed);
 }
 
-/// C(t) of a harvester that runs with many circuits is worked out once, whichever axis comes first and however many threads there are.
+/// C(t) of a harvester that runs with many circuits is kept, whichever axis comes first and however many threads there are.
 #[test]
 fn the_order_of_runs_leaves_their_numbers() {
     let (_guard, folder) = folder();

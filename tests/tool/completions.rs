@@ -120,6 +120,52 @@ fn a_question_that_makes_no_sense_has_no_answer() {
     assert!(output.stdout.is_empty() && output.stderr.is_empty());
 }
 
+/// Words that nobody types on purpose; the answer is nothing or a candidate, never an error.
+#[test]
+fn strange_words_do_no_harm() {
+    use std::os::unix::ffi::OsStringExt as _;
+    let folder = place();
+    let long = "x".repeat(100_000);
+    let of_bytes = std::ffi::OsString::from_vec(b"--set=\xff\xfe".to_vec());
+    for word in [long.into(), of_bytes, "--set=\u{1b}[31m\n\t".into(), "--vary=case=\u{7}".into(), "\u{0301}=".into()] {
+        for (verb, index) in [("simulate", "2"), ("sweep", "2"), ("sweep", "18446744073709551615"), ("map", "two")] {
+            let mut command = videg(&["--", "videg", verb]);
+            command.arg(&word).current_dir(folder.path()).env("VIDEG_COMPLETE", "fish").env("_CLAP_IFS", "\n");
+            let output = done(command.env("_CLAP_COMPLETE_INDEX", index));
+            assert!(output.stderr.is_empty(), "{word:?}: {}", stderr(&output));
+        }
+    }
+}
+
+#[test]
+fn a_variable_of_the_environment_alone_asks_nothing() {
+    for shell in ["1", "bash"] {
+        let output = done(videg(&["cases"]).env("VIDEG_COMPLETE", shell));
+        assert!(String::from_utf8(output.stdout).unwrap().contains("fig14"), "{shell}");
+    }
+}
+
+#[test]
+fn names_of_files_that_mean_something_to_a_shell_are_offered_as_words() {
+    let folder = place();
+    for name in ["a b.toml", "$(touch gone).toml", "x;y.toml", "new\nline.toml", "tab\t.toml"] {
+        fs::write(folder.path().join(name), "").unwrap();
+    }
+    let offered = asked("fish", folder.path(), &["videg", "simulate", "--case-file", ""]);
+    assert!(!offered.contains("new") && !offered.contains("tab"), "{offered}");
+    let script = "eval \"$(videg completions bash)\"
+        COMP_LINE='videg simulate --case-file ' COMP_POINT=${#COMP_LINE} COMP_CWORD=3 COMP_WORDS=(videg simulate --case-file '')
+        _videg videg '' && eval \"set -- ${COMPREPLY[*]}\" && printf '%s\\n' \"$@\"";
+    let mut bash = Command::new("bash");
+    let tool = Path::new(env!("CARGO_BIN_EXE_videg")).parent().unwrap();
+    let path = std::env::join_paths([tool, Path::new("/bin"), Path::new("/usr/bin")]).unwrap();
+    let output = done(bash.args(["--norc", "-c", script]).env("PATH", path).current_dir(folder.path()));
+    let mut words: Vec<_> = std::str::from_utf8(&output.stdout).unwrap().lines().collect();
+    words.sort_unstable();
+    assert_eq!(words, ["$(touch gone).toml", "a b.toml", "my.toml", "runs/", "x;y.toml"]);
+    assert!(!folder.path().join("gone").exists());
+}
+
 /// What bash completes a line to at its end, or at its `|`.
 fn bash(line: &str) -> Vec<String> {
     const SCRIPT: &str = "eval \"$(videg completions bash)\"

@@ -19,7 +19,10 @@ _videg() {
     words[${#words[@]} - 1]=$before$2
     COMPREPLY=()
     while IFS= read -r candidate || [[ -n $candidate ]]; do
-        COMPREPLY+=("${candidate#"$before"}")
+        candidate=${candidate#"$before"}
+        # A name of a file may mean something to the shell; within quotes it is as it is.
+        [[ $2 != [\"\']* && $candidate == *[^[:alnum:]_.,:=/+@%~-]* ]] && printf -v candidate %q "$candidate"
+        COMPREPLY+=("$candidate")
     done < <(VIDEG_COMPLETE=bash _CLAP_IFS=$'\n' _CLAP_COMPLETE_INDEX=$((${#words[@]} - 1)) \
         videg -- "${words[@]}" 2>/dev/null)
     # The word goes on behind these.
