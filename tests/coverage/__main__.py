@@ -13,12 +13,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs/coverage.md"
 GAPS = Path(__file__).with_name("gaps.toml")
-PACKAGES = ["model", "circuit", "fmu/abi", "fmu/export", "fmu/harvester", "fmu/circuit"]
+PACKAGES = ["model", "circuit", "coupled", "fmu/abi", "fmu/export", "fmu/harvester", "fmu/circuit"]
 BOUND = 90.0
 HEAD = """\
 # Coverage
 
-The page shows how many lines of the packages of the FMUs their own tests reach. `./test.sh coverage` measures this and
+The page shows how many lines of the packages of the FMUs and of the coupled run their own tests reach. `./test.sh coverage` measures this and
 writes the page. It fails if a package is below {bound:g} %, or if a file is below and `tests/coverage/gaps.toml` gives no
 reason. Unit tests inside source files do not count as lines, nor do const functions that only the compiler evaluates: they make rows of
 constants. Lines that the other tests reach through the packaged FMUs are

@@ -26,7 +26,7 @@ if ! compgen -G "$sysroot/lib/rustlib/*/bin/llvm-profdata*" >/dev/null; then
     export LLVM_COV=$tools/llvm-cov LLVM_PROFDATA=$tools/llvm-profdata
 fi
 
-packages=(-p videg-model -p videg-circuit -p fmu-abi -p fmu-export -p videg-fmu-harvester -p videg-fmu-circuit)
+packages=(-p videg-model -p videg-circuit -p videg-coupled -p fmu-abi -p fmu-export -p videg-fmu-harvester -p videg-fmu-circuit)
 cargo llvm-cov clean --workspace
 cargo llvm-cov --no-report --quiet "${packages[@]}"
 # By itself: together with the FMUs its feature would get into them.
