@@ -201,6 +201,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "half a million steps of safe code or more")]
     fn a_ball_goes_its_own_way_whoever_else_is_there() {
         let p = parameters("fig13");
         let velocities = [0.0, 1e-4, -1e-4];
@@ -211,6 +212,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "half a million steps of safe code or more")]
     fn a_damped_motion_is_that_of_the_model_to_the_first_order_of_the_step() {
         let p = parameters("fig14");
         let stepped = FixedStep::new(&p, &[p.ball_velocity], FixedStep::PAPER).run([0.0, 10.0])[0].voltage_gain;

@@ -47,7 +47,7 @@ pub const ALL: &str = "all";
 const SUMMARY: &str = "summary.csv";
 
 /// End of the run of the crosscheck, s, and that of a quick one.
-const CROSSCHECKED: [f64; 2] = [20.0, 5.0];
+const CROSSCHECKED: [f64; 2] = [10.0, 5.0];
 
 #[derive(Serialize)]
 struct Output<'a> {
