@@ -122,7 +122,7 @@ fn the_circuit_fmu_agrees_with_the_embedded_circuit_under_every_master_and_setti
 }
 
 /// How a run of the harvester is divided into steps changes nothing in it, so an impact that is missed would be seen: with a
-/// ball that comes to rest, and with phase noise, under which impacts are foreseen for some time only.
+/// ball that comes to rest, and with phase noise, under which impacts are predicted for some time only.
 #[test]
 fn the_adaptive_master_undoes_steps_without_a_trace_in_the_mechanics() {
     for case in

@@ -68,8 +68,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     let scenario = Request { case: Some(case.clone()), ..Request::default() }.resolve()?;
     let values = start_values(&scenario)?;
     match arguments.format.unwrap_or(Format::Toml) {
-        Format::Toml => output::put(&toml(&scenario, &values)),
-        Format::Python => output::put(&python(&scenario, &values)),
+        Format::Toml => output::print_as_is(&toml(&scenario, &values)),
+        Format::Python => output::print_as_is(&python(&scenario, &values)),
         Format::Json => output::print_json(&serde_json::to_string_pretty(&json(&scenario, &values))?),
     }?;
     Ok(Exit::Passed)

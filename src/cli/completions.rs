@@ -27,7 +27,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
         Some(shell) => shell.write_registration(ASKED, NAME, NAME, NAME, &mut script)?,
         None => clap_complete::generate(arguments.shell, &mut command(), NAME, &mut script),
     }
-    output::put(&String::from_utf8_lossy(&script))?;
+    output::print_as_is(&String::from_utf8_lossy(&script))?;
     Ok(Exit::Passed)
 }
 

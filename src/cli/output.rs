@@ -25,12 +25,12 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
 /// Prints `text` and an end of line on stdout, with control characters spelled out, lines that fit and verdicts in colour.
 pub fn print(text: &str) -> io::Result<()> {
     let text = terminal::wrapped(&plain(text), terminal::width());
-    put_to(terminal::stdout(), &(terminal::coloured(&text) + "\n"))
+    print_to(terminal::stdout(), &(terminal::coloured(&text) + "\n"))
 }
 
 /// Prints the document `json` and an end of line on stdout.
 pub fn print_json(json: &str) -> io::Result<()> {
-    put(&(plain_json(json) + "\n"))
+    print_as_is(&(plain_json(json) + "\n"))
 }
 
 /// Prints `value` as a JSON document, or else its `text`.
@@ -40,11 +40,11 @@ pub fn show(is_json: bool, value: &impl Serialize, text: impl FnOnce() -> String
 }
 
 /// Writes `text` on stdout as it is. A reader that closes early (`videg ... | head`) is no failure.
-pub fn put(text: &str) -> io::Result<()> {
-    put_to(io::stdout(), text)
+pub fn print_as_is(text: &str) -> io::Result<()> {
+    print_to(io::stdout(), text)
 }
 
-fn put_to(mut stdout: impl io::Write, text: &str) -> io::Result<()> {
+fn print_to(mut stdout: impl io::Write, text: &str) -> io::Result<()> {
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,

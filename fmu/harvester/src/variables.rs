@@ -193,7 +193,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is foreseen within one period (with phase noise: within 256 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a period)",
+        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted within one period (with phase noise: within 256 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a period)",
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
@@ -203,7 +203,7 @@ static EVENTS: [V; 8] = [
     V::output(
         "pulse.nextKnot",
         "s",
-        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is foreseen",
+        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is predicted",
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
