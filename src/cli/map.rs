@@ -9,14 +9,13 @@ use super::interruption::Interruption;
 use super::isolation::IsolationOptions;
 use super::map_report::{self as page, Found};
 use super::message::say;
-use super::options::{Window, parse_window};
 use super::progress::RunBar;
 use super::results::RESULT;
 use super::run_output::file_list;
-use super::sweep_options::What;
+use super::sweep_options::{Common, Execution, What};
 use super::{Exit, output, reproduce_files as files, run_output};
 use crate::map::{self, MapError, Outcome, Plan, picture};
-use crate::sweep::{self, Design, Engine, Options, POWERS, Sampling, Shard, System, Vary};
+use crate::sweep::{self, Design, Engine, POWERS, Sampling, System, Vary};
 
 /// Arguments of the verb.
 #[derive(Args)]
@@ -30,13 +29,8 @@ pub struct Arguments {
     /// Case file (TOML) with case, until, window and a [set] table
     #[arg(value_name = "FILE.toml")]
     file: Option<PathBuf>,
-    /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
-    /// capsule-soft [default: fig14]
-    #[arg(long, value_name = "NAME")]
-    case: Option<String>,
-    /// Set a parameter or input of harvester or circuit in all runs; may be repeated
-    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
-    settings: Vec<String>,
+    #[command(flatten)]
+    common: Common,
     /// What to map: `net_power`, `load_power`, `supply_power`, `average_voltage_gain`, or any other number that a sweep records
     #[arg(long, value_name = "NAME", default_value = POWERS[0])]
     of: String,
@@ -46,25 +40,12 @@ pub struct Arguments {
     /// Seed of the noise of the first sample; each further one takes the next [default: 1]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// End of a run, s [default: 100]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    until: Option<f64>,
-    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
-    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
-    window: Option<Window>,
-    /// Run only share I of N of the grid; `sweep merge` puts the shards together, and `map` draws them
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
-    shard: Option<Shard>,
-    /// Number of parallel runs [default: one on each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    execution: Execution,
     /// Folder for results, figure and report; the same command with the same folder resumes [default: out/map-CASE, or if another map is there
     /// out/map-CASE-DIGEST]
     #[arg(long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Start again; discards the results in the folder
-    #[arg(long)]
-    fresh: bool,
     /// Print one JSON object on stdout instead of the table
     #[arg(long)]
     json: bool,
@@ -79,10 +60,7 @@ pub fn run(arguments: &Arguments, interruption: &Interruption) -> anyhow::Result
     let folder = arguments.output.clone().map_or_else(default, Ok)?;
     let harvester = || IsolationOptions::default().open_own("VibroImpactHarvester");
     let engine = Engine::System(Box::new(System::new(&plan.sweep, harvester)?));
-    let mut options = Options::new(&plan.sweep, &engine, &folder);
-    options.shard = arguments.shard;
-    options.jobs = arguments.jobs.map_or(options.jobs, usize::from);
-    options.fresh = arguments.fresh;
+    let options = arguments.execution.options(&plan.sweep, &engine, &folder);
     let bar = RunBar::new(&format!("map {name}"), interruption.defer());
     let stopped = |message: &str| {
         say(message);
@@ -131,11 +109,8 @@ impl Arguments {
         let [x, y] = [Vary::parse(&self.x)?, Vary::parse(&self.y)?];
         let what = What {
             files: self.file.iter().cloned().collect(),
-            case: self.case.clone(),
-            settings: self.settings.clone(),
+            common: self.common.clone(),
             sampling: Sampling { samples: self.samples, seed: self.seed, ..Sampling::default() },
-            until: self.until,
-            window: self.window,
             ..What::default()
         };
         let description = sweep::system_description()?;

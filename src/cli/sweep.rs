@@ -12,9 +12,9 @@ use super::isolation::IsolationOptions;
 use super::message::say;
 use super::progress::RunBar;
 use super::run_output::file_list;
-use super::sweep_options::What;
+use super::sweep_options::{Execution, What};
 use super::{Exit, format, output, sweep_statistics};
-use crate::sweep::{self, BuiltIn, Design, Engine, Options, Report, Shard, Sweep, SweepError, System};
+use crate::sweep::{self, BuiltIn, Design, Engine, Report, Sweep, SweepError, System};
 use fmu_import::Fmu;
 
 /// Arguments of the verb.
@@ -28,19 +28,12 @@ pub struct Arguments {
     /// Run any FMU for FMI 2.0 co-simulation, in place of the harvester
     #[arg(long, value_name = "FILE")]
     fmu: Option<PathBuf>,
-    /// Run only share I of N; `sweep merge` puts the shards together
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
-    shard: Option<Shard>,
-    /// Number of parallel runs [default: one on each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    execution: Execution,
     /// Folder for the results; the same command with the same folder resumes [default: out/sweep, or if another sweep is there
     /// out/sweep-CASE-DIGEST]
     #[arg(long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Start again; discards the results in the folder
-    #[arg(long)]
-    fresh: bool,
     /// Check the sweep and print its number of points and runs; runs and writes nothing
     #[arg(long)]
     check: bool,
@@ -200,11 +193,10 @@ fn show_counts(arguments: &Arguments, sweep: &Sweep, design: Design) -> anyhow::
 /// Runs the sweep, with progress.
 fn follow(arguments: &Arguments, sweep: &Sweep, engine: &Engine, stop: &AtomicBool) -> Result<Report, SweepError> {
     let folder = arguments.output.clone().map_or_else(|| sweep::free_folder(sweep, Path::new("out/sweep")), Ok)?;
-    let mut options = Options::new(sweep, engine, &folder);
-    options.shard = arguments.shard;
-    options.jobs = arguments.jobs.map_or(options.jobs, usize::from);
-    options.fresh = arguments.fresh;
-    sweep::run(&options, &RunBar::new(&format!("sweep {}", sweep.name()), stop))
+    sweep::run(
+        &arguments.execution.options(sweep, engine, &folder),
+        &RunBar::new(&format!("sweep {}", sweep.name()), stop),
+    )
 }
 
 fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, elapsed_s: f64) -> anyhow::Result<Exit> {
@@ -215,7 +207,7 @@ fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, e
         resumed_from,
         elapsed_s,
         rate_runs_per_s: (runs - resumed_from) as f64 / elapsed_s,
-        shard: arguments.shard.map(|shard| shard.to_string()),
+        shard: arguments.execution.shard.map(|shard| shard.to_string()),
         files: &report.files,
         statistics: report.statistics.as_ref().and_then(sweep_statistics::Output::of),
     };
@@ -231,7 +223,7 @@ fn show(arguments: &Arguments, sweep: &Sweep, design: Design, report: &Report, e
         ));
     }
     // The merge of the shards finds out whether all runs of the sweep failed.
-    Ok(if arguments.shard.is_some() { Exit::Passed } else { verdict(runs, failed) })
+    Ok(if arguments.execution.shard.is_some() { Exit::Passed } else { verdict(runs, failed) })
 }
 
 fn text(result: &Output<'_>) -> String {

@@ -1,6 +1,6 @@
 //! The sweep that a user asks for, from options and sweep file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Args;
@@ -8,8 +8,51 @@ use clap::Args;
 use super::options::{Window, mechanical, parse_window};
 use super::sweep_cases::{cases, under};
 use crate::scenario::{self, CaseFile, Scenario, ScenarioError, Setting};
-use crate::sweep::{NamedCase, POWERS, Request, Sampling, SweepFile, Times, Vary, is_electrical};
+use crate::sweep::{
+    Engine, NamedCase, Options, POWERS, Request, Sampling, Shard, Sweep, SweepFile, Times, Vary, is_electrical,
+};
 use fmu_import::{Bounds, ModelDescription};
+
+/// What all runs have in common.
+#[derive(Args, Clone, Default)]
+pub struct Common {
+    /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
+    /// capsule-soft [default: fig14]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+    /// Set a parameter or input of harvester or circuit in all runs; may be repeated
+    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
+    pub settings: Vec<String>,
+    /// End of a run, s [default: 100]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
+    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
+    pub window: Option<Window>,
+}
+
+/// How many runs at once, and which.
+#[derive(Args)]
+pub struct Execution {
+    /// Run only share I of N; `sweep merge` puts the shards together
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub shard: Option<Shard>,
+    /// Number of parallel runs [default: one on each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Start again; discards the results in the folder
+    #[arg(long)]
+    fresh: bool,
+}
+
+impl Execution {
+    /// The same for `sweep` in `folder`.
+    pub fn options<'a>(&self, sweep: &'a Sweep, engine: &'a Engine, folder: &'a Path) -> Options<'a> {
+        let options = Options::new(sweep, engine, folder);
+        let jobs = self.jobs.map_or(options.jobs, usize::from);
+        Options { shard: self.shard, jobs, fresh: self.fresh, ..options }
+    }
+}
 
 /// Options that describe a sweep. An option wins over the same key of the file.
 #[derive(Args, Default)]
@@ -18,28 +61,17 @@ pub struct What {
     /// or several case files, over which the sweep goes
     #[arg(value_name = "FILE.toml")]
     pub files: Vec<PathBuf>,
-    /// Published case: fig9 to fig15, table3-2hz, table3-5hz, capsule-1-1, capsule-2-1, capsule-3-1, capsule-friction,
-    /// capsule-soft [default: fig14]
-    #[arg(long, value_name = "NAME")]
-    pub case: Option<String>,
-    /// Set a parameter or input of harvester or circuit in all runs; may be repeated
-    #[arg(long = "set", value_name = "VARIABLE=VALUE")]
-    pub settings: Vec<String>,
+    #[command(flatten)]
+    pub common: Common,
     /// Vary a parameter or input of harvester or circuit: name=from:to:count for a grid, name=from:to for the other designs, with log: before
     /// from for equal ratios; name=a,b,c for any type; case=fig14,my.toml for cases; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     pub vary: Vec<String>,
     #[command(flatten)]
     pub sampling: Sampling,
-    /// End of a run, s [default: 100]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub until: Option<f64>,
     /// Communication step, s [default: from edge to edge of the window; of other FMUs their own, or 1/1000 of the run]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Averaging window, s [default: 50,100, or the second half of a shorter run]
-    #[arg(long, value_name = "S,S", value_parser = parse_window, allow_hyphen_values = true)]
-    pub window: Option<Window>,
     /// Record a variable at the end of each run, or `net_power`, `load_power`, `supply_power` over the window; may be repeated
     #[arg(long, value_name = "VARIABLE")]
     pub record: Vec<String>,
@@ -57,8 +89,8 @@ impl What {
     ) -> anyhow::Result<Request<'a>> {
         let is_harvester = description.variable("gain.voltage").is_ok();
         let model = &description.model_name;
-        let has_case = self.case.is_some() || file.case.case.is_some();
-        let place = || file.case.origin(self.case.is_some()).key("case");
+        let has_case = self.common.case.is_some() || file.case.case.is_some();
+        let place = || file.case.origin(self.common.case.is_some()).key("case");
         anyhow::ensure!(is_harvester || !has_case, "{}: {model} is not the harvester, of which the cases are", place());
         let asked = self.vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
         let mut vary = [file.vary.clone(), asked].concat();
@@ -176,12 +208,12 @@ impl What {
         is_harvester: bool,
     ) -> Result<Scenario, ScenarioError> {
         let own_end = || description.default_experiment.stop_time.filter(|_| !is_harvester);
-        let proposed = if self.until.is_none() && file.until.is_none() { own_end() } else { None };
-        let until = self.until.or(proposed);
-        let settings = self.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
-        let window = self.window.map(|Window(window)| window);
+        let proposed = if self.common.until.is_none() && file.until.is_none() { own_end() } else { None };
+        let until = self.common.until.or(proposed);
+        let settings = self.common.settings.iter().map(|text| Setting::parse(text)).collect::<Result<_, _>>()?;
+        let window = self.common.window.map(|Window(window)| window);
         let until_place = proposed.map(|_| format!("DefaultExperiment of {}: stopTime", description.model_name));
-        let case = self.case.clone();
+        let case = self.common.case.clone();
         scenario::Request { case, file: Some(file), settings, until, step: self.step, window, until_place }.resolve()
     }
 }

@@ -84,6 +84,22 @@ pub fn assert_same_results(one: &Path, other: &Path) {
     }
 }
 
+/// What the sweep in `whole` leaves in `cut` if it ends after `length` bytes, with `more` behind them. Returns how many runs are complete.
+pub fn cut_after(length: usize, whole: &Path, cut: &Path, more: &[u8]) -> usize {
+    fs::remove_dir_all(cut).ok();
+    fs::create_dir(cut).unwrap();
+    fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
+    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
+    fs::write(cut.join("sweep.csv.part"), [&bytes[..length], more].concat()).unwrap();
+    let lines = bytes[..length].split(|byte| *byte == b'\n').count() - 1;
+    lines.saturating_sub(1)
+}
+
+/// Bytes of the results in `folder`.
+pub fn size(folder: &Path) -> usize {
+    fs::read(folder.join("sweep.csv")).unwrap().len()
+}
+
 pub fn rows(folder: &Path) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(folder.join("sweep.csv")).unwrap();
     reader.records().map(|record| record.unwrap().iter().map(str::to_owned).collect()).collect()

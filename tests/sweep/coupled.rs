@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::command::{
-    assert_same_results, column, done, folder, json, refused, rows, run_though_killed, stderr, sweep, videg,
+    assert_same_results, column, cut_after, done, folder, json, refused, rows, run_though_killed, size, stderr, sweep,
+    videg,
 };
 
 /// The circuit with isolated membranes and a switch.
@@ -67,12 +68,9 @@ fn coupled_sweeps_have_the_same_bytes_in_shards_and_after_a_cut() {
     }
     done(videg(&["sweep", "merge", "--output"]).arg(&merged).arg(&shared));
     assert_same_results(&whole, &merged);
-    fs::create_dir(&cut).unwrap();
-    fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
-    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
-    fs::write(cut.join("sweep.csv.part"), &bytes[..bytes.len() / 2]).unwrap();
-    let said = json(&mut sweep(&cut, &what));
-    assert!(said["resumed_from"].as_u64().unwrap() > 10, "{said}");
+    let complete = cut_after(size(&whole) / 2, &whole, &cut, b"");
+    assert!(complete > 10);
+    assert_eq!(json(&mut sweep(&cut, &what))["resumed_from"], complete);
     assert_same_results(&whole, &cut);
 }
 

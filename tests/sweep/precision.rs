@@ -1,8 +1,7 @@
 //! Sweeps that take samples until means are precise.
-
-use std::fs;
-
-use crate::command::{assert_same_results, done, folder, json, rows, run_though_killed, stderr, sweep, videg};
+use crate::command::{
+    assert_same_results, cut_after, done, folder, json, rows, run_though_killed, size, stderr, sweep, videg,
+};
 use crate::sweep::statistics::{NOISE, statistics};
 
 const WHAT: [&str; 4] = ["--vary", "membrane.restitution=0.3:0.9:4", "--until-precision", "0.004"];
@@ -48,17 +47,11 @@ fn the_bytes_are_the_same_on_any_cores_in_shards_and_after_cuts() {
     let said = json(videg(&["sweep", "merge", "--output"]).arg(&merged).arg(&shared));
     assert_eq!((&said["runs"], rows(&whole).len() as u64 - 1), (&runs.into(), runs));
     assert_same_results(&whole, &merged);
-    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
     let mut random = fastrand::Rng::with_seed(4);
     for _ in 0..6 {
-        fs::remove_dir_all(&cut).ok();
-        fs::create_dir(&cut).unwrap();
-        fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
-        let length = random.usize(0..bytes.len());
-        fs::write(cut.join("sweep.csv.part"), &bytes[..length]).unwrap();
-        let lines = bytes[..length].split(|byte| *byte == b'\n').count() - 1;
-        let said = json(&mut sweep(&cut, &what));
-        assert_eq!(said["resumed_from"], lines.saturating_sub(1), "cut at {length}");
+        let length = random.usize(0..size(&whole));
+        let complete = cut_after(length, &whole, &cut, b"");
+        assert_eq!(json(&mut sweep(&cut, &what))["resumed_from"], complete, "cut at {length}");
         assert_same_results(&whole, &cut);
     }
     assert_eq!(json(&mut sweep(&whole, &what))["resumed_from"], runs);

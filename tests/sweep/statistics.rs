@@ -6,7 +6,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::command::{assert_same_results, done, folder, json, names, refused, rows, stderr, sweep, videg};
+use crate::command::{
+    assert_same_results, cut_after, done, folder, json, names, refused, rows, size, stderr, sweep, videg,
+};
 
 /// Phase noise that costs little.
 pub const NOISE: [&str; 4] = ["--set", "excitation.phaseNoise=0.5", "--set", "excitation.noiseHold=1e-3"];
@@ -39,10 +41,7 @@ fn samples_have_a_table_and_a_figure_that_shards_and_cuts_do_not_change() {
     assert!(!shared.join("statistics.csv").exists(), "a shard has parts of points");
     done(videg(&["sweep", "merge", "--output"]).arg(&merged).arg(&shared));
     assert_same_results(&whole, &merged);
-    fs::create_dir(&cut).unwrap();
-    fs::copy(whole.join("sweep.json"), cut.join("sweep.json")).unwrap();
-    let bytes = fs::read(whole.join("sweep.csv")).unwrap();
-    fs::write(cut.join("sweep.csv.part"), &bytes[..bytes.len() / 2]).unwrap();
+    cut_after(size(&whole) / 2, &whole, &cut, b"");
     done(&mut sweep(&cut, &what));
     assert_same_results(&whole, &cut);
     // Missing ones are made again, changed ones are told, and another sweep does not keep them.
