@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the tests of the packages that an FMU is made of with their coverage counted, and writes docs/coverage.md. Installs
+# Runs the tests of the packages that an FMU is made of, and of the coupled run, with their coverage counted, and writes docs/coverage.md. Installs
 # cargo-llvm-cov below target/tools. Needs the tools of the LLVM that the compiler is made with: the component llvm-tools of
 # rustup, or a package of the system such as llvm-22.
 set -euo pipefail

@@ -1,4 +1,5 @@
 //! Sweeps that take samples until means are precise.
+
 use crate::command::{
     assert_same_results, cut_after, done, folder, json, rows, run_though_killed, size, stderr, sweep, videg,
 };
