@@ -34,7 +34,7 @@ pub struct Common {
 /// How many runs at once, and which.
 #[derive(Args)]
 pub struct Execution {
-    /// Run only share I of N; `sweep merge` puts the shards together
+    /// Run only share I of N; `sweep merge` puts the shards together, and `map` draws those of a map
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub shard: Option<Shard>,
     /// Number of parallel runs [default: one on each core]
