@@ -184,7 +184,7 @@ fn options_that_do_not_go_together_are_refused_by_name() {
         (&["--format", "csv", "--sample", "NaN"], "--sample NaN s"),
         (&["--format", "csv", "--sample", "1e-7"], "30000003 values: a table has 20000000 at most"),
         (&["--knots", "1"], "error of C(t) = 1: must lie from 1e-9 to 0.1"),
-        (&["--format", "csv", "--columns", "impact.count"], "--columns impact.count: is no Real variable"),
+        (&["--format", "csv", "--columns", "excitation.file"], "--columns excitation.file: is a text, not a number"),
         (&["--format", "csv", "--columns", "bal.velocity"], "did you mean ball.velocity?"),
         (&["--set", "membrane.restitution=2"], "membrane.restitution"),
     ] {

@@ -10,7 +10,7 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 13] = [
+const PACKAGES: [(&str, &[&str]); 14] = [
     ("model", &[]),
     ("circuit", &[]),
     ("coupled", &["circuit", "model"]),
@@ -24,6 +24,7 @@ const PACKAGES: [(&str, &[&str]); 13] = [
     ("fmu/harvester", &["data", "fmu/export", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
     (".", &["circuit", "coupled", "data", "fmu/import", "input", "model", "report", "system"]),
+    ("python", &[".", "fmu/import", "model"]),
 ];
 
 /// Dependencies that serve the command line, and have no place in a shared library.
@@ -39,8 +40,8 @@ const DOWNWARDS: [&str; 17] = [
     "map",
     "sweep",
     "package",
-    "simulate",
     "export",
+    "simulate",
     "cosim",
     "ngspice",
     "scenario",

@@ -11,8 +11,9 @@ use super::options::TimedCaseOptions;
 use super::progress::TimeBar;
 use super::results::{Identity, chosen, listed};
 use super::{Exit, output};
-use crate::export::{self, Format, Options, Points};
+use crate::export::{self, Format, Options};
 use crate::scenario::Scenario;
+use crate::simulate::Points;
 use videg_system::atomic_file::Batch;
 use videg_system::folders;
 

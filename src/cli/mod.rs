@@ -52,6 +52,9 @@ mod worker;
 use std::io::ErrorKind;
 use std::process::ExitCode;
 
+pub use options::Window;
+pub use sweep_options::{Common as SweepCommon, What as SweepOptions};
+
 use clap::{CommandFactory as _, Parser, Subcommand};
 use interruption::Interruption;
 

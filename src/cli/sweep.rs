@@ -14,7 +14,7 @@ use super::progress::RunBar;
 use super::run_output::file_list;
 use super::sweep_options::{Execution, What};
 use super::{Exit, format, output, sweep_statistics};
-use crate::sweep::{self, BuiltIn, Design, Engine, Report, Sweep, SweepError, System};
+use crate::sweep::{self, Design, Engine, Report, Sweep, SweepError};
 use fmu_import::Fmu;
 
 /// Arguments of the verb.
@@ -146,17 +146,11 @@ fn run_sweep(arguments: &Arguments, interruption: &Interruption) -> anyhow::Resu
     if arguments.check {
         return show_counts(arguments, &sweep, design);
     }
-    let engine = match fmu {
-        Some(fmu) => Engine::Fmu(fmu),
-        None if sweep.is_coupled() => {
-            let harvester = || arguments.isolation.open_own("VibroImpactHarvester");
-            Engine::System(Box::new(System::new(&sweep, harvester)?))
-        }
-        // The FMU has variables that the model does not offer; the numbers are the same.
-        None => match BuiltIn::new(&sweep) {
-            Some(built_in) if !arguments.isolation.is_forced() => Engine::BuiltIn(Box::new(built_in)),
-            _ => Engine::Fmu(arguments.isolation.open_own("VibroImpactHarvester")?),
-        },
+    let engine = if let Some(fmu) = fmu {
+        Engine::Fmu(fmu)
+    } else {
+        let isolation = &arguments.isolation;
+        Engine::of_harvester(&sweep, isolation.is_forced(), || isolation.open_own("VibroImpactHarvester"))?
     };
     let report = follow(arguments, &sweep, &engine, interruption.defer())?;
     if report.is_complete() {

@@ -56,18 +56,21 @@ impl Execution {
 
 /// Options that describe a sweep. An option wins over the same key of the file.
 #[derive(Args, Default)]
+#[allow(rustdoc::broken_intra_doc_links, reason = "comments are help texts")]
 pub struct What {
     /// Sweep file (TOML): a case file that may also have design, points, samples, seeds, record and a [vary] table;
     /// or several case files, over which the sweep goes
     #[arg(value_name = "FILE.toml")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
+    #[allow(missing_docs, reason = "a comment would replace the help of the verb")]
     pub common: Common,
     /// Vary a parameter or input of harvester or circuit: name=from:to:count for a grid, name=from:to for the other designs, with log: before
     /// from for equal ratios; name=a,b,c for any type; case=fig14,my.toml for cases; may be repeated
     #[arg(long, value_name = "VARIABLE=VALUES")]
     pub vary: Vec<String>,
     #[command(flatten)]
+    #[allow(missing_docs, reason = "as above")]
     pub sampling: Sampling,
     /// Communication step, s [default: from edge to edge of the window; of other FMUs their own, or 1/1000 of the run]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]

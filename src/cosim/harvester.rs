@@ -102,28 +102,37 @@ struct Feedback {
     work: Option<[u32; 1]>,
 }
 
+/// An instance of `fmu`, initialised with `settings` for a run from 0 s to `stop`, s.
+///
+/// # Errors
+/// A setting that the FMU refuses.
+pub(crate) fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result<Instance, CosimError> {
+    let mut instance = fmu.instantiate("harvester", Logging::default())?;
+    instance.begin_initialization(
+        0.0,
+        stop,
+        settings,
+        |it| fmu.description().is_input(&it.name),
+        |instance, setting| {
+            let set = instance.set_by_name(&setting.name, &setting.value_for_fmu());
+            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
+        },
+    )?;
+    instance.exit_initialization_mode()?;
+    Ok(instance)
+}
+
 impl HarvesterFmu {
     /// Instantiates `fmu` and initialises it with `settings`, from 0 s on.
     ///
     /// # Errors
     /// A setting that the FMU refuses, or an FMU that lacks a variable.
     pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
-        let mut instance = fmu.instantiate("harvester", Logging::default())?;
-        instance.begin_initialization(
-            0.0,
-            Some(scenario.until),
-            settings,
-            |it| fmu.description().is_input(&it.name),
-            |instance, setting| {
-                let set = instance.set_by_name(&setting.name, &setting.value_for_fmu());
-                set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
-            },
-        )?;
+        let instance = instantiate(fmu, Some(scenario.until), settings)?;
         let reals = references(fmu, REALS)?;
         let counts = references(fmu, ["impact.count", "solver.events"])?;
         let voltages = references(fmu, ["left.voltage", "right.voltage"])?;
         let bias = references(fmu, ["biasVoltage"])?;
-        instance.exit_initialization_mode()?;
         let [bias_voltage] = read(&instance, &bias)?;
         let feedback = Feedback::of(fmu, &instance, &voltages)?;
         let (energies, saved) = (references(fmu, ENERGIES).ok(), SavedState::default());
@@ -219,6 +228,11 @@ impl HarvesterFmu {
     pub(crate) fn references(&self, names: &[String]) -> Result<Vec<u32>, CosimError> {
         let description = self.instance.description();
         names.iter().map(|name| Ok(description.variable(name)?.value_reference)).collect()
+    }
+
+    /// Value of any variable at the communication point.
+    pub(crate) fn value(&self, name: &str) -> Result<Value, CosimError> {
+        Ok(self.instance.get_by_name(name)?)
     }
 
     /// Reads Real variables at the communication point.

@@ -117,6 +117,37 @@ impl Sampler {
 enum Writer {
     Csv(Box<csv::Writer<BufWriter<AtomicFile>>>),
     Parquet(Box<RealColumns<AtomicFile>>),
+    Memory(SeriesColumns),
+}
+
+/// A time series in memory.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SeriesColumns {
+    /// Names of the columns, the time first.
+    pub names: Vec<String>,
+    /// Their values.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl SeriesColumns {
+    /// Most values: 160 MB.
+    const MOST: usize = 20_000_000;
+
+    fn of(names: &[&str]) -> Self {
+        Self { names: names.iter().map(|&name| name.to_owned()).collect(), values: vec![Vec::new(); names.len()] }
+    }
+
+    fn push(&mut self, row: impl Iterator<Item = f64>) -> io::Result<()> {
+        let rows = self.values.first().map_or(0, Vec::len);
+        if rows * self.values.len() >= Self::MOST {
+            let most = Self::MOST;
+            return Err(io::Error::other(format!(
+                "more than {most} values; a larger --sample, fewer columns or a smaller --until makes it smaller"
+            )));
+        }
+        self.values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+        Ok(())
+    }
 }
 
 /// Writes the rows of a run. Columns are called as the FMU variables are, units are SI. The file gets its name when it is complete; a
@@ -144,14 +175,44 @@ impl SeriesRecorder {
         scenario: &Scenario,
         circuit: Option<&[String]>,
     ) -> Result<Self, CosimError> {
+        let path = options.path(folder, name).unwrap_or_default();
+        Self::with(options, scenario, circuit, path.clone(), |columns| {
+            Self::writer(&path, options.format, columns)
+                .map_err(|cause| CosimError::Write { path: path.clone(), cause })
+        })
+    }
+
+    /// The same in memory, whatever the kind of file; [`SeriesRecorder::into_columns`] hands it on.
+    ///
+    /// # Errors
+    /// A column that there is not; a distance of rows out of bounds.
+    pub fn in_memory(
+        options: &SeriesOptions,
+        scenario: &Scenario,
+        circuit: Option<&[String]>,
+    ) -> Result<Self, CosimError> {
+        let begin = |columns: &[&str]| Ok(Some(Writer::Memory(SeriesColumns::of(columns))));
+        Self::with(options, scenario, circuit, PathBuf::from("memory"), begin)
+    }
+
+    fn with(
+        options: &SeriesOptions,
+        scenario: &Scenario,
+        circuit: Option<&[String]>,
+        path: PathBuf,
+        begin: impl FnOnce(&[&str]) -> Result<Option<Writer>, CosimError>,
+    ) -> Result<Self, CosimError> {
         let all = names(circuit);
         let chosen = if options.columns.is_empty() { None } else { Some(places(&all, &options.columns)?) };
         let written: Vec<&str> = chosen.as_ref().map_or(all.clone(), |places| places.iter().map(|&k| all[k]).collect());
         let sampler = Sampler::new(options.spacing(scenario)?, scenario.until);
-        let path = options.path(folder, name).unwrap_or_default();
-        let writer = Self::writer(&path, options.format, &written);
-        let writer = writer.map_err(|cause| CosimError::Write { path: path.clone(), cause })?;
+        let writer = begin(&written)?;
         Ok(Self { path, writer, sampler, circuit: circuit.is_some(), chosen, values: Vec::new() })
+    }
+
+    /// The time series in memory, if it is there.
+    pub fn into_columns(self) -> SeriesColumns {
+        if let Some(Writer::Memory(columns)) = self.writer { columns } else { SeriesColumns::default() }
     }
 
     fn writer(path: &Path, format: SeriesFormat, columns: &[&str]) -> io::Result<Option<Writer>> {
@@ -176,7 +237,7 @@ impl SeriesRecorder {
     pub fn finish(self) -> Result<Option<PathBuf>, CosimError> {
         let Self { path, writer, .. } = self;
         let file = match writer {
-            None => return Ok(None),
+            None | Some(Writer::Memory(_)) => return Ok(None),
             Some(Writer::Csv(writer)) => {
                 let written = writer.into_inner().map_err(csv::IntoInnerError::into_error);
                 written.and_then(|buffer| buffer.into_inner().map_err(io::IntoInnerError::into_error))
@@ -196,7 +257,7 @@ impl SeriesRecorder {
     pub fn leave(self) -> Result<Option<PathBuf>, CosimError> {
         let Self { path, writer, .. } = self;
         let left = match writer {
-            None => return Ok(None),
+            None | Some(Writer::Memory(_)) => return Ok(None),
             Some(Writer::Csv(mut writer)) => writer.flush(),
             Some(Writer::Parquet(columns)) => columns.finish().map(|_| ()).map_err(io::Error::other),
         };
@@ -206,7 +267,7 @@ impl SeriesRecorder {
 
     /// Removes the file of a run that ended early.
     pub fn discard(self) {
-        if self.writer.is_some() {
+        if matches!(self.writer, Some(Writer::Csv(_) | Writer::Parquet(_))) {
             // The user is told why the run ended.
             let _ = std::fs::remove_file(partial(&self.path));
         }
@@ -225,6 +286,7 @@ impl SeriesRecorder {
                 writer.serialize(row).map_err(Into::into)
             }
             Some(Writer::Parquet(columns)) => columns.push(row).map_err(io::Error::other),
+            Some(Writer::Memory(columns)) => columns.push(row),
         }
     }
 }

@@ -8,15 +8,15 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use fmu_import::{Fmu, Kind, nearest_name};
+use fmu_import::Fmu;
 use serde::Serialize;
 use thiserror::Error;
 use videg_system::atomic_file::{self, AtomicFile};
 
-use crate::cosim::{CircuitRequest, CosimError, HarvesterFmu};
-use crate::ngspice::{CapacitanceTable, NgspiceError};
+use crate::cosim::{CircuitRequest, CosimError};
 use crate::progress::Progress;
 use crate::scenario::{Scenario, Setting};
+use crate::simulate::{Column, Points, TableError, TableOptions, table};
 
 /// What reads the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
@@ -53,16 +53,6 @@ impl Format {
             Self::Mat => "mat",
         }
     }
-}
-
-/// The points of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Points {
-    /// As few as straight lines between them need for this error, relative to the height of the largest pulse so far.
-    Knots(f64),
-    /// One each so many seconds, and the end.
-    Sample(f64),
 }
 
 /// What to export.
@@ -112,19 +102,9 @@ pub enum ExportError {
     #[error(transparent)]
     Run(#[from] CosimError),
     #[error(transparent)]
-    Table(#[from] NgspiceError),
+    Table(#[from] TableError),
     #[error("--columns: a netlist has the capacitances only; allowed with csv, parquet and mat")]
     Columns,
-    #[error("--columns {name}: {reason}")]
-    Column { name: String, reason: String },
-    #[error("--sample {sample} s: must lie from {least} s to {until} s, the end of the run")]
-    Sample { sample: f64, least: f64, until: f64 },
-    #[error(
-        "{values} values: a table has {most} at most; a larger --sample or --knots, fewer columns or a smaller --until makes it smaller"
-    )]
-    Values { values: f64, most: usize },
-    #[error("the run was stopped at {time} s")]
-    Stopped { time: f64 },
     #[error("cannot write {}: {cause}", path.display())]
     Write { path: PathBuf, cause: std::io::Error },
 }
@@ -136,12 +116,6 @@ struct Table {
     /// The column of times first.
     columns: Vec<Column>,
     rest: f64,
-}
-
-struct Column {
-    name: String,
-    unit: String,
-    values: Vec<f64>,
 }
 
 impl Table {
@@ -166,8 +140,6 @@ fn fill(path: &Path, write: impl FnOnce(&mut BufWriter<&mut AtomicFile>) -> io::
     filled.map_err(|cause| ExportError::Write { path: path.to_owned(), cause })
 }
 
-/// Most values of a table: 160 MB.
-const MOST_VALUES: usize = 20_000_000;
 /// The columns of a table without others.
 const CAPACITANCES: [&str; 2] = ["left.capacitance", "right.capacitance"];
 
@@ -180,39 +152,13 @@ pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Exported, E
     if format.is_netlist() && !columns.is_empty() {
         return Err(ExportError::Columns);
     }
-    let (mechanical, circuit) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
-    let warnings = circuit.names().map(|names| format!("{names} left out: export runs no circuit"));
     let names: Vec<_> = if columns.is_empty() { CAPACITANCES.map(str::to_owned).to_vec() } else { columns.to_vec() };
-    let units = names.iter().map(|name| unit(fmu, name)).collect::<Result<Vec<_>, _>>()?;
-    let times = times(options, &mechanical, names.len(), progress)?;
-    let mut harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
-    let initial = harvester.sample()?.capacitance();
-    let mut rest = [0.0];
-    harvester.read(&harvester.references(&["membrane.restCapacitance".to_owned()])?, &mut rest)?;
-    let [rest] = rest;
-    let mut values = vec![Vec::with_capacity(times.len()); names.len()];
-    let references = harvester.references(&names)?;
-    let (mut last, mut row) = (0.0, vec![0.0; names.len()]);
-    for (index, &time) in times.iter().enumerate() {
-        if time > last {
-            harvester.step(last, time - last)?;
-            last = time;
-        }
-        harvester.read(&references, &mut row)?;
-        values.iter_mut().zip(&row).for_each(|(column, &value)| column.push(value));
-        progress.advance(times.len() as u64 + index as u64 + 1, 2 * times.len() as u64, &[]);
-        if progress.is_stopped() {
-            return Err(ExportError::Stopped { time });
-        }
-    }
-    let time = Column { name: "time".to_owned(), unit: "s".to_owned(), values: times };
-    let columns = names.iter().zip(units).zip(values);
-    let columns = columns.map(|((name, unit), values)| Column { name: name.clone(), unit, values });
-    let table = Table {
-        header: header(scenario, &mechanical, points, rest, initial),
-        columns: std::iter::once(time).chain(columns).collect(),
-        rest,
-    };
+    let run = table(&TableOptions { harvester: fmu, scenario, points, columns: &names }, progress)?;
+    let (rest_capacitance, initial_capacitance, warnings) =
+        (run.rest_capacitance, run.initial_capacitance, run.warnings);
+    let (mechanical, _) = CircuitRequest::split(fmu.description(), &scenario.settings)?;
+    let header = header(scenario, &mechanical, points, rest_capacitance, initial_capacitance);
+    let table = Table { header, columns: run.columns, rest: rest_capacitance };
     let mut files = vec![path.to_owned()];
     match format {
         Format::Csv => fill(path, |out| data::csv(out, &table)),
@@ -223,60 +169,7 @@ pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Exported, E
         }
     }?;
     let (rows, until) = (table.rows(), scenario.until);
-    let warnings = warnings.into_iter().chain(harvester.warnings()).collect();
-    let (rest_capacitance, initial_capacitance) = (rest, initial);
     Ok(Exported { format, files, points, rows, columns: names, until, rest_capacitance, initial_capacitance, warnings })
-}
-
-/// The times of the points, s: 0 first, the end last.
-fn times(
-    options: &Options<'_>,
-    mechanical: &[Setting],
-    columns: usize,
-    progress: &dyn Progress,
-) -> Result<Vec<f64>, ExportError> {
-    /// Shortest distance of samples, s.
-    const LEAST: f64 = 1e-7;
-    let &Options { harvester: fmu, scenario, points, .. } = options;
-    let until = scenario.until;
-    let check = |rows: f64| {
-        let values = rows * (1 + columns) as f64;
-        if values > MOST_VALUES as f64 { Err(ExportError::Values { values, most: MOST_VALUES }) } else { Ok(()) }
-    };
-    match points {
-        Points::Knots(error) => {
-            let mut harvester = HarvesterFmu::new(fmu, scenario, mechanical)?;
-            let table = CapacitanceTable::from_harvester(&mut harvester, until, error)?;
-            check(table.len() as f64)?;
-            progress.advance(1, 2, &[]);
-            Ok(table.times().to_vec())
-        }
-        Points::Sample(sample) => {
-            if !(LEAST..=until).contains(&sample) {
-                return Err(ExportError::Sample { sample, least: LEAST, until });
-            }
-            let steps = (until / sample - 1e-9).ceil();
-            check(steps + 1.0)?;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded by MOST_VALUES
-            let steps = steps as u32;
-            Ok((0..steps).map(|k| f64::from(k) * sample).chain([until]).collect())
-        }
-    }
-}
-
-/// The unit of a Real variable.
-fn unit(fmu: &Fmu, name: &str) -> Result<String, ExportError> {
-    let fail = |reason: String| ExportError::Column { name: name.to_owned(), reason };
-    let variables = &fmu.description().variables;
-    let Some(variable) = variables.iter().find(|variable| variable.name == name) else {
-        let nearest = nearest_name(name, variables.iter().map(|variable| variable.name.as_str()));
-        let hint = nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest}?"));
-        return Err(fail(format!("the harvester has no such variable{hint}")));
-    };
-    match &variable.kind {
-        Kind::Real { unit, .. } => Ok(unit.as_deref().unwrap_or("1").to_owned()),
-        _ => Err(fail("is no Real variable".to_owned())),
-    }
 }
 
 /// What the file says of itself.

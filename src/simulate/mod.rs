@@ -1,16 +1,18 @@
 //! A run of the harvester alone: the mechanics, C(t), the gains that the paper counts, and the contacts.
 
 mod contacts;
+mod table;
 
 pub use contacts::{ContactSummary, Contacts};
+pub use table::{Column, Points, Table, TableError, TableOptions, table};
 
 use crate::cosim::{
     CircuitRequest, CosimError, Coupling, Flows, HarvesterFmu, Master, MechanicsSummary, Observer, Outcome,
-    TimeProgress, Trace,
+    TimeProgress, Trace, instantiate,
 };
 use crate::progress::Progress;
 use crate::scenario::Scenario;
-use fmu_import::Fmu;
+use fmu_import::{Fmu, Instance};
 
 /// What to run.
 #[derive(Clone, Copy)]
@@ -42,6 +44,14 @@ pub struct Results {
 /// A setting that neither harvester nor circuit takes; errors of the FMU.
 pub fn run(options: &Options<'_>, progress: &dyn Progress) -> Result<Results, CosimError> {
     Simulation::new(options)?.run(&mut (), progress)
+}
+
+/// An instance of the FMU `VibroImpactHarvester` in `scenario`, initialised at 0 s, for a caller who steps it to any time.
+///
+/// # Errors
+/// A setting that the harvester does not take.
+pub fn instance(harvester: &Fmu, scenario: &Scenario) -> Result<Instance, CosimError> {
+    instantiate(harvester, None, &scenario.settings)
 }
 
 /// A simulation, initialised and ready to run.

@@ -27,6 +27,26 @@ pub struct BuiltIn {
 }
 
 impl Engine {
+    /// What computes the runs of a `sweep` of the harvester, with a circuit if it needs one: the model itself, unless it has no such
+    /// variables or `fmu_alone`; then the FMU, which `open` opens.
+    ///
+    /// # Errors
+    /// As [`System::new`]; those of `open`.
+    pub fn of_harvester<E: From<SweepError>>(
+        sweep: &Sweep,
+        fmu_alone: bool,
+        open: impl FnOnce() -> Result<Fmu, E>,
+    ) -> Result<Self, E> {
+        if sweep.is_coupled() {
+            return Ok(Self::System(Box::new(System::new(sweep, open)?)));
+        }
+        // The FMU has variables that the model does not offer; the numbers are the same.
+        match BuiltIn::new(sweep).filter(|_| !fmu_alone) {
+            Some(built_in) => Ok(Self::BuiltIn(Box::new(built_in))),
+            None => Ok(Self::Fmu(open()?)),
+        }
+    }
+
     /// How many runs may go on at once.
     pub(super) fn at_once(&self, jobs: usize) -> usize {
         match self {

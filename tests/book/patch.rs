@@ -59,6 +59,7 @@ fn copy_sources(to: &Path) -> std::io::Result<()> {
         "model",
         "circuit",
         "coupled",
+        "python",
         "data",
         "fmu",
         "input",

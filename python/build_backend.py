@@ -1,0 +1,91 @@
+"""Build backend of the package: what a wheel contains beside the extension module is built first, then maturin does the rest.
+
+A wheel has the FMUs and the command-line tool with the same FMUs inside. Environment:
+
+- VIDEG_PROFILE: profile of Cargo: dist (default), what is released; release compiles in less time, and runs are slower.
+- VIDEG_PARTS: a folder with both .fmu, the program `videg` (`videg.exe`) and THIRD-PARTY.md: taken as they are, nothing is built. The release
+  makes them for several platforms.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import maturin
+from maturin import (  # noqa: F401 - hooks of the build frontend
+    get_requires_for_build_editable,
+    get_requires_for_build_sdist,
+    get_requires_for_build_wheel,
+)
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "python" / "videg"
+FMUS = ("VibroImpactHarvester", "HarvestingCircuit")
+PROGRAM = "videg.exe" if sys.platform == "win32" else "videg"
+
+
+def profile() -> str:
+    return os.environ.get("VIDEG_PROFILE", "dist")
+
+
+def cargo(*arguments: str, **environment: str) -> None:
+    command = ["cargo", *arguments, "--locked", "--profile", profile()]
+    print("+", *command, flush=True)
+    subprocess.run(command, cwd=ROOT, env=os.environ | environment, check=True)
+
+
+def built() -> Path:
+    """The folder of Cargo's results."""
+    return (ROOT / os.environ.get("CARGO_TARGET_DIR", "target")).resolve() / profile()
+
+
+def place(source: Path, name: str) -> None:
+    """Copies a file into the package."""
+    target = PACKAGE / name
+    target.parent.mkdir(exist_ok=True)
+    target.unlink(missing_ok=True)
+    shutil.copy2(source, target)
+
+
+def build_parts() -> None:
+    """Puts FMUs and program into the package."""
+    if given := os.environ.get("VIDEG_PARTS"):
+        for fmu in FMUS:
+            place(Path(given, f"{fmu}.fmu"), f"fmus/{fmu}.fmu")
+        place(Path(given, PROGRAM), f"bin/{PROGRAM}")
+        place(Path(given, "THIRD-PARTY.md"), "THIRD-PARTY.md")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        # The program without FMUs packages them, the one with them is what users get.
+        cargo("build", "-p", "videg-fmu-harvester", "-p", "videg-fmu-circuit", "-p", "videg")
+        environment = os.environ | {"VIDEG_NO_BUILD": "1"}
+        subprocess.run([built() / PROGRAM, "fmu", "build", "--output", folder], cwd=ROOT, env=environment, check=True)
+        cargo("build", "-p", "videg", "--bin", "videg", "--features", "embedded-fmus", VIDEG_FMUS=folder)
+        for fmu in FMUS:
+            place(Path(folder, f"{fmu}.fmu"), f"fmus/{fmu}.fmu")
+        place(built() / PROGRAM, f"bin/{PROGRAM}")
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    build_parts()
+    return maturin.build_wheel(wheel_directory, with_profile(config_settings), metadata_directory)
+
+
+def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
+    build_parts()
+    return maturin.build_editable(wheel_directory, with_profile(config_settings), metadata_directory)
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    return maturin.build_sdist(sdist_directory, config_settings)
+
+
+def with_profile(config_settings):
+    """The settings with arguments of maturin for the same profile."""
+    settings = dict(config_settings or {})
+    given = settings.get("build-args", "")
+    settings["build-args"] = f"--profile {profile()} --locked {given}".strip()
+    return settings

@@ -1,0 +1,100 @@
+//! `sweep`: many runs on all cores, into a folder.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use serde::Serialize;
+use videg::cli::{SweepCommon, SweepOptions, Window};
+use videg::scenario::CaseFile;
+use videg::sweep::{Design, Engine, Options, Report, Sampling, Sweep, SweepFile, system_description};
+
+use crate::error::error;
+use crate::scenario::item;
+use crate::{background, fmus};
+
+/// What is varied and how, as options of `videg sweep` are called and typed.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Asked {
+    case: Option<String>,
+    case_file: Option<PathBuf>,
+    settings: Vec<String>,
+    until: Option<f64>,
+    step: Option<f64>,
+    window: Option<[f64; 2]>,
+    vary: Vec<String>,
+    record: Vec<String>,
+    design: Option<String>,
+    points: Option<u64>,
+    samples: Option<u64>,
+    confidence: Option<f64>,
+    until_precision: Option<f64>,
+    precision_of: Option<String>,
+    seed: Option<u64>,
+    common_seeds: bool,
+}
+
+/// What a sweep has done.
+#[derive(Serialize)]
+struct Finished {
+    runs: u64,
+    done: u64,
+    failed: u64,
+    resumed_from: u64,
+    files: Vec<PathBuf>,
+}
+
+impl Asked {
+    fn options(self) -> PyResult<(SweepOptions, SweepFile)> {
+        let design: Option<Design> = self.design.as_deref().map(|design| item("design", design)).transpose()?;
+        let sampling = Sampling {
+            design,
+            points: self.points,
+            samples: self.samples,
+            confidence: self.confidence,
+            until_precision: self.until_precision,
+            precision_of: self.precision_of,
+            seed: self.seed,
+            common_seeds: self.common_seeds,
+            seed_variable: None,
+        };
+        let case = self.case_file.as_deref().map(CaseFile::read).transpose().map_err(error)?.unwrap_or_default();
+        let common = SweepCommon {
+            case: self.case,
+            settings: self.settings,
+            until: self.until,
+            window: self.window.map(Window),
+        };
+        let options =
+            SweepOptions { files: Vec::new(), common, vary: self.vary, sampling, step: self.step, record: self.record };
+        Ok((options, SweepFile { case, ..SweepFile::default() }))
+    }
+}
+
+/// Runs the sweep into `folder`, going on where results in it end; what it has done, as JSON.
+#[pyfunction]
+pub fn sweep(
+    py: Python<'_>,
+    fmu: PathBuf,
+    asked: Asked,
+    folder: PathBuf,
+    jobs: Option<usize>,
+    fresh: bool,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let (options, file) = asked.options()?;
+    let report = background::run(py, progress.as_ref(), |progress| {
+        let run = || -> Result<Report, Box<dyn std::error::Error>> {
+            let description = system_description()?;
+            let sweep = Sweep::new(&options.request(file, &description, None, None)?)?;
+            let open = || Ok::<_, Box<dyn std::error::Error>>(fmus::open(&fmu)?);
+            let engine = Engine::of_harvester(&sweep, false, open)?;
+            let options = Options::new(&sweep, &engine, &folder);
+            let options = Options { jobs: jobs.unwrap_or(options.jobs), fresh, ..options };
+            Ok(videg::sweep::run(&options, progress)?)
+        };
+        run().map_err(|error| format!("{error:#}"))
+    })?;
+    let Report { runs, done, failed, resumed_from, files, .. } = report;
+    serde_json::to_string(&Finished { runs, done, failed, resumed_from, files }).map_err(error)
+}
