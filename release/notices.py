@@ -1,4 +1,4 @@
-"""The licences of all that the program contains, as Markdown on stdout: notices.py.
+"""The licences of all that the program and the wheel contain, as Markdown on stdout: notices.py.
 
 The texts are those in the sources of the crates, fonts and scripts inside them included. A crate without a text of its own
 gets that of its licence from release/licenses; one whose licence is not among those fails.
@@ -25,10 +25,11 @@ def metadata() -> dict:
 
 
 def linked(found: dict) -> list[dict]:
-    """The crates of others that the program is linked with, by name; those for building and testing are left out."""
+    """The crates of others that the program and the extension module for Python are linked with, by name; those for building and
+    testing are left out."""
     packages = {package["id"]: package for package in found["packages"]}
     nodes = {node["id"]: node for node in found["resolve"]["nodes"]}
-    todo = [found["resolve"]["root"]]
+    todo = [found["resolve"]["root"], *(name for name, package in packages.items() if package["name"] == "videg-python")]
     seen = set(todo)
     while todo:
         for dependency in nodes[todo.pop()]["deps"]:

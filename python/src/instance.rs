@@ -63,6 +63,8 @@ impl Instance {
             self.open_mut()?.do_step(now, next - now).map_err(error)?;
             self.time = next;
             py.check_signals()?;
+            // Other threads have their turn.
+            py.detach(|| ());
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use fmu_import::Value;
 use pyo3::prelude::*;
 use serde::Serialize;
-use videg::scenario::{self, CaseFile, Request, Scenario, ScenarioError, Setting};
+use videg::scenario::{self, CaseFile, Request, Scenario, ScenarioError, Setting, StartValue};
 use videg_model::Case;
 
 use crate::error::error;
@@ -57,14 +57,18 @@ pub fn cases() -> PyResult<String> {
     serde_json::to_string(&listed.collect::<Vec<_>>()).map_err(error)
 }
 
-/// Name, value, unit and description of a parameter.
-type Described = (String, Py<PyAny>, Option<String>, String);
+/// Name, value, the same with the number of an item, unit and description of a parameter.
+type Described = (String, Py<PyAny>, Py<PyAny>, Option<String>, String);
 
 /// All parameters of the harvester in a run.
 #[pyfunction]
 pub fn start_values(py: Python<'_>, run: Run) -> PyResult<Vec<Described>> {
     let values = scenario::start_values(&run.resolve().map_err(error)?).map_err(error)?;
-    values.into_iter().map(|it| Ok((it.name, to_python(py, &it.value)?, it.unit, it.description))).collect()
+    let described = |it: StartValue| {
+        let number = if let Value::Enumeration { value, .. } = it.value { &Value::Integer(value) } else { &it.value };
+        Ok((it.name, to_python(py, &it.value)?, to_python(py, number)?, it.unit, it.description))
+    };
+    values.into_iter().map(described).collect()
 }
 
 /// `value` as an object of Python: an item of an enumeration is its name.

@@ -37,6 +37,9 @@ class StartValue:
 
     name: str
     value: float | int | bool | str
+    """An item of an enumeration is its name."""
+    fmi: float | int | bool | str
+    """The same as FMI tools take it: an item of an enumeration is its number."""
     unit: str | None
     description: str
 
@@ -53,7 +56,7 @@ def start_values(
 ) -> dict[str, StartValue]:
     """All parameters of the harvester in a case, by name.
 
-    `{name: it.value for name, it in videg.start_values("fig14").items()}` are the `start_values` of FMPy.
+    `{name: it.fmi for name, it in videg.start_values("fig14").items()}` are the `start_values` of FMPy.
 
     Args:
         case: Name of a published case, or path of a case file (TOML); fig14 if left out.

@@ -137,7 +137,9 @@ def sweep(
         if output is not None:
             os.makedirs(folder, exist_ok=True)
         done = json.loads(_videg.sweep(fmu(), asked, folder, jobs, bool(fresh), told))
-        results = pd.read_csv(done["files"][0], float_precision="round_trip", dtype={"error": "object"})
+        # From pandas 4 on, numbers keep their bits by themselves, and the argument is deprecated.
+        exact = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 4 else {}
+        results = pd.read_csv(done["files"][0], dtype={"error": "object"}, **exact)
     results.attrs = {key: done[key] for key in ("runs", "failed", "resumed_from")}
     if output is not None:
         results.attrs["files"] = done["files"]
