@@ -26,7 +26,7 @@ export VIDEG_ALL_TOOLS=1
 export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
 
 # What the stage slow is made of.
-readonly SLOW_STAGES=(unit-slow scale conformance browser book)
+readonly SLOW_STAGES=(unit-slow scale conformance browser book python)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
 readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers miri release coverage)
 
@@ -51,6 +51,9 @@ CI runs this one, too:
                screenshots go to target/screenshots
   book         every code block of the book and the README runs and prints what is shown there; mdBook builds
                target/book/html, which headless Chromium looks at
+
+  python       the wheel for Python, in an environment where no Rust is: it gives the bits of the command line, refuses bad input, its
+               recipes run
 
 Only when named:
   conformance-slow
@@ -296,6 +299,10 @@ stage_book() {
     run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
     run "$VENV/bin/python" -m pytest tests/book
+}
+
+stage_python() {
+    run tests/python/run.sh
 }
 
 stage_conformance-slow() {

@@ -1,10 +1,10 @@
 """Build backend of the package: what a wheel contains beside the extension module is built first, then maturin does the rest.
 
-A wheel has the FMUs and the command-line tool with the same FMUs inside. Environment:
+A wheel has the FMUs, the system package of both, and the command-line tool with the same FMUs inside. Environment:
 
 - VIDEG_PROFILE: profile of Cargo: dist (default), what is released; release compiles in less time, and runs are slower.
-- VIDEG_PARTS: a folder with both .fmu, the program `videg` (`videg.exe`) and THIRD-PARTY.md: taken as they are, nothing is built. The release
-  makes them for several platforms.
+- VIDEG_PARTS: a folder with both .fmu, Harvester.ssp, the program `videg` (`videg.exe`) and THIRD-PARTY.md: taken as they are, nothing
+  is built. The release makes them for several platforms.
 """
 
 import os
@@ -23,7 +23,7 @@ from maturin import (  # noqa: F401 - hooks of the build frontend
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "python" / "videg"
-FMUS = ("VibroImpactHarvester", "HarvestingCircuit")
+ARCHIVES = ("VibroImpactHarvester.fmu", "HarvestingCircuit.fmu", "Harvester.ssp")
 PROGRAM = "videg.exe" if sys.platform == "win32" else "videg"
 
 
@@ -53,8 +53,8 @@ def place(source: Path, name: str) -> None:
 def build_parts() -> None:
     """Puts FMUs and program into the package."""
     if given := os.environ.get("VIDEG_PARTS"):
-        for fmu in FMUS:
-            place(Path(given, f"{fmu}.fmu"), f"fmus/{fmu}.fmu")
+        for archive in ARCHIVES:
+            place(Path(given, archive), f"fmus/{archive}")
         place(Path(given, PROGRAM), f"bin/{PROGRAM}")
         place(Path(given, "THIRD-PARTY.md"), "THIRD-PARTY.md")
         return
@@ -62,10 +62,11 @@ def build_parts() -> None:
         # The program without FMUs packages them, the one with them is what users get.
         cargo("build", "-p", "videg-fmu-harvester", "-p", "videg-fmu-circuit", "-p", "videg")
         environment = os.environ | {"VIDEG_NO_BUILD": "1"}
-        subprocess.run([built() / PROGRAM, "fmu", "build", "--output", folder], cwd=ROOT, env=environment, check=True)
+        for arguments in (["fmu", "build"], ["ssp"]):
+            subprocess.run([built() / PROGRAM, *arguments, "--output", folder], cwd=ROOT, env=environment, check=True)
         cargo("build", "-p", "videg", "--bin", "videg", "--features", "embedded-fmus", VIDEG_FMUS=folder)
-        for fmu in FMUS:
-            place(Path(folder, f"{fmu}.fmu"), f"fmus/{fmu}.fmu")
+        for archive in ARCHIVES:
+            place(Path(folder, archive), f"fmus/{archive}")
         place(built() / PROGRAM, f"bin/{PROGRAM}")
 
 

@@ -20,6 +20,7 @@ trap 'rm -rf "$work"' EXIT
 cp "$2" "$work/"
 for fmu in "${FMUS[@]}"; do cp "$3/$fmu.fmu" "$work/"; done
 cp "$4" "$work/THIRD-PARTY.md"
+"$2" ssp --output "$work" >/dev/null
 mkdir -p "$5"
 folder=$(cd "$5" && pwd)
 cd "$root"

@@ -14,7 +14,7 @@ use videg::coupled::Powers;
 
 use videg::sweep::system_description;
 
-use crate::error::error;
+use crate::error::{error, error_of_record};
 use crate::scenario::{Run, item};
 use crate::{background, fmus};
 
@@ -69,7 +69,7 @@ pub fn cosim<'py>(
             let results = cosimulation.run(&mut recorder, progress)?;
             Ok((results, recorder.into_columns()))
         };
-        run().map_err(|error| error.to_string())
+        run().map_err(error_of_record)
     })?;
     let Some((first, comparison)) = results.circuits.split_first() else {
         return Err(error("a co-simulation without a circuit"));

@@ -17,6 +17,12 @@ pub fn error(error: impl Display) -> PyErr {
     Error::new_err(without_dashes(&format!("{error:#}")))
 }
 
+/// The same where the package calls the option `--columns` of the command line `record`.
+pub fn error_of_record(error: impl Display) -> String {
+    let said = error.to_string();
+    said.strip_prefix("--columns").map_or_else(|| said.clone(), |rest| format!("--record{rest}"))
+}
+
 /// `text` with `--until-precision` as `until_precision`.
 fn without_dashes(text: &str) -> String {
     let mut said = String::with_capacity(text.len());

@@ -28,7 +28,7 @@ mod _videg {
         instance::Instance,
         scenario::{cases, start_values},
         simulate::simulate,
-        sweep::sweep,
+        sweep::{evaluate, sweep},
     };
 
     #[pymodule_init]

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use serde::Serialize;
 use videg::simulate::{Column, Points, TableOptions};
 
-use crate::error::error;
+use crate::error::{error, error_of_record};
 use crate::scenario::Run;
 use crate::{background, fmus};
 
@@ -45,7 +45,7 @@ pub fn simulate<'py>(
     let table = background::run(py, progress.as_ref(), |progress| {
         let harvester = fmus::open(&fmu).map_err(|error| error.to_string())?;
         let options = TableOptions { harvester: &harvester, scenario: &scenario, points, columns: &record };
-        videg::simulate::table(&options, progress).map_err(|error| error.to_string())
+        videg::simulate::table(&options, progress).map_err(error_of_record)
     })?;
     let summary = Summary {
         case: &scenario.name,

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use serde::Serialize;
 use videg::cli::{SweepCommon, SweepOptions, Window};
 use videg::scenario::CaseFile;
-use videg::sweep::{Design, Engine, Options, Report, Sampling, Sweep, SweepFile, system_description};
+use videg::sweep::{Design, Engine, Numbers, Options, Report, Sampling, Sweep, SweepFile, system_description};
 
 use crate::error::error;
 use crate::scenario::item;
@@ -97,4 +99,40 @@ pub fn sweep(
     })?;
     let Report { runs, done, failed, resumed_from, files, .. } = report;
     serde_json::to_string(&Finished { runs, done, failed, resumed_from, files }).map_err(error)
+}
+
+/// Points, samples at each, and columns of numbers.
+type Evaluated<'py> = (Bound<'py, PyDict>, Vec<(usize, String)>);
+
+/// Runs all samples at each of `points`, rows of values of what is varied: columns of numbers by name, NaN where a run failed, and the
+/// failed runs with their reasons.
+#[pyfunction]
+pub fn evaluate<'py>(
+    py: Python<'py>,
+    fmu: PathBuf,
+    asked: Asked,
+    points: Vec<Vec<f64>>,
+    jobs: Option<usize>,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Evaluated<'py>> {
+    let (options, file) = asked.options()?;
+    let (names, results) = background::run(py, progress.as_ref(), |progress| {
+        let run = || -> Result<_, Box<dyn std::error::Error>> {
+            let description = system_description()?;
+            let sweep = Sweep::new(&options.request(file, &description, None, None)?)?;
+            let open = || Ok::<_, Box<dyn std::error::Error>>(fmus::open(&fmu)?);
+            let engine = Engine::of_harvester(&sweep, false, open)?;
+            let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+            let names: Vec<String> = sweep.numbers().into_iter().map(str::to_owned).collect();
+            Ok((names, sweep.evaluate(&engine, &points, jobs, progress)?))
+        };
+        run().map_err(|error| format!("{error:#}"))
+    })?;
+    let columns = PyDict::new(py);
+    for (index, name) in names.iter().enumerate() {
+        let value = |numbers: &Numbers| numbers.as_ref().map_or(f64::NAN, |numbers| numbers[index]);
+        columns.set_item(name, PyArray1::from_vec(py, results.iter().map(value).collect()))?;
+    }
+    let failed = results.into_iter().enumerate().filter_map(|(index, it)| Some((index, it.err()?)));
+    Ok((columns, failed.collect()))
 }

@@ -5,11 +5,11 @@ harvester with values and units. What cannot be done raises `videg.Error`, which
 the wrong type raises `TypeError`.
 """
 
-from ._cases import Case, StartValue, cases, fmu, program, start_values
+from ._cases import Case, StartValue, cases, fmu, program, ssp, start_values
 from ._export import Exported, export, netlist
 from ._instances import Circuit, Harvester, State, Variable
 from ._runs import Cosimulation, Simulation, cosim, simulate
-from ._sweep import Range, sweep
+from ._sweep import Evaluation, Range, evaluate, sweep
 from ._videg import Error, __version__
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "Circuit",
     "Cosimulation",
     "Error",
+    "Evaluation",
     "Exported",
     "Harvester",
     "Range",
@@ -27,11 +28,13 @@ __all__ = [
     "__version__",
     "cases",
     "cosim",
+    "evaluate",
     "export",
     "fmu",
     "netlist",
     "program",
     "simulate",
+    "ssp",
     "start_values",
     "sweep",
 ]

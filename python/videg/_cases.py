@@ -83,6 +83,11 @@ def fmu(name: str = "VibroImpactHarvester") -> str:
     return str(_FOLDER / "fmus" / f"{name}.fmu")
 
 
+def ssp() -> str:
+    """Path of the system package (SSP 1.0) that the package brings: both FMUs, connected, with the parameters of Fig. 14."""
+    return str(_FOLDER / "fmus" / "Harvester.ssp")
+
+
 def program() -> str:
     """Path of the command-line tool that the package brings."""
     return str(_FOLDER / "bin" / ("videg.exe" if sys.platform == "win32" else "videg"))

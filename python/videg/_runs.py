@@ -36,6 +36,7 @@ class Run(Mapping[str, Array]):
         """All scalar results, by the names that `--json` of the command line has."""
 
     def __getitem__(self, name: str) -> Array:
+        """The column of this name, shape (rows,)."""
         try:
             return self._columns[name]
         except KeyError:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _arguments, _videg
 from ._arguments import Settings, Value
@@ -54,6 +57,23 @@ def _vary(name: object, values: object) -> str:
         if "," in value or ":" in value:
             raise _videg.Error(f"vary: {name} = {value!r:.80}: values of a list have no commas and colons")
     return f"{name}={','.join(texts)}"
+
+
+def _mapping(name: str, value: object) -> Mapping:
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} = {value!r:.80}: must be a dict from names to values, not of type {type(value).__name__}")
+    return value
+
+
+def _optional(name: str, value: object) -> int | None:
+    return None if value is None else _arguments.integer(name, value)
+
+
+def _jobs(value: object) -> int | None:
+    jobs = _optional("jobs", value)
+    if jobs == 0:
+        raise _videg.Error("jobs = 0: must be at least 1")
+    return jobs
 
 
 def sweep(
@@ -112,35 +132,119 @@ def sweep(
     """
     import pandas as pd
 
-    if not isinstance(vary, Mapping):
-        raise TypeError(f"vary = {vary!r:.80}: must be a dict from names to values, not of type {type(vary).__name__}")
-    if jobs is not None and _arguments.integer("jobs", jobs) < 1:
-        raise _videg.Error(f"jobs = {jobs}: must be at least 1")
-
-    def optional(name: str, value: object) -> int | None:
-        return None if value is None else _arguments.integer(name, value)
-
     asked = _arguments.run(case, set, until, step, window) | {
-        "vary": [_vary(name, values) for name, values in vary.items()],
+        "vary": [_vary(name, values) for name, values in _mapping("vary", vary).items()],
         "record": _arguments.names("record", record),
         "design": design,
-        "points": optional("points", points),
-        "samples": optional("samples", samples),
+        "points": _optional("points", points),
+        "samples": _optional("samples", samples),
         "confidence": None if confidence is None else _arguments.number("confidence", confidence),
         "until_precision": None if until_precision is None else _arguments.number("until_precision", until_precision),
         "precision_of": precision_of,
-        "seed": optional("seed", seed),
+        "seed": _optional("seed", seed),
         "common_seeds": bool(common_seeds),
     }
     with tempfile.TemporaryDirectory(prefix="videg-sweep-") as temporary, bar(progress, "sweep") as told:
         folder = os.fspath(output) if output is not None else temporary
         if output is not None:
             os.makedirs(folder, exist_ok=True)
-        done = json.loads(_videg.sweep(fmu(), asked, folder, jobs, bool(fresh), told))
-        # From pandas 4 on, numbers keep their bits by themselves, and the argument is deprecated.
-        exact = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 4 else {}
+        done = json.loads(_videg.sweep(fmu(), asked, folder, _jobs(jobs), bool(fresh), told))
+        # From pandas 3 on, numbers keep their bits by themselves, and the argument is deprecated.
+        exact = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 3 else {}
         results = pd.read_csv(done["files"][0], dtype={"error": "object"}, **exact)
     results.attrs = {key: done[key] for key in ("runs", "failed", "resumed_from")}
     if output is not None:
         results.attrs["files"] = done["files"]
     return results
+
+
+class Evaluation(Mapping[str, "npt.NDArray[np.float64]"]):
+    """Results at points, by name: arrays of shape (points,), or (points, samples) if samples were asked for. NaN where a run failed."""
+
+    def __init__(self, columns: dict[str, npt.NDArray[np.float64]], errors: dict[int, str]) -> None:
+        self._columns = columns
+        self.errors = errors
+        """Number of each run that failed - point times samples plus sample -, and why."""
+
+    def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
+        """The results of this name."""
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"{name}: not recorded; there are {', '.join(self._columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        shape = next(iter(self._columns.values())).shape
+        return f"<Evaluation of shape {shape}: {', '.join(self._columns)}; {len(self.errors)} runs failed>"
+
+
+def evaluate(
+    points: Mapping[str, npt.ArrayLike],
+    case: str | os.PathLike[str] | None = None,
+    *,
+    record: str | Sequence[str] = (),
+    until: float | None = None,
+    set: Settings | None = None,  # noqa: A002
+    step: float | None = None,
+    window: tuple[float, float] | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    jobs: int | None = None,
+    progress: bool | None = False,
+) -> Evaluation:
+    """Runs the harvester, with a circuit if one of its variables is named, at points of your choice: what an optimiser calls.
+
+    Args:
+        points: Values of each variable at the points, by name: arrays of the same length, or numbers for one point.
+        case: Name of a published case, or path of a case file (TOML); fig14 if left out.
+        record: Variables to record at the end of each run, or net_power, load_power, supply_power over the window.
+        until: End of a run, s; 100 if left out.
+        set: Values of variables that are the same in all runs, by name.
+        step: Communication step, s; from edge to edge of the window if left out.
+        window: Averaging window, s; 50 to 100, or the second half of a shorter run, if left out.
+        samples: Runs at each point, each with its own noise; sample i has the same seed at all points (common random numbers).
+        seed: Seed of the first sample; 1 if left out.
+        jobs: Most runs at once; one on each core if left out.
+        progress: Whether to show a bar (tqdm); None: if stderr is a terminal.
+
+    Returns:
+        Averages and what is recorded, by name, and the errors of runs that failed.
+
+    Raises:
+        Error: No such case or variable; points of different lengths.
+        KeyboardInterrupt: Ctrl-C.
+    """
+    names = _arguments.names("points", list(_mapping("points", points)))
+    arrays = [_column(name, points[name]) for name in names]
+    lengths = {name: len(array) for name, array in zip(names, arrays, strict=True)}
+    if not names or len({*lengths.values()}) != 1 or 0 in lengths.values():
+        said = ", ".join(f"{name} has {length}" for name, length in lengths.items()) or "there is no variable"
+        raise _videg.Error(f"points: each variable needs as many values, at least one; {said}")
+    rows = np.column_stack(arrays)
+    asked = _arguments.run(case, set, until, step, window) | {
+        # The points themselves are checked one by one.
+        "vary": [f"{name}={_arguments.text(name, rows[0, k])}" for k, name in enumerate(names)],
+        "record": _arguments.names("record", record),
+        "samples": _optional("samples", samples),
+        "seed": _optional("seed", seed),
+        "common_seeds": samples is not None,
+    } | dict.fromkeys(("design", "points", "confidence", "until_precision", "precision_of"))
+    with bar(progress, "evaluate") as told:
+        columns, failed = _videg.evaluate(fmu(), asked, rows.tolist(), _jobs(jobs), told)
+    if samples is not None:
+        columns = {name: values.reshape(len(rows), -1) for name, values in columns.items()}
+    return Evaluation(columns, dict(failed))
+
+
+def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu" or array.ndim > 1:
+        kind = f"{array.ndim} dimensions and the type {array.dtype}"
+        raise TypeError(f"points: {name}: must be a number or an array of numbers in one dimension, has {kind}")
+    return np.atleast_1d(array.astype(np.float64))

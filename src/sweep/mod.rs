@@ -51,6 +51,7 @@ mod waves;
 pub use cases::{AXIS as CASE_AXIS, NamedCase};
 pub use column::{Column, Type};
 pub use electrical::{POWERS, is_electrical};
+pub use elsewhere::Numbers;
 pub use engine::{BuiltIn, Engine};
 pub use error::SweepError;
 pub use file::SweepFile;

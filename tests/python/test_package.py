@@ -4,6 +4,7 @@ import inspect
 import resource
 import subprocess
 import sys
+import zipfile
 from importlib.metadata import version
 from pathlib import Path
 
@@ -27,6 +28,12 @@ def test_fmpy_runs_the_fmu_as_the_package_does() -> None:
 @pytest.mark.parametrize("name", ["VibroImpactHarvester", "HarvestingCircuit"])
 def test_the_fmus_are_valid(name: str) -> None:
     assert fmpy.validation.validate_fmu(videg.fmu(name)) == []
+
+
+def test_the_system_package_has_both_fmus() -> None:
+    with zipfile.ZipFile(videg.ssp()) as archive:
+        names = archive.namelist()
+    assert "SystemStructure.ssd" in names and sum(name.endswith(".fmu") for name in names) == 2, names
 
 
 def test_the_program_is_there() -> None:

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds the wheel, installs it into an environment of its own outside of the source tree, and tests it there with nothing else on the
+# PATH: no Rust, no Cargo, no program of this source tree. Prints how long a user waits for the first table.
+#
+# Environment: WHEEL, a wheel to test in place of one that is built here.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+wheel=${WHEEL:-}
+if [[ -z $wheel ]]; then
+    # Less optimised than a release: it shares what it compiles with the other stages.
+    VIDEG_PROFILE=release python3 -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" .
+    wheel=$(ls "$work"/videg-*.whl)
+fi
+ls -l "$wheel"
+
+python3 -m venv "$work/user"
+alone=(env -i HOME="$work" PATH="$work/user/bin" LANG=C.UTF-8)
+started=$(date +%s.%N)
+"$work/user/bin/pip" install --quiet --disable-pip-version-check "$wheel"
+(cd "$work" && "${alone[@]}" videg cosim >"$work/table")
+grep --fixed-strings "net power" "$work/table"
+echo "from pip install to the first table: $(python3 -c "import time; print(f'{time.time() - $started:.1f}')") s"
+if "${alone[@]}" "$BASH" -c 'command -v cargo rustc videg-model'; then
+    echo "Rust is on the PATH of the environment" >&2
+    exit 1
+fi
+
+"$work/user/bin/pip" install --quiet --disable-pip-version-check --requirement tests/python/requirements.txt
+"${alone[@]}" python -m pytest -p no:cacheprovider tests/python

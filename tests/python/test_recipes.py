@@ -1,0 +1,75 @@
+"""The recipes run, and do what they say."""
+
+import importlib.util
+import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+RECIPES = Path(__file__).resolve().parent.parent.parent / "examples/python"
+
+
+def recipe(name: str):
+    """The recipe as a module; what it does as a script is not done."""
+    spec = importlib.util.spec_from_file_location(name, RECIPES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("path", sorted(RECIPES.glob("*.py")), ids=lambda path: path.stem)
+def test_each_recipe_runs(path: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, path], cwd=tmp_path, env=os.environ | {"MPLBACKEND": "Agg"}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout and "Warning" not in done.stderr, done.stderr
+    text = path.read_text()
+    figures = [figure for figure in tmp_path.glob("*.svg") if figure.stat().st_size > 5000]
+    assert len(figures) == text.count("savefig("), "a figure is missing or empty"
+
+
+def test_intervals_contain_the_true_values() -> None:
+    """Of 100 records with 1 % of noise, 90 to 99 are to be within the interval of 95 %; by chance more or fewer once in 400 sets."""
+    identification = recipe("identification")
+    hits = np.zeros(3, int)
+    for seed in range(100):
+        record, guess = identification.synthetic(seed)
+        fit = identification.fit(identification.voltages, record, guess, [0.3, 0.8, 2.0])
+        assert fit.determined.all()
+        hits += (fit.low <= identification.TRUE) & (identification.TRUE <= fit.high)
+    assert binom.cdf(89, 100, 0.95) < 0.02
+    assert ((hits >= 90) & (hits <= 99)).all(), hits
+
+
+def test_what_a_record_does_not_determine_is_said() -> None:
+    """Impact times follow from the restitution alone; a membrane that is never hit tells nothing."""
+    identification = recipe("identification")
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        _, guess = identification.synthetic(seed)
+        times = identification.impact_times(identification.TRUE, 2.0)
+        seen = times + random.normal(0.0, 1e-4, len(times))
+        fit = identification.fit(identification.impact_times, lambda _, seen=seen: seen, guess, [2.0])
+        assert list(fit.determined) == [False, False, True], fit
+        assert "not determined" in str(fit)
+
+
+@pytest.mark.parametrize("case", ["fig14", "fig15", "fig12"])
+def test_the_optimum_is_not_worse_than_a_map(case: str) -> None:
+    """Than the best of 10,000 points on a grid over the same bounds."""
+    optimisation = recipe("optimisation")
+    axes = [np.linspace(low, high, 10) for low, high in optimisation.bounds(case)]
+    grid = optimisation.objective(np.array(list(itertools.product(*axes))), case)
+    design, loss = optimisation.best(case)
+    print(f"{case}: grid {-1e6 * grid.min():.2f} uW, optimum {-1e6 * loss:.2f} uW at {optimisation.described(design)}")
+    assert loss <= grid.min()
+    assert grid.min() < 0.0, "no point of the grid gains"
+    again = optimisation.objective(design[None], case)[0]
+    assert again == loss
