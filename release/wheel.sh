@@ -7,6 +7,7 @@
 #   windows-x86_64   on Windows
 #   macos-universal  one file for Intel and Apple silicon; on a Mac
 #   host             for this machine and its C library: to try a release out
+#   source           the source distribution in place of a wheel; PROGRAM, FMUS and NOTICES are not looked at
 #
 # Installs maturin below target/tools, unless it is there.
 set -euo pipefail
@@ -15,22 +16,31 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 [[ $# -eq 5 ]] || fail "wants a name, the program, the folder of the FMUs, the notices and a folder"
 maturin_version=1.16.0
 name=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cp "$2" "$work/"
-for fmu in "${FMUS[@]}"; do cp "$3/$fmu.fmu" "$work/"; done
-cp "$4" "$work/THIRD-PARTY.md"
-"$2" ssp --output "$work" >/dev/null
+program=$(realpath -m "$2") archives=$(realpath -m "$3") notices=$(realpath -m "$4")
 mkdir -p "$5"
 folder=$(cd "$5" && pwd)
 cd "$root"
 
 tools=${CARGO_TARGET_DIR:-target}/tools/maturin
 python=$tools/bin/python
-[[ $name == windows-* ]] && python=$tools/Scripts/python.exe && work=$(cygpath -m "$work")
+if [[ $name == windows-* ]]; then
+    python=$tools/Scripts/python.exe
+fi
 [[ -x $python ]] || python3 -m venv "$tools" 2>/dev/null || python -m venv "$tools"
 "$python" -m pip install --quiet --disable-pip-version-check "maturin==$maturin_version"
 
+if [[ $name == source ]]; then
+    "$tools/bin/maturin" sdist --out "$folder"
+    ls "$folder"/videg-*.tar.gz
+    exit
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp "$program" "$work/"
+for fmu in "${FMUS[@]}"; do cp "$archives/$fmu.fmu" "$work/"; done
+cp "$notices" "$work/THIRD-PARTY.md"
+# From outside of the source tree it takes the FMUs inside.
+"$work/$(basename "$program")" ssp --output "$work" >/dev/null
 case $name in
     linux-x86_64) arguments="--zig --target x86_64-unknown-linux-gnu --compatibility manylinux2014" ;;
     windows-x86_64) arguments="--target x86_64-pc-windows-msvc" && export RUSTFLAGS="-C target-feature=+crt-static" ;;
@@ -38,6 +48,10 @@ case $name in
     host) arguments="" ;;
     *) fail "no wheel is called \"$name\"; there are linux-x86_64, windows-x86_64 and macos-universal" ;;
 esac
+if [[ $name == windows-* ]]; then
+    # Python wants a path of Windows.
+    work=$(cygpath -m "$work")
+fi
 # Behind the others, of which one may have zig.
 PATH="$PATH:$(dirname "$python")" VIDEG_PARTS=$work "$python" -m pip wheel --quiet --disable-pip-version-check \
     --no-build-isolation --no-deps --config-settings "build-args=$arguments" --wheel-dir "$folder" "$root"

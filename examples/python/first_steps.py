@@ -22,7 +22,7 @@ for axis, (r, run) in zip(axes, runs.items(), strict=True):
         axis.plot(run.time[shown], 1e12 * run[f"{side}.capacitance"][shown], color=colour, label=side)
     axis.set_title(f"r = {r}", loc="left", fontsize="medium")
     axis.set_ylabel("C, pF")
-axes[0].legend(ncols=2, loc="upper right")
+axes[0].legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0, frameon=False)
 axes[-1].set_xlabel("time, s")
 figure.savefig("first_steps.svg")
 

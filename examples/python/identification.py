@@ -149,7 +149,7 @@ def main() -> None:
     axis.plot(time[shown], voltages(found.values, 2.0)[: len(time)][shown], color="#1b6ca8", linewidth=0.9, label="fit")
     axis.set_xlabel("time, s")
     axis.set_ylabel("U, V")
-    axis.legend(loc="lower right")
+    axis.legend(loc="lower left")
     figure.savefig("identification.svg")
 
 

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Optimisation: the best net power within the limits of the film
 #
-# Gap, mass of the ball, load and release voltage of an isolated pair of membranes with a switch. Three questions: the best design, what
-# stretch of the film costs, and which design is best if the excitation is noisy.
+# Gap, mass of the ball, load and release voltage of an isolated pair of membranes with a switch. Three questions: which design is best,
+# what less stretch of the film costs, and which design is best if the excitation is noisy.
 
 # %%
 import matplotlib.pyplot as plt
@@ -103,12 +103,8 @@ def main() -> None:
     half = power[np.searchsorted(stretch, 0.5 * (stretch[0] + stretch[-1]))]
     print(f"{len(power)} designs from {power[0]:.1f} to {power[-1]:.1f} uW; {half:.1f} uW at half of the way in stretch")
 
-    # %% [markdown]
-    # ## Under phase noise
-    #
-    # Each design runs with the same eight records of noise (common random numbers), so that differences are those of the designs.
-
-    # %%
+    # Under phase noise each design runs with the same eight records of noise (common random numbers), so that differences are those of
+    # the designs.
     noisy = {"samples": 8, "set": {"excitation.phaseNoise": 1.0, "excitation.noiseHold": 1e-3}}
     quiet = -objective(design[None], "fig14", **noisy)[0]
     robust, loss = best("fig14", size=8, generations=20, **noisy)

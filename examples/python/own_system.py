@@ -17,7 +17,7 @@ MOUNT, MOUNT_DAMPING = 60.0, 0.4  # N/m, N.s/m
 
 def machine(time: float, state: np.ndarray, reaction: float) -> list[float]:
     position, velocity = state
-    driven = 10.0 * np.cos(4 * np.pi * time)
+    driven = 4.0 * np.cos(4 * np.pi * time)
     return [velocity, (driven - reaction - STIFFNESS * position - DAMPING * velocity) / MASS]
 
 
@@ -66,5 +66,5 @@ axes[1].plot(table[shown, 0], 1e12 * table[shown, 4], color="#c0504d", linewidth
 axes[1].set_ylabel("C, pF")
 axes[1].set_xlabel("time, s")
 for axis in axes:
-    axis.legend(ncols=2, loc="upper right")
+    axis.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0, frameon=False)
 figure.savefig("own_system.svg")

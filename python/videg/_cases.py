@@ -26,7 +26,7 @@ class Case:
     description: str
     source: str
     paper_voltage_gain: float | None
-    """<U> as the paper prints it, V/s."""
+    """`<U>` as the paper prints it, V/s."""
     paper_power: float | None
     """P as the paper prints it, W."""
 

@@ -64,7 +64,7 @@ class Run(Mapping[str, Array]):
 
     @property
     def average_voltage_gain(self) -> float:
-        """<U> of Eq. (15) over the averaging window, V/s."""
+        """`<U>` of Eq. (15) over the averaging window, V/s."""
         return float(self.summary["average_voltage_gain"])
 
     @property

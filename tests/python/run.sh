@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the wheel, installs it into an environment of its own outside of the source tree, and tests it there with nothing else on the
+# Builds the wheel from the source distribution, installs it into an environment of its own outside of the source tree, and tests it there with nothing else on the
 # PATH: no Rust, no Cargo, no program of this source tree. Prints how long a user waits for the first table.
 #
 # Environment: WHEEL, a wheel to test in place of one that is built here.
@@ -10,8 +10,10 @@ trap 'rm -rf "$work"' EXIT
 
 wheel=${WHEEL:-}
 if [[ -z $wheel ]]; then
-    # Less optimised than a release: it shares what it compiles with the other stages.
-    VIDEG_PROFILE=release python3 -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" .
+    release/wheel.sh source - - - "$work"
+    # Less optimised than a release.
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}/python VIDEG_PROFILE=release \
+        python3 -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" "$work"/videg-*.tar.gz
     wheel=$(ls "$work"/videg-*.whl)
 fi
 ls -l "$wheel"
