@@ -2,7 +2,7 @@
 
 A wheel has the FMUs, the system package of both, and the command-line tool with the same FMUs inside. Environment:
 
-- VIDEG_PROFILE: profile of Cargo: dist (default), what is released; release compiles in less time, and runs are slower.
+- VIDEG_PROFILE: profile of Cargo: release (default), or dist, which takes longer to compile and is what is released.
 - VIDEG_PARTS: a folder with both .fmu, Harvester.ssp, the program `videg` (`videg.exe`) and THIRD-PARTY.md: taken as they are, nothing
   is built. The release makes them for several platforms.
 """
@@ -28,7 +28,7 @@ PROGRAM = "videg.exe" if sys.platform == "win32" else "videg"
 
 
 def profile() -> str:
-    return os.environ.get("VIDEG_PROFILE", "dist")
+    return os.environ.get("VIDEG_PROFILE", "release")
 
 
 def cargo(*arguments: str, **environment: str) -> None:

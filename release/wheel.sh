@@ -53,6 +53,6 @@ if [[ $name == windows-* ]]; then
     work=$(cygpath -m "$work")
 fi
 # Behind the others, of which one may have zig.
-PATH="$PATH:$(dirname "$python")" VIDEG_PARTS=$work "$python" -m pip wheel --quiet --disable-pip-version-check \
+PATH="$PATH:$(dirname "$python")" VIDEG_PROFILE=dist VIDEG_PARTS=$work "$python" -m pip wheel --quiet --disable-pip-version-check \
     --no-build-isolation --no-deps --config-settings "build-args=$arguments" --wheel-dir "$folder" "$root"
 ls "$folder"/videg-*.whl

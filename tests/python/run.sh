@@ -11,8 +11,7 @@ trap 'rm -rf "$work"' EXIT
 wheel=${WHEEL:-}
 if [[ -z $wheel ]]; then
     release/wheel.sh source - - - "$work"
-    # Less optimised than a release.
-    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}/python VIDEG_PROFILE=release \
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}/python \
         python3 -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" "$work"/videg-*.tar.gz
     wheel=$(ls "$work"/videg-*.whl)
 fi
