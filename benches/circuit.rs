@@ -26,7 +26,7 @@ fn table(until: f64, tolerance: f64) -> anyhow::Result<CapacitanceTable> {
     let fmu = Fmu::open(paths.first().context("no FMU")?)?;
     let scenario = Request { case: Some("fig14".to_owned()), until: Some(until), ..Request::default() }.resolve()?;
     let mut harvester = HarvesterFmu::new(&fmu, &scenario, &scenario.settings)?;
-    Ok(CapacitanceTable::from_harvester(&mut harvester, until, tolerance)?)
+    Ok(CapacitanceTable::from_harvester(&mut harvester, until, tolerance, &())?)
 }
 
 fn deviation(found: &Ledger, exact: &Ledger) -> f64 {

@@ -12,12 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let fmus = package::build_all(&package::Options::default())?;
     let (harvester, scenario) = (Fmu::open(&fmus[0])?, Request::default().resolve()?);
     let columns = ["left.capacitance", "right.capacitance"].map(str::to_owned);
-    let options = TableOptions {
-        harvester: &harvester,
-        scenario: &scenario,
-        points: Points::Sample(1e-3),
-        columns: &columns,
-    };
+    let options =
+        TableOptions { harvester: &harvester, scenario: &scenario, points: Points::Sample(1e-3), columns: &columns };
     let mut shortest = f64::INFINITY;
     for _ in 0..30 {
         let started = Instant::now();

@@ -19,6 +19,8 @@ from maturin import (  # noqa: F401 - hooks of the build frontend
     get_requires_for_build_editable,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
+    prepare_metadata_for_build_editable,
+    prepare_metadata_for_build_wheel,
 )
 
 ROOT = Path(__file__).parent.parent
@@ -68,6 +70,10 @@ def build_parts() -> None:
         for archive in ARCHIVES:
             place(Path(folder, archive), f"fmus/{archive}")
         place(built() / PROGRAM, f"bin/{PROGRAM}")
+        notices = Path(folder, "THIRD-PARTY.md")
+        with notices.open("w", encoding="utf-8") as file:
+            subprocess.run([sys.executable, ROOT / "release/notices.py"], cwd=ROOT, stdout=file, check=True)
+        place(notices, "THIRD-PARTY.md")
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
@@ -87,6 +93,8 @@ def build_sdist(sdist_directory, config_settings=None):
 def with_profile(config_settings):
     """The settings with arguments of maturin for the same profile."""
     settings = dict(config_settings or {})
-    given = settings.get("build-args", "")
-    settings["build-args"] = f"--profile {profile()} --locked {given}".strip()
+    given = [settings.pop(key, []) for key in ("maturin.build-args", "build-args")]
+    given = [part for parts in given for part in ([parts] if isinstance(parts, str) else parts)]
+    environment = os.environ.get("MATURIN_PEP517_ARGS", "")
+    settings["build-args"] = " ".join(["--profile", profile(), "--locked", *(given or [environment])]).strip()
     return settings

@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use videg::export::{Format, Options};
-use videg::simulate::Points;
 
 use crate::error::error;
-use crate::scenario::{Run, item};
+use crate::scenario::{By, Run, item};
 use crate::{background, fmus};
 
 /// Writes the file at `path`; what was written, as JSON.
@@ -19,13 +18,13 @@ pub fn export(
     run: Run,
     path: PathBuf,
     format: String,
-    points: (String, f64),
+    by: By,
     columns: Vec<String>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let format: Format = item("format", &format)?;
     let scenario = run.resolve().map_err(error)?;
-    let points = if points.0 == "knots" { Points::Knots(points.1) } else { Points::Sample(points.1) };
+    let points = by.points(scenario.until);
     let exported = background::run(py, progress.as_ref(), |progress| {
         let harvester = fmus::open(&fmu).map_err(|error| error.to_string())?;
         let (scenario, columns, path) = (&scenario, &columns[..], &path);

@@ -7,6 +7,7 @@ use fmu_import::Value;
 use pyo3::prelude::*;
 use serde::Serialize;
 use videg::scenario::{self, CaseFile, Request, Scenario, ScenarioError, Setting, StartValue};
+use videg::simulate::Points;
 use videg_model::Case;
 
 use crate::error::error;
@@ -21,6 +22,21 @@ pub struct Run {
     until: Option<f64>,
     step: Option<f64>,
     window: Option<[f64; 2]>,
+}
+
+/// The points of a table: by what, and its number. A default is a row each millisecond, or the end of a shorter run.
+#[derive(FromPyObject)]
+pub struct By(String, f64);
+
+impl By {
+    /// The points of a run up to `until`, s.
+    pub fn points(&self, until: f64) -> Points {
+        match self.0.as_str() {
+            "knots" => Points::Knots(self.1),
+            "sample" => Points::Sample(self.1),
+            _ => Points::Sample(self.1.min(until)),
+        }
+    }
 }
 
 impl Run {

@@ -6,10 +6,10 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
-use videg::simulate::{Column, Points, TableOptions};
+use videg::simulate::{Column, TableOptions};
 
 use crate::error::{error, error_of_record};
-use crate::scenario::Run;
+use crate::scenario::{By, Run};
 use crate::{background, fmus};
 
 /// What a run gives beside its columns.
@@ -37,11 +37,11 @@ pub fn simulate<'py>(
     fmu: PathBuf,
     run: Run,
     record: Vec<String>,
-    points: (String, f64),
+    by: By,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, String)> {
     let scenario = run.resolve().map_err(error)?;
-    let points = if points.0 == "knots" { Points::Knots(points.1) } else { Points::Sample(points.1) };
+    let points = by.points(scenario.until);
     let table = background::run(py, progress.as_ref(), |progress| {
         let harvester = fmus::open(&fmu).map_err(|error| error.to_string())?;
         let options = TableOptions { harvester: &harvester, scenario: &scenario, points, columns: &record };

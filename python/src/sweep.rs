@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fmu_import::{Kind, ModelDescription};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -91,6 +92,7 @@ pub fn sweep(
             let sweep = Sweep::new(&options.request(file, &description, None, None)?)?;
             let open = || Ok::<_, Box<dyn std::error::Error>>(fmus::open(&fmu)?);
             let engine = Engine::of_harvester(&sweep, false, open)?;
+            std::fs::create_dir_all(&folder)?;
             let options = Options::new(&sweep, &engine, &folder);
             let options = Options { jobs: jobs.unwrap_or(options.jobs), fresh, ..options };
             Ok(videg::sweep::run(&options, progress)?)
@@ -104,6 +106,16 @@ pub fn sweep(
 /// Points, samples at each, and columns of numbers.
 type Evaluated<'py> = (Bound<'py, PyDict>, Vec<(usize, String)>);
 
+/// The variable at its start value, as one that is varied: each point is checked by itself.
+fn at_start(description: &ModelDescription, name: &str) -> Result<String, Box<dyn std::error::Error>> {
+    match &description.variable(name)?.kind {
+        Kind::Real { start, .. } => Ok(format!("{name}={:?}", start.unwrap_or(1.0))),
+        other => {
+            Err(format!("points: {name}: is of type {}; points are values of Real variables", other.name()).into())
+        }
+    }
+}
+
 /// Runs all samples at each of `points`, rows of values of what is varied: columns of numbers by name, NaN where a run failed, and the
 /// failed runs with their reasons.
 #[pyfunction]
@@ -111,14 +123,16 @@ pub fn evaluate<'py>(
     py: Python<'py>,
     fmu: PathBuf,
     asked: Asked,
+    names: Vec<String>,
     points: Vec<Vec<f64>>,
     jobs: Option<usize>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Evaluated<'py>> {
-    let (options, file) = asked.options()?;
+    let (mut options, file) = asked.options()?;
     let (names, results) = background::run(py, progress.as_ref(), |progress| {
         let run = || -> Result<_, Box<dyn std::error::Error>> {
             let description = system_description()?;
+            options.vary = names.iter().map(|name| at_start(&description, name)).collect::<Result<_, _>>()?;
             let sweep = Sweep::new(&options.request(file, &description, None, None)?)?;
             let open = || Ok::<_, Box<dyn std::error::Error>>(fmus::open(&fmu)?);
             let engine = Engine::of_harvester(&sweep, false, open)?;

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
+
+from . import _videg
 
 # What a variable can be set to.
 Value = float | int | bool | str | os.PathLike[str] | np.generic
@@ -20,13 +22,27 @@ def text(name: str, value: object) -> str:
     if isinstance(value, bool | np.bool_):
         return "true" if value else "false"
     if isinstance(value, int | np.integer):
+        if not -(2**63) <= value < 2**63:
+            raise _videg.Error(f"{name}: an integer of more than 64 bits")
         return str(int(value))
     if isinstance(value, float | np.floating):
         return repr(float(value))
     if isinstance(value, str | os.PathLike):
-        return os.fspath(value)
+        return _unicode(name, os.fspath(value))
     kind = type(value).__name__
     raise TypeError(f"{name} = {value!r:.80}: must be a number, a truth value or a text, not of type {kind}")
+
+
+def _unicode(name: str, value: object) -> str:
+    """`value` if it is text that UTF-8 can write."""
+    try:
+        if isinstance(value, str) and value.encode():
+            return value
+    except UnicodeEncodeError:
+        pass
+    if value == "":
+        return ""
+    raise TypeError(f"{name} = {value!a:.80}: must be a text of Unicode characters")
 
 
 def number(name: str, value: object) -> float:
@@ -35,6 +51,8 @@ def number(name: str, value: object) -> float:
         raise TypeError(f"{name} = {value!r:.80}: must be a number, not of type {type(value).__name__}")
     try:
         return float(value)  # type: ignore[arg-type]
+    except OverflowError:
+        raise _videg.Error(f"{name}: a number that is too large") from None
     except (TypeError, ValueError) as cause:
         raise TypeError(f"{name} = {value!r:.80}: must be a number, not of type {type(value).__name__}") from cause
 
@@ -44,9 +62,8 @@ def integer(name: str, value: object, least: int = 0) -> int:
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
         raise TypeError(f"{name} = {value!r:.80}: must be a whole number, not of type {type(value).__name__}")
     if not least <= value < 2**63:
-        from ._videg import Error
-
-        raise Error(f"{name} = {value!s:.80}: must lie from {least} to 2^63 - 1")
+        said = f" = {value}" if -(2**64) < value < 2**64 else ""
+        raise _videg.Error(f"{name}{said}: must lie from {least} to 2^63 - 1")
     return int(value)
 
 
@@ -60,6 +77,7 @@ def names(name: str, value: object) -> list[str]:
     for item in found:
         if not isinstance(item, str):
             raise TypeError(f"{name}: {item!r:.80} is no name of a variable, but of type {type(item).__name__}")
+        _unicode(name, item)
     return found
 
 
@@ -72,13 +90,14 @@ def settings(name: str, value: object) -> list[str]:
     for key in value:
         if not isinstance(key, str):
             raise TypeError(f"{name}: {key!r:.80} is no name of a variable, but of type {type(key).__name__}")
+        _unicode(name, key)
     return [f"{key}={text(key, item)}" for key, item in value.items()]
 
 
 def _pair(name: str, value: object) -> list[float]:
-    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray) or len(value) != 2:
+    if isinstance(value, str) or not isinstance(value, Iterable) or len(found := list(value)) != 2:
         raise TypeError(f"{name} = {value!r:.80}: must be two times")
-    return [number(name, item) for item in value]
+    return [number(name, item) for item in found]
 
 
 def run(
@@ -91,6 +110,8 @@ def run(
     """A run as the extension module takes it. A case that is a path, or ends with `.toml`, is a case file."""
     if not isinstance(case, str | os.PathLike | None):
         raise TypeError(f"case = {case!r:.80}: must be a name or a path, not of type {type(case).__name__}")
+    if case is not None:
+        _unicode("case", os.fspath(case))
     is_file = isinstance(case, os.PathLike) or (isinstance(case, str) and case.endswith(".toml"))
     return {
         "case": None if is_file else case,
@@ -102,8 +123,9 @@ def run(
     }
 
 
-def points(sample: object, knots: object, default: tuple[str, float]) -> tuple[str, float]:
-    """The points of a table: one each `sample` seconds, or as few as lines with an error of `knots` need."""
+def points(sample: object, knots: object, default: tuple[str, float] = ("default", 1e-3)) -> tuple[str, float]:
+    """The points of a table: one each `sample` seconds, or as few as lines with an error of `knots` need; each millisecond, or the end
+    of a shorter run, if neither is given."""
     if sample is not None and knots is not None:
         raise TypeError("sample and knots: give one of them")
     if sample is not None:

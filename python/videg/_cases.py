@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import json
+import multiprocessing.util
 import os
 import sys
 from dataclasses import dataclass
@@ -12,7 +13,16 @@ from pathlib import Path
 from . import _arguments, _videg
 from ._arguments import Settings
 
+
+
+def _close_at_end(_: object = None) -> None:
+    """Removes the folder in which the FMUs are unpacked at the end of the process; those of multiprocessing end without atexit."""
+    multiprocessing.util.Finalize(None, _videg.close, exitpriority=0)
+
+
 atexit.register(_videg.close)
+_close_at_end()
+multiprocessing.util.register_after_fork(_videg, _close_at_end)
 
 _FOLDER = Path(__file__).parent
 _FMUS = ("VibroImpactHarvester", "HarvestingCircuit")

@@ -11,7 +11,7 @@ from . import _arguments, _videg
 from ._arguments import Settings
 from ._cases import fmu
 from ._progress import bar
-from ._runs import CAPACITANCES
+from ._runs import recorded
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def export(
     format: str = "csv",  # noqa: A002
     until: float | None = None,
     set: Settings | None = None,  # noqa: A002
-    columns: str | Sequence[str] = CAPACITANCES,
+    columns: str | Sequence[str] | None = None,
     sample: float | None = None,
     knots: float | None = None,
     progress: bool | None = False,
@@ -94,7 +94,7 @@ def export(
         until: End of the run, s; 100 if left out.
         set: Values of variables on top of those of the case, by name.
         columns: Names of variables beside the time; both capacitances if left out.
-        sample: Distance of the rows, s; 1e-3 if left out.
+        sample: Distance of the rows, s; 1e-3, or the end of a shorter run, if left out.
         knots: In place of `sample`, as few rows as straight lines between them need for this error of C(t).
         progress: Whether to show a bar (tqdm); None: if stderr is a terminal.
 
@@ -105,6 +105,6 @@ def export(
     formats = ("csv", "parquet", "mat")
     if format not in formats:
         raise _videg.Error(f"format = {format!r:.80}: allowed are {', '.join(formats)}; netlist writes those of simulators")
-    points = _arguments.points(sample, knots, ("sample", 1e-3))
+    points = _arguments.points(sample, knots)
     run = _arguments.run(case, set, until, None, None)
-    return _write(path, format, run, points, _arguments.names("columns", columns), progress)
+    return _write(path, format, run, points, recorded(columns, "columns"), progress)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import TracebackType
@@ -43,16 +42,16 @@ class Variable:
 
 
 class Instance:
-    """An instance of an FMU, initialised at 0 s. It belongs to the thread that made it."""
+    """An instance of an FMU, initialised at 0 s. One thread at a time can use it, in the process that made it."""
 
     def __init__(self, instance: _videg.Instance) -> None:
         self._own = instance
-        self._home = (os.getpid(), threading.get_ident())
+        self._process = os.getpid()
 
     @property
     def _instance(self) -> _videg.Instance:
-        if self._home != (os.getpid(), threading.get_ident()):
-            raise _videg.Error(f"{type(self).__name__}: it belongs to the thread that made it; make one in each thread or process")
+        if self._process != os.getpid():
+            raise _videg.Error(f"{type(self).__name__}: it belongs to the process that made it; save() gives a state for others")
         return self._own
 
     @property
@@ -61,7 +60,7 @@ class Instance:
         return self._instance.time
 
     def step(self, step: float) -> None:
-        """Steps by `step`, s.
+        """Steps by `step`, s. Ctrl-C ends a long step on its way, at the time that `time` says.
 
         Raises:
             Error: No time above 0; what the model says of its inputs.
@@ -70,14 +69,20 @@ class Instance:
 
     def __getitem__(self, name: str) -> float | int | bool | str:
         """The present value of a variable; an item of an enumeration is its name."""
-        return self._instance.get(name)
+        return self._instance.get(_arguments.names("name", [name])[0])
+
+    # It is no sequence.
+    __iter__ = None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.variables()
 
     def __setitem__(self, name: str, value: Value) -> None:
         """Sets an input, or a parameter that can change."""
-        self._instance.set(name, _arguments.text(name, value))
+        self._instance.set(_arguments.names("name", [name])[0], _arguments.text(name, value))
 
     def get(self, names: str | Sequence[str]) -> Array:
-        """The present values of Real variables, shape (names,)."""
+        """The present values of Real variables as an array, shape (names,)."""
         return self._instance.reals(_arguments.names("names", names))
 
     def rates(self, names: str | Sequence[str]) -> Array:
@@ -93,8 +98,11 @@ class Instance:
         """Derivatives of Real variables by others, as the FMU tells them (`fmi2GetDirectionalDerivative`).
 
         Args:
-            of: Names of outputs.
-            by: Names of inputs, or of parameters whose sensitivity the FMU follows.
+            of: Names of outputs at the end of the last step.
+            by: Names of inputs that were constant during it.
+
+        Raises:
+            Error: No such variable; the circuit, which tells none.
 
         Returns:
             Shape (of, by).

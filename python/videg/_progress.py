@@ -19,6 +19,8 @@ def bar(wanted: bool | None, what: str) -> Iterator[Told | None]:
     try:
         from tqdm.auto import tqdm
     except ImportError:
+        if wanted:
+            raise
         yield None
         return
     with tqdm(desc=what, leave=False) as shown_bar:

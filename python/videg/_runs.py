@@ -25,6 +25,12 @@ Array = npt.NDArray[np.float64]
 CAPACITANCES = ("left.capacitance", "right.capacitance")
 
 
+def recorded(names: str | Sequence[str] | None, argument: str = "record") -> list[str]:
+    """Names of the columns beside the time."""
+    chosen = list(CAPACITANCES) if names is None else _arguments.names(argument, names)
+    return [name for name in chosen if name != "time"]
+
+
 class Run(Mapping[str, Array]):
     """Columns of a run by name, `time` (s) among them: one-dimensional arrays of the same length."""
 
@@ -33,7 +39,7 @@ class Run(Mapping[str, Array]):
         self.units = units
         """Unit of each column."""
         self.summary = summary
-        """All scalar results, by the names that `--json` of the command line has."""
+        """All scalar results, by the names that they have in `--json` of the command line."""
 
     def __getitem__(self, name: str) -> Array:
         """The column of this name, shape (rows,)."""
@@ -47,6 +53,10 @@ class Run(Mapping[str, Array]):
 
     def __len__(self) -> int:
         return len(self._columns)
+
+    # Two runs are equal if they are the same one.
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
 
     def __repr__(self) -> str:
         rows = len(self.time)
@@ -98,10 +108,13 @@ class Run(Mapping[str, Array]):
 
         Raises:
             KeyError: A column that was not recorded.
+            Error: There is nothing to draw.
         """
         import matplotlib.pyplot as plt
 
         chosen = [name for name in self if name != "time"] if columns is None else _arguments.names("columns", columns)
+        if not chosen:
+            raise _videg.Error("plot: there are no columns beside the time")
         shown = slice(None) if window is None else (self.time >= window[0]) & (self.time <= window[1])
         size = (7.0, 1.0 + 1.5 * len(chosen))
         figure, axes = plt.subplots(len(chosen), 1, sharex=True, squeeze=False, figsize=size, layout="constrained")
@@ -156,7 +169,7 @@ def simulate(
     *,
     until: float | None = None,
     set: Settings | None = None,  # noqa: A002
-    record: str | Sequence[str] = CAPACITANCES,
+    record: str | Sequence[str] | None = None,
     sample: float | None = None,
     knots: float | None = None,
     window: tuple[float, float] | None = None,
@@ -168,8 +181,8 @@ def simulate(
         case: Name of a published case, or path of a case file (TOML); fig14 if left out.
         until: End of the run, s; 100 if left out.
         set: Values of variables on top of those of the case, by name.
-        record: Names of variables to record; texts cannot be recorded.
-        sample: Distance of the rows, s, from 1e-7 to `until`; 1e-3 if left out. The last row is the end.
+        record: Names of variables to record beside the time, but for texts; both capacitances if left out.
+        sample: Distance of the rows, s, from 1e-7 to `until`; 1e-3, or the end of a shorter run, if left out. The last row is the end.
         knots: In place of `sample`, as few rows as straight lines between them need for this error of C(t), relative to the height of
             the largest pulse so far.
         window: Averaging window, s; 50 to 100, or the second half of a shorter run, if left out.
@@ -183,10 +196,12 @@ def simulate(
         KeyboardInterrupt: Ctrl-C.
     """
     run = _arguments.run(case, set, until, None, window)
-    default = min(1e-3, run["until"]) if run["until"] is not None and run["until"] > 0 else 1e-3
-    points = _arguments.points(sample, knots, ("sample", default))
+    if run["until"] is not None and run["until"] > 0:
+        # There is no communication step, whose default is too short for a very long run.
+        run["step"] = run["until"] / 1000.0
+    points = _arguments.points(sample, knots)
     with bar(progress, "simulate") as told:
-        result = _videg.simulate(fmu(), run, _arguments.names("record", record), points, told)
+        result = _videg.simulate(fmu(), run, recorded(record), points, told)
     columns, units, summary = result
     return Simulation(columns, units, json.loads(summary))
 
@@ -196,7 +211,7 @@ def cosim(
     *,
     until: float | None = None,
     set: Settings | None = None,  # noqa: A002
-    record: str | Sequence[str] = (),
+    record: str | Sequence[str] | None = None,
     sample: float | None = None,
     step: float | None = None,
     window: tuple[float, float] | None = None,
@@ -233,7 +248,7 @@ def cosim(
     run = _arguments.run(case, set, until, step, window)
     sampled = None if sample is None else _arguments.number("sample", sample)
     tolerance = None if adaptive is None else _arguments.number("adaptive", adaptive)
-    columns = _arguments.names("record", record)
+    columns = [] if record is None else _arguments.names("record", record) or ["time"]
     with bar(progress, "cosim") as told:
         result = _videg.cosim(fmu(), circuit_fmu, run, columns, sampled, (master, tolerance), told)
     return Cosimulation(result[0], result[1], json.loads(result[2]))

@@ -60,8 +60,9 @@ def _vary(name: object, values: object) -> str:
 
 
 def _mapping(name: str, value: object) -> Mapping:
-    if not isinstance(value, Mapping):
-        raise TypeError(f"{name} = {value!r:.80}: must be a dict from names to values, not of type {type(value).__name__}")
+    """Whatever has keys and values for them: a DataFrame, too."""
+    if not (hasattr(value, "keys") and hasattr(value, "__getitem__")):
+        raise TypeError(f"{name}: must be a dict from names to values, not of type {type(value).__name__}")
     return value
 
 
@@ -118,7 +119,7 @@ def sweep(
         precision_of: The column whose mean that is.
         jobs: Most runs at once; one on each core if left out.
         output: Folder for the results, which the command `videg sweep` reads and goes on with, too: a sweep that was interrupted is
-            resumed. If left out, the results are in memory only.
+            resumed. If left out, a temporary folder, which is removed.
         fresh: Whether to replace the results in the folder.
         progress: Whether to show a bar (tqdm); None: if stderr is a terminal.
 
@@ -133,7 +134,7 @@ def sweep(
     import pandas as pd
 
     asked = _arguments.run(case, set, until, step, window) | {
-        "vary": [_vary(name, values) for name, values in _mapping("vary", vary).items()],
+        "vary": [_vary(name, vary[name]) for name in _mapping("vary", vary).keys()],
         "record": _arguments.names("record", record),
         "design": design,
         "points": _optional("points", points),
@@ -146,8 +147,6 @@ def sweep(
     }
     with tempfile.TemporaryDirectory(prefix="videg-sweep-") as temporary, bar(progress, "sweep") as told:
         folder = os.fspath(output) if output is not None else temporary
-        if output is not None:
-            os.makedirs(folder, exist_ok=True)
         done = json.loads(_videg.sweep(fmu(), asked, folder, _jobs(jobs), bool(fresh), told))
         # From pandas 3 on, numbers keep their bits by themselves, and the argument is deprecated.
         exact = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 3 else {}
@@ -161,10 +160,10 @@ def sweep(
 class Evaluation(Mapping[str, "npt.NDArray[np.float64]"]):
     """Results at points, by name: arrays of shape (points,), or (points, samples) if samples were asked for. NaN where a run failed."""
 
-    def __init__(self, columns: dict[str, npt.NDArray[np.float64]], errors: dict[int, str]) -> None:
+    def __init__(self, columns: dict[str, npt.NDArray[np.float64]], errors: dict[int, str] | dict[tuple[int, int], str]) -> None:
         self._columns = columns
         self.errors = errors
-        """Number of each run that failed - point times samples plus sample -, and why."""
+        """Place of each run that failed - the point, or point and sample if samples were asked for -, and why."""
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
         """The results of this name."""
@@ -179,8 +178,12 @@ class Evaluation(Mapping[str, "npt.NDArray[np.float64]"]):
     def __len__(self) -> int:
         return len(self._columns)
 
+    # Two evaluations are equal if they are the same one.
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
     def __repr__(self) -> str:
-        shape = next(iter(self._columns.values())).shape
+        shape = next((values.shape for values in self._columns.values()), ())
         return f"<Evaluation of shape {shape}: {', '.join(self._columns)}; {len(self.errors)} runs failed>"
 
 
@@ -201,7 +204,7 @@ def evaluate(
     """Runs the harvester, with a circuit if one of its variables is named, at points of your choice: what an optimiser calls.
 
     Args:
-        points: Values of each variable at the points, by name: arrays of the same length, or numbers for one point.
+        points: Values of each Real variable at the points, by name: arrays of the same length, or numbers for one point; a DataFrame, too.
         case: Name of a published case, or path of a case file (TOML); fig14 if left out.
         record: Variables to record at the end of each run, or net_power, load_power, supply_power over the window.
         until: End of a run, s; 100 if left out.
@@ -214,13 +217,13 @@ def evaluate(
         progress: Whether to show a bar (tqdm); None: if stderr is a terminal.
 
     Returns:
-        Averages and what is recorded, by name, and the errors of runs that failed.
+        Averages and what is recorded, by name, and the errors of runs that failed: a value out of bounds is one.
 
     Raises:
-        Error: No such case or variable; points of different lengths.
-        KeyboardInterrupt: Ctrl-C.
+        Error: No such case or variable, or one that is not Real; points of different lengths.
+        KeyboardInterrupt: Ctrl-C; runs that have begun are finished.
     """
-    names = _arguments.names("points", list(_mapping("points", points)))
+    names = _arguments.names("points", list(_mapping("points", points).keys()))
     arrays = [_column(name, points[name]) for name in names]
     lengths = {name: len(array) for name, array in zip(names, arrays, strict=True)}
     if not names or len({*lengths.values()}) != 1 or 0 in lengths.values():
@@ -228,18 +231,18 @@ def evaluate(
         raise _videg.Error(f"points: each variable needs as many values, at least one; {said}")
     rows = np.column_stack(arrays)
     asked = _arguments.run(case, set, until, step, window) | {
-        # The points themselves are checked one by one.
-        "vary": [f"{name}={_arguments.text(name, rows[0, k])}" for k, name in enumerate(names)],
+        "vary": [],
         "record": _arguments.names("record", record),
         "samples": _optional("samples", samples),
         "seed": _optional("seed", seed),
         "common_seeds": samples is not None,
     } | dict.fromkeys(("design", "points", "confidence", "until_precision", "precision_of"))
     with bar(progress, "evaluate") as told:
-        columns, failed = _videg.evaluate(fmu(), asked, rows.tolist(), _jobs(jobs), told)
-    if samples is not None:
-        columns = {name: values.reshape(len(rows), -1) for name, values in columns.items()}
-    return Evaluation(columns, dict(failed))
+        columns, failed = _videg.evaluate(fmu(), asked, names, rows.tolist(), _jobs(jobs), told)
+    if samples is None:
+        return Evaluation(columns, dict(failed))
+    columns = {name: values.reshape(len(rows), -1) for name, values in columns.items()}
+    return Evaluation(columns, {divmod(run, int(samples)): why for run, why in failed})
 
 
 def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:

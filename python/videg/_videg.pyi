@@ -50,7 +50,7 @@ def sweep(
     fmu: str, asked: dict[str, Any], folder: str, jobs: int | None, fresh: bool, progress: Told
 ) -> str: ...
 def evaluate(
-    fmu: str, asked: dict[str, Any], points: list[list[float]], jobs: int | None, progress: Told
+    fmu: str, asked: dict[str, Any], names: list[str], points: list[list[float]], jobs: int | None, progress: Told
 ) -> tuple[dict[str, npt.NDArray[np.float64]], list[tuple[int, str]]]: ...
 def export(
     fmu: str, run: dict[str, Any], path: str, format: str, points: tuple[str, float], columns: list[str], progress: Told

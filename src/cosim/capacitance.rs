@@ -1,7 +1,8 @@
 //! C(t) of a run of the harvester as a table for other solvers.
 
-use super::{HarvesterFmu, HarvesterSample};
+use super::{HarvesterFmu, HarvesterSample, TimeProgress};
 use crate::ngspice::{CapacitanceTable, NgspiceError};
+use crate::progress::Progress;
 
 impl CapacitanceTable {
     /// Runs `harvester` from 0 s to `until`, s, and keeps the kinks and extrema of C(t) that the FMU announces, and in
@@ -10,7 +11,12 @@ impl CapacitanceTable {
     ///
     /// # Errors
     /// Errors of the FMU; an `error` outside `1e-9` to `0.1`; more than [`Self::MAX_ROWS`] rows.
-    pub fn from_harvester(harvester: &mut HarvesterFmu, until: f64, error: f64) -> Result<Self, NgspiceError> {
+    pub fn from_harvester(
+        harvester: &mut HarvesterFmu,
+        until: f64,
+        error: f64,
+        progress: &dyn Progress,
+    ) -> Result<Self, NgspiceError> {
         if !(1e-9..=0.1).contains(&error) {
             let value = error.to_string();
             return Err(NgspiceError::Value {
@@ -24,8 +30,9 @@ impl CapacitanceTable {
         let mut sampler = Sampler { harvester, rest, height: [0.0; 2], error };
         let mut table = Self::default();
         table.push(0.0, rest)?;
-        let mut now = 0.0;
+        let (mut now, mut time) = (0.0, TimeProgress::new(progress, until));
         while now < until {
+            time.tell(now)?;
             let end = sample.next_knot().clamp(now + Sampler::SHORTEST, until.max(now + Sampler::SHORTEST)).min(until);
             let points = sampler.interval(now, end, &mut sample)?;
             thin(&points, sampler.tolerance(), &mut table)?;

@@ -81,17 +81,22 @@ impl<'a> TimeProgress<'a> {
     pub fn new(progress: &'a dyn Progress, until: f64) -> Self {
         Self { progress, until, told: 0 }
     }
-}
 
-impl Observer for TimeProgress<'_> {
-    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+    /// Tells that `time`, s, is reached.
+    pub fn tell(&mut self, time: f64) -> Result<(), CosimError> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to PARTS
-        let part = (row.time / self.until * Self::PARTS as f64) as u64;
+        let part = (time / self.until * Self::PARTS as f64) as u64;
         if part > self.told {
             self.told = part;
             self.progress.advance(part, Self::PARTS, &[]);
         }
-        if self.progress.is_stopped() { Err(CosimError::Stopped { time: row.time }) } else { Ok(()) }
+        if self.progress.is_stopped() { Err(CosimError::Stopped { time }) } else { Ok(()) }
+    }
+}
+
+impl Observer for TimeProgress<'_> {
+    fn observe(&mut self, row: &Row<'_>) -> Result<(), CosimError> {
+        self.tell(row.time)
     }
 }
 

@@ -192,7 +192,7 @@ impl SeriesRecorder {
         circuit: Option<&[String]>,
     ) -> Result<Self, CosimError> {
         let begin = |columns: &[&str]| Ok(Some(Writer::Memory(SeriesColumns::of(columns))));
-        Self::with(options, scenario, circuit, PathBuf::from("memory"), begin)
+        Self::with(options, scenario, circuit, PathBuf::from("the time series in memory"), begin)
     }
 
     fn with(

@@ -40,7 +40,7 @@ impl MechanicalRun {
         observer: &mut dyn Observer,
     ) -> Result<Self, NgspiceError> {
         let mut harvester = HarvesterFmu::new(fmu, scenario, settings)?;
-        let table = CapacitanceTable::from_harvester(&mut harvester, scenario.until, Self::TABLE_ERROR)?;
+        let table = CapacitanceTable::from_harvester(&mut harvester, scenario.until, Self::TABLE_ERROR, &())?;
         let table = refined(&table, scenario.step.max(scenario.until / Self::GRID))?;
         let harvester = HarvesterFmu::new(fmu, scenario, settings)?;
         let bias_voltage = harvester.bias_voltage();

@@ -5,7 +5,7 @@
 //! # let harvester: &mut videg::cosim::HarvesterFmu = todo!();
 //! use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
 //!
-//! let table = CapacitanceTable::from_harvester(harvester, 10.0, 1e-4)?;    // C(t), linear between its rows
+//! let table = CapacitanceTable::from_harvester(harvester, 10.0, 1e-4, &())?;    // C(t), linear between its rows
 //! let parameters = videg_circuit::Parameters::default();
 //! let embedded = Waveforms::embedded(&parameters, &table)?;
 //! let elements = Elements::new(&parameters, table.growth())?;

@@ -6,7 +6,7 @@ use fmu_import::{Fmu, Kind, Value, Variable, nearest_name};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::cosim::{Averages, CircuitRequest, CosimError, Gains, HarvesterFmu};
+use crate::cosim::{Averages, CircuitRequest, CosimError, Gains, HarvesterFmu, TimeProgress};
 use crate::ngspice::{CapacitanceTable, NgspiceError};
 use crate::progress::Progress;
 use crate::scenario::{Scenario, Setting};
@@ -88,9 +88,10 @@ pub enum TableError {
         "{values} values: a table has {most} at most; a larger --sample or --knots, fewer columns or a smaller --until makes it smaller"
     )]
     Values { values: f64, most: usize },
-    #[error("the run was stopped at {time} s")]
-    Stopped { time: f64 },
 }
+
+/// Longest step in one piece, s.
+const PIECE: f64 = 1000.0;
 
 /// Reads the variables of a row.
 struct Reader {
@@ -115,14 +116,17 @@ pub fn table(options: &TableOptions<'_>, progress: &dyn Progress) -> Result<Tabl
     let mut rest = [0.0];
     harvester.read(&harvester.references(&["membrane.restCapacitance".to_owned()])?, &mut rest)?;
     let mut values = vec![Vec::with_capacity(times.len()); names.len()];
-    let (mut now, mut gains) = (0.0, [None; 2]);
-    for (index, &time) in times.iter().enumerate() {
+    let (mut now, mut gains, mut reached) = (0.0, [None; 2], TimeProgress::new(progress, scenario.until));
+    for &time in &times {
         // Averages are those of the window only if its edges are met.
         let edges = scenario.window.into_iter().filter(|&edge| edge > now && edge < time).collect::<Vec<_>>();
         for stop in edges.into_iter().chain(iter::once(time)) {
-            if stop > now {
-                harvester.step(now, stop - now)?;
-                now = stop;
+            // A step has a largest length, and somebody may want to stop the run; its results do not depend on the steps.
+            while now < stop {
+                let next = if now + 1.5 * PIECE < stop { now + PIECE } else { stop };
+                harvester.step(now, next - now)?;
+                now = next;
+                reached.tell(now)?;
             }
             for (gain, edge) in gains.iter_mut().zip(scenario.window) {
                 if gain.is_none() && now >= edge {
@@ -131,10 +135,6 @@ pub fn table(options: &TableOptions<'_>, progress: &dyn Progress) -> Result<Tabl
             }
         }
         reader.read(&harvester, &mut values)?;
-        progress.advance(times.len() as u64 + index as u64 + 1, 2 * times.len() as u64, &[]);
-        if progress.is_stopped() {
-            return Err(TableError::Stopped { time });
-        }
     }
     let [before, after] = gains.map(Option::unwrap_or_default);
     let time = Column { name: "time".to_owned(), unit: "s".to_owned(), values: times };
@@ -206,9 +206,8 @@ fn times(options: &TableOptions<'_>, mechanical: &[Setting], progress: &dyn Prog
     match points {
         Points::Knots(error) => {
             let mut harvester = HarvesterFmu::new(fmu, scenario, mechanical)?;
-            let table = CapacitanceTable::from_harvester(&mut harvester, until, error)?;
+            let table = CapacitanceTable::from_harvester(&mut harvester, until, error, progress)?;
             check(table.len() as f64)?;
-            progress.advance(1, 2, &[]);
             Ok(table.times().to_vec())
         }
         Points::Sample(sample) => {

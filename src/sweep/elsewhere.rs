@@ -69,7 +69,8 @@ impl Sweep {
 }
 
 fn numbers(results: &Results) -> Vec<f64> {
-    let averages = results.averages.map(|Averages { voltage_gain, power, impacts }| [voltage_gain, power, impacts.into()]);
+    let averages =
+        results.averages.map(|Averages { voltage_gain, power, impacts }| [voltage_gain, power, impacts.into()]);
     let recorded = results.recorded.iter().map(|value| match value {
         Value::Real(value) => *value,
         Value::Integer(value) | Value::Enumeration { value, .. } => f64::from(*value),

@@ -44,7 +44,7 @@ fn harvester(fmu: &Fmu, scenario: &Scenario) -> HarvesterFmu {
 }
 
 fn table(fmu: &Fmu, case: &str, until: f64) -> CapacitanceTable {
-    CapacitanceTable::from_harvester(&mut harvester(fmu, &scenario(case, until)), until, 1e-4).unwrap()
+    CapacitanceTable::from_harvester(&mut harvester(fmu, &scenario(case, until)), until, 1e-4, &()).unwrap()
 }
 
 fn variants() -> impl Iterator<Item = Parameters> {
@@ -199,7 +199,7 @@ fn a_table_is_as_close_to_the_fmu_as_it_was_asked_to_be_and_meets_every_peak() {
     let mut rows = Vec::new();
     for error in [1e-2, 1e-3, 1e-4] {
         let scenario = scenario("fig14", 3.0);
-        let table = CapacitanceTable::from_harvester(&mut harvester(&fmu, &scenario), 3.0, error).unwrap();
+        let table = CapacitanceTable::from_harvester(&mut harvester(&fmu, &scenario), 3.0, error, &()).unwrap();
         let (mut witness, mut largest, mut peak) = (harvester(&fmu, &scenario), 0.0_f64, 0.0_f64);
         let step = 1.0 / 65_536.0;
         for k in 0..3 * 65_536 {
@@ -245,7 +245,7 @@ fn tables_and_errors_that_make_no_sense_are_named() {
     }
     let mut harvester = harvester(&harvester_fmu(), &scenario("fig14", 1.0));
     for error in [0.0, -1.0, f64::NAN, 1.0] {
-        let message = CapacitanceTable::from_harvester(&mut harvester, 1.0, error).unwrap_err().to_string();
+        let message = CapacitanceTable::from_harvester(&mut harvester, 1.0, error, &()).unwrap_err().to_string();
         assert!(message.contains("must lie from 1e-9 to 0.1"), "{message}");
     }
 }

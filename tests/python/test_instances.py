@@ -5,6 +5,7 @@ import os
 import pickle
 import random
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -65,15 +66,37 @@ def test_a_master_of_ones_own_agrees_with_cosim() -> None:
 def test_derivatives_are_those_of_finite_differences() -> None:
     with videg.Harvester() as harvester:
         harvester.step(0.731)
-        exact = harvester.rates("left.capacitance")
+        names = ["left.capacitance", "right.capacitance", "cylinder.position"]
+        # On the way into a membrane: a capacitance grows.
+        while np.abs(harvester.rates(names[:2])).max() < 1e-12:
+            harvester.step(1e-3)
+        exact, before = harvester.rates(names), harvester.get(names)
         state = harvester.save()
-        before = harvester.get("cylinder.position")
-        harvester.step(1e-6)
-        speed = (harvester.get("cylinder.position") - before) / 1e-6
+        harvester.step(1e-7)
+        np.testing.assert_allclose((harvester.get(names) - before) / 1e-7, exact, rtol=1e-3, atol=1e-16)
         harvester.restore(state)
-        assert exact.shape == (1,)
-        assert speed[0] == pytest.approx(harvester["cylinder.velocity"], rel=1e-4)
         assert harvester.derivative("cylinder.position", []).shape == (1, 0)
+
+
+def test_sensitivities_are_those_of_finite_differences() -> None:
+    """How the outputs at the end of a step depend on the force during it, through impacts, too."""
+    of, change, step = ["cylinder.position", "cylinder.velocity", "ball.velocity"], 1e-6, 0.3
+    with videg.Harvester() as harvester:
+        harvester.step(2.0)
+        state = harvester.save()
+
+        def after(force: float) -> np.ndarray:
+            harvester.restore(state)
+            harvester["externalForce"] = force
+            harvester.step(step)
+            return harvester.get(of)
+
+        expected = (after(0.1 + change) - after(0.1 - change)) / (2 * change)
+        after(0.1)
+        exact = harvester.derivative(of, "externalForce")
+        assert harvester["impact.count"] > 12
+    assert exact.shape == (3, 1) and np.abs(exact).min() > 1e-3
+    np.testing.assert_allclose(exact[:, 0], expected, rtol=1e-4)
 
 
 def test_variables_tell_unit_and_type() -> None:
@@ -81,6 +104,9 @@ def test_variables_tell_unit_and_type() -> None:
         variables = harvester.variables()
         assert variables["biasVoltage"].unit == "V" and variables["biasVoltage"].type == "Real"
         assert variables["impact.count"].type == "Integer"
+        assert "biasVoltage" in harvester and "nothing" not in harvester
+        with pytest.raises(TypeError):
+            iter(harvester)
         assert isinstance(harvester["impact.count"], int) and isinstance(harvester["contact.law"], str)
 
 
@@ -93,20 +119,43 @@ def test_what_is_closed_says_so() -> None:
             call()
 
 
-def test_another_thread_is_refused() -> None:
+def test_of_two_threads_that_use_one_instance_at_once_the_second_is_refused() -> None:
     harvester, raised = videg.Harvester(), []
 
     def use() -> None:
-        try:
-            harvester.step(0.1)
-        except BaseException as error:  # noqa: BLE001 - whatever comes
-            raised.append(error)
+        for _ in range(20):
+            try:
+                harvester.step(50.0)
+            except BaseException as error:  # noqa: BLE001 - whatever comes
+                raised.append(error)
 
-    thread = threading.Thread(target=use)
-    thread.start()
-    thread.join()
-    assert len(raised) == 1 and isinstance(raised[0], videg.Error) and "thread" in str(raised[0])
-    harvester.step(0.1)
+    threads = [threading.Thread(target=use) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert raised and all(isinstance(error, videg.Error) and "another thread" in str(error) for error in raised)
+    assert harvester.time == 50.0 * (80 - len(raised))
+
+
+def test_an_instance_may_end_on_another_thread() -> None:
+    with ThreadPoolExecutor(2) as pool:
+        made = list(pool.map(lambda _: videg.Harvester(), range(4)))
+        assert [pool.submit(harvester.step, 1.0).result() for harvester in made] == [None] * 4
+    assert len({harvester["ball.position"] for harvester in made}) == 1
+    del made
+
+
+def test_rates_hold_over_a_long_step() -> None:
+    """A step is made in pieces; the rates of inputs go on over all of them."""
+    values = {"left.capacitance": 1e-11, "right.capacitance": 1e-11}
+    for step in (0.5, 1.4, 3.0, 7.7):
+        with videg.Circuit(set=values) as circuit:
+            circuit.set_rates({"left.capacitance": 1e-12})
+            circuit.step(step)
+            assert circuit["left.capacitance"] == pytest.approx(1e-11 + 1e-12 * step, rel=1e-12)
+            circuit.step(2.0)
+            assert circuit["left.capacitance"] == pytest.approx(1e-11 + 1e-12 * step, rel=1e-12), "rates are for one step"
 
 
 def test_instances_on_many_threads_at_once() -> None:

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.stats import binom
 
 RECIPES = Path(__file__).resolve().parent.parent.parent / "examples/python"
 
@@ -36,7 +35,8 @@ def test_each_recipe_runs(path: Path, tmp_path: Path) -> None:
 
 
 def test_intervals_contain_the_true_values() -> None:
-    """Of 100 records with 1 % of noise, 90 to 99 are to be within the interval of 95 %; by chance more or fewer once in 400 sets."""
+    """Of 100 records with 1 % of noise, 90 to 99 are to be within the interval of 95 %. The records are the same in each run of the test;
+    others would fail by chance once in 57 sets for each parameter."""
     identification = recipe("identification")
     hits = np.zeros(3, int)
     for seed in range(100):
@@ -44,7 +44,6 @@ def test_intervals_contain_the_true_values() -> None:
         fit = identification.fit(identification.voltages, record, guess, [0.3, 0.8, 2.0])
         assert fit.determined.all()
         hits += (fit.low <= identification.TRUE) & (identification.TRUE <= fit.high)
-    assert binom.cdf(89, 100, 0.95) < 0.02
     assert ((hits >= 90) & (hits <= 99)).all(), hits
 
 
