@@ -12,7 +12,7 @@ use crate::fmus;
 use crate::scenario::{Run, to_python};
 
 /// Longest step in one piece, s: signals are looked for in between. Results do not depend on it.
-const PIECE: f64 = 1.0;
+const PIECE: f64 = 100.0;
 
 /// An instance of one of our own FMUs, whole: nothing else holds a part of it.
 struct Own(fmu_import::Instance);

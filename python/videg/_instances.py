@@ -95,7 +95,8 @@ class Instance:
         self._instance.set_rates(names, [_arguments.number(name, rates[name]) for name in names])
 
     def derivative(self, of: str | Sequence[str], by: str | Sequence[str]) -> Array:
-        """Derivatives of Real variables by others, as the FMU tells them (`fmi2GetDirectionalDerivative`).
+        """Derivatives of Real variables by others, as the FMU tells them (`fmi2GetDirectionalDerivative`). A step of more than 150 s is
+        made in pieces of 100 s, of which the last counts here.
 
         Args:
             of: Names of outputs at the end of the last step.
