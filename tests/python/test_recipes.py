@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 
@@ -32,6 +33,22 @@ def test_each_recipe_runs(path: Path, tmp_path: Path) -> None:
     text = path.read_text()
     figures = [figure for figure in tmp_path.glob("*.svg") if figure.stat().st_size > 5000]
     assert len(figures) == text.count("savefig("), "a figure is missing or empty"
+
+
+def test_notebooks_have_the_code_of_the_scripts(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, RECIPES.parent.parent / "docs/notebooks.py", tmp_path], check=True, capture_output=True)
+    for script in RECIPES.glob("*.py"):
+        cells = nbformat.read(tmp_path / f"{script.stem}.ipynb", as_version=4).cells
+        assert cells[0].cell_type == "markdown" and cells[0].source.startswith("# ")
+        code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
+        text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
+        assert "%%" not in code + text
+
+        def words(lines: str) -> list[str]:
+            bare = [line.strip().lstrip("# ") for line in lines.splitlines() if not line.startswith("# %%")]
+            return sorted(line for line in bare if line)
+
+        assert words(code + "\n" + text) == words(script.read_text()), script.name
 
 
 def test_intervals_contain_the_true_values() -> None:
