@@ -59,3 +59,22 @@ release/checksums.sh "$work/packed"
 (cd "$work/packed" && sha256sum --check --quiet SHA256SUMS)
 PLAIN=$work/plain release/standalone.sh "$work/packed/videg-$version-linux-x86_64.tar.gz"
 ls -l "$work/packed" "$work/program" "$work/plain"
+
+echo "wheel with the same program and FMUs"
+release/wheel.sh "$program" "$work/program/videg" "$work/fmu" "$work/THIRD-PARTY.md" "$work/wheel"
+python3 -m venv "$work/venv"
+"$work/venv/bin/pip" install --quiet --disable-pip-version-check "$work"/wheel/videg-*.whl
+# Outside of the source tree, as a user has it: in here the program would package the FMUs from the sources.
+alone=$(mktemp -d)
+trap 'rm -rf "$alone"' EXIT
+"$work/venv/bin/python" - "$work" "$alone" <<'END'
+import pathlib, shutil, subprocess, sys, videg
+
+work, alone = map(pathlib.Path, sys.argv[1:])
+for name in ("VibroImpactHarvester", "HarvestingCircuit"):
+    assert pathlib.Path(videg.fmu(name)).read_bytes() == (work / f"fmu/{name}.fmu").read_bytes(), name
+program = shutil.copy(videg.program(), alone)
+assert pathlib.Path(program).read_bytes() == (work / "program/videg").read_bytes(), "another program"
+subprocess.run([program, "cosim", "--until", "2"], cwd=alone, check=True, capture_output=True)
+print("impacts in 5 s:", videg.simulate(until=5).impacts)
+END
