@@ -7,7 +7,7 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -59,7 +59,7 @@ def _vary(name: object, values: object) -> str:
     return f"{name}={','.join(texts)}"
 
 
-def _mapping(name: str, value: object) -> Mapping:
+def _mapping(name: str, value: Any) -> Mapping[str, Any]:
     """Whatever has keys and values for them: a DataFrame, too."""
     if not (hasattr(value, "keys") and hasattr(value, "__getitem__")):
         raise TypeError(f"{name}: must be a dict from names to values, not of type {type(value).__name__}")
@@ -149,7 +149,7 @@ def sweep(
         folder = os.fspath(output) if output is not None else temporary
         done = json.loads(_videg.sweep(fmu(), asked, folder, _jobs(jobs), bool(fresh), told))
         # From pandas 3 on, numbers keep their bits by themselves, and the argument is deprecated.
-        exact = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 3 else {}
+        exact: dict[str, Any] = {"float_precision": "round_trip"} if int(pd.__version__.split(".")[0]) < 3 else {}
         results = pd.read_csv(done["files"][0], dtype={"error": "object"}, **exact)
     results.attrs = {key: done[key] for key in ("runs", "failed", "resumed_from")}
     if output is not None:
