@@ -153,6 +153,8 @@ def test_states_with_wrong_bytes_are_refused() -> None:
 def test_ctrl_c_ends_a_run(call: str) -> None:
     program = f"""
 import signal, threading, time, os, videg
+# Programs in the background of a shell ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 begun = time.monotonic()
 try:
