@@ -135,7 +135,7 @@ def test_of_two_threads_that_use_one_instance_at_once_the_second_is_refused() ->
         time.sleep(1e-3)
     thread.join()
     assert ended == [None] and harvester.time == 3000.0, "the step itself goes on"
-    assert refused > 100
+    assert refused > 0
 
 
 def test_an_instance_may_end_on_another_thread() -> None:
