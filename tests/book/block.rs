@@ -9,6 +9,8 @@ use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
 pub enum Mark {
     /// It is the content of a file of this name.
     File(String),
+    /// A test elsewhere runs it: its path from the root of the source tree.
+    RunBy(String),
     /// It does not run.
     NotRun {
         /// Why.
@@ -46,6 +48,7 @@ impl Block {
     pub fn not_run(&self) -> Option<&str> {
         match &self.mark {
             Some(Mark::NotRun { reason, parts }) if parts.is_empty() => Some(reason),
+            Some(Mark::RunBy(test)) => Some(test),
             _ => None,
         }
     }
@@ -95,6 +98,9 @@ fn parse_mark(comment: &str) -> Option<Mark> {
     if let Some(name) = inner.strip_prefix("file:") {
         return Some(Mark::File(name.trim().to_owned()));
     }
+    if let Some(test) = inner.strip_prefix("run by") {
+        return Some(Mark::RunBy(test.trim().to_owned()));
+    }
     let (parts, reason) = inner.strip_prefix("not run")?.split_once(": ")?;
     let parts = parts.split('"').skip(1).step_by(2).map(str::to_owned).collect();
     Some(Mark::NotRun { reason: reason.trim().to_owned(), parts })
@@ -103,12 +109,14 @@ fn parse_mark(comment: &str) -> Option<Mark> {
 #[test]
 fn blocks_are_found_with_the_comments_before_them() {
     let page = "<!-- file: a.c -->\n```c\nint x;\n```\n\ntext\n\n<!-- not run \"win64\" \"mac\": no Wine -->\n\n```sh\na\n\nb win64\n```\n\n\
-                <!-- file: lost -->\nwords\n\n```python\n```\n";
+                <!-- file: lost -->\nwords\n\n```python\n```\n\n\
+                <!-- run by a.py -->\n```python\nb\n```\n";
     let found = blocks(page);
     let languages: Vec<_> = found.iter().map(|block| (block.language.as_str(), block.line)).collect();
-    assert_eq!(languages, [("c", 2), ("sh", 10), ("python", 19)]);
+    assert_eq!(languages, [("c", 2), ("sh", 10), ("python", 19), ("python", 23)]);
     assert_eq!((found[0].file(), found[0].text.as_str()), (Some("a.c"), "int x;\n"));
     assert_eq!((found[1].text.as_str(), found[1].not_run()), ("a\n\nb win64\n", None));
     assert_eq!((found[1].line_not_run("b win64"), found[1].line_not_run("a")), (Some("no Wine"), None));
     assert_eq!((found[2].mark.clone(), found[2].text.as_str()), (None, ""));
+    assert_eq!((found[3].mark.clone(), found[3].not_run()), (Some(Mark::RunBy("a.py".to_owned())), Some("a.py")));
 }

@@ -11,6 +11,7 @@
 //! | `diff` | a change of the sources: it applies, and they compile and pass their tests with it |
 //!
 //! A comment before a block says more: `<!-- file: NAME -->` writes it into a file before the chapter begins;
+//! `<!-- run by PATH -->` says that the test at this path runs it, which names the page;
 //! `<!-- not run: REASON -->` leaves it alone, and with `not run "PART" "OTHER": REASON` only those of its lines that
 //! contain one of these.
 //! Only programs that are known not to install anything or work for hours run at all (`console.rs`); others need such a comment.

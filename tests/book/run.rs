@@ -293,6 +293,11 @@ fn few_blocks_do_not_run_and_each_says_why() {
             if let Some(Mark::NotRun { reason, .. }) = &block.mark {
                 assert!(reason.split_whitespace().count() > 1, "{}: {reason:?} is no reason", chapter.place(block));
                 left_out.push(chapter.place(block));
+            } else if let Some(Mark::RunBy(test)) = &block.mark {
+                let said = std::fs::read_to_string(root().join(test))
+                    .unwrap_or_else(|error| panic!("{}: {test}: {error}", chapter.place(block)));
+                let page = chapter.path.to_str().unwrap();
+                assert!(said.contains(&format!("\"{page}\"")), "{}: {test} does not name it", chapter.place(block));
             } else if lines(block).iter().any(|line| console::elsewhere(line).is_some()) {
                 left_out.push(chapter.place(block));
             }

@@ -73,7 +73,7 @@ def members(thing: type) -> list[str]:
         elif inspect.isfunction(member):
             lines += [f"### `{signature(name, member)}`" if len(signature(name, member)) < 60 else f"### `{name}`", ""]
             if len(signature(name, member)) >= 60:
-                lines += ["<!-- not run: a signature -->", "```text", signature(name, member), "```", ""]
+                lines += ["<!-- run by tests/python/test_reference.py -->", "```text", signature(name, member), "```", ""]
             lines += [paragraphs(inspect.getdoc(member)), ""]
     return lines
 
@@ -86,7 +86,7 @@ def page() -> str:
             continue
         lines += [f"## `videg.{name}`", ""]
         if inspect.isfunction(thing):
-            lines += ["<!-- not run: a signature -->", "```text", signature(name, thing), "```", ""]
+            lines += ["<!-- run by tests/python/test_reference.py -->", "```text", signature(name, thing), "```", ""]
         lines += [paragraphs(inspect.getdoc(thing)), ""]
         if dataclasses.is_dataclass(thing):
             lines += [*fields(thing), ""]
