@@ -51,6 +51,7 @@ pub mod cosim;
 pub mod crosscheck;
 mod differences;
 pub mod dynamics;
+pub mod explorer;
 pub mod export;
 pub mod map;
 pub mod ngspice;

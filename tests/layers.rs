@@ -10,10 +10,11 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 14] = [
+const PACKAGES: [(&str, &[&str]); 17] = [
     ("model", &[]),
     ("circuit", &[]),
     ("coupled", &["circuit", "model"]),
+    ("spice", &[]),
     ("input", &[]),
     ("data", &["input", "model"]),
     ("system", &[]),
@@ -23,7 +24,9 @@ const PACKAGES: [(&str, &[&str]); 14] = [
     ("fmu/import", &["fmu/abi", "input", "system"]),
     ("fmu/harvester", &["data", "fmu/export", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
-    (".", &["circuit", "coupled", "data", "fmu/import", "input", "model", "report", "system"]),
+    ("explorer", &["circuit", "coupled", "data", "model", "spice"]),
+    ("explorer/bundle", &[]),
+    (".", &["circuit", "coupled", "data", "fmu/import", "input", "model", "report", "spice", "system"]),
     ("python", &[".", "fmu/import", "model"]),
 ];
 
@@ -32,12 +35,13 @@ const OF_THE_COMMAND_LINE: [&str; 8] =
     ["anstream", "anyhow", "clap", "clap_complete", "comfy-table", "indicatif", "signal-hook", "terminal_size"];
 
 /// Modules of `src/`, each above all that it may import.
-const DOWNWARDS: [&str; 17] = [
+const DOWNWARDS: [&str; 18] = [
     "cli",
     "paper",
     "dynamics",
     "crosscheck",
     "map",
+    "explorer",
     "sweep",
     "package",
     "export",

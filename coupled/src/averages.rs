@@ -60,7 +60,12 @@ pub struct Powers {
 impl Powers {
     /// The powers over `window`, s, from the ledgers at its edges.
     pub fn over([from, to]: [f64; 2], before: &Ledger, after: &Ledger) -> Self {
-        let Ledger { load, supply, stored, .. } = after.flows_since(before, to - from);
+        Self::of(&after.flows_since(before, to - from))
+    }
+
+    /// The powers of mean `flows`.
+    pub fn of(flows: &Ledger) -> Self {
+        let Ledger { load, supply, stored, .. } = *flows;
         Self { net_power: load - supply + stored, load_power: load, supply_power: supply }
     }
 }

@@ -20,8 +20,8 @@ pub trait Watch {
     /// Before the run: the films are like `membrane`.
     fn begin(&mut self, membrane: &Membrane);
 
-    /// Deflections, m, and voltages, V, of the membranes.
-    fn look(&mut self, deflections: [f64; 2], voltages: [f64; 2]);
+    /// Deflections, m, and voltages, V, of the membranes at a `time`, s.
+    fn look(&mut self, time: f64, deflections: [f64; 2], voltages: [f64; 2]);
 }
 
 impl Watch for () {
@@ -29,7 +29,7 @@ impl Watch for () {
 
     fn begin(&mut self, _: &Membrane) {}
 
-    fn look(&mut self, _: [f64; 2], _: [f64; 2]) {}
+    fn look(&mut self, _: f64, _: [f64; 2], _: [f64; 2]) {}
 }
 
 /// The highest voltage that the films have at each deflection: their limits depend on both.
@@ -65,7 +65,7 @@ impl Watch for Film {
         *self = Self { membrane: Some(membrane.clone()), density, largest: 0.0, highest: vec![[0.0; 2]; RANGES] };
     }
 
-    fn look(&mut self, deflections: [f64; 2], voltages: [f64; 2]) {
+    fn look(&mut self, _: f64, deflections: [f64; 2], voltages: [f64; 2]) {
         for (deflection, voltage) in deflections.into_iter().zip(voltages) {
             self.largest = self.largest.max(deflection);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the ranges")]

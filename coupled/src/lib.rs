@@ -11,7 +11,9 @@ mod film;
 mod impacts;
 mod mechanics;
 mod pulses;
+mod simulation;
 mod track;
+mod voltages;
 
 use thiserror::Error;
 use videg_circuit::{Circuit, CircuitSample, Ledger, Settings};
@@ -20,8 +22,10 @@ use videg_model::{ModelError, Setup};
 pub use averages::{Averages, Gains, Powers};
 pub use film::{Film, OVER_LIMITS, Watch};
 pub use impacts::Impacts;
-use mechanics::{Follower, Mechanics, Piece};
+use mechanics::{Follower, Piece};
+pub use simulation::Simulation;
 pub use track::Track;
+pub use voltages::{Given, best_release_voltage};
 
 /// Bound of the distance of the straight lines from C(t), over C(t), unless another is asked for.
 pub const TOLERANCE: f64 = 1e-3;
@@ -57,10 +61,7 @@ pub struct Times {
 
 impl Times {
     fn check(&self) -> Result<(), CoupledError> {
-        let Self { until, window: [from, to], tolerance } = *self;
-        if tolerance.is_nan() || tolerance <= 0.0 {
-            return Err(CoupledError::Tolerance { tolerance });
-        }
+        let Self { until, window: [from, to], .. } = *self;
         // NaN fails each comparison.
         let are_times = 0.0 <= from && from < to && to <= until && until.is_finite();
         if are_times { Ok(()) } else { Err(CoupledError::Times { from, to, until }) }
@@ -74,6 +75,8 @@ pub struct Results {
     pub averages: Averages,
     /// Of the circuit, over the window.
     pub powers: Powers,
+    /// Mean flows of the circuit over the window: powers, W, and currents, A.
+    pub flows: Ledger,
     /// The circuit at the end.
     pub circuit: CircuitSample,
     /// Straight lines that the circuit was given.
@@ -98,15 +101,14 @@ pub fn run_watched<'a>(
     times: &Times,
     watch: &mut impl Watch,
 ) -> Result<Results, CoupledError> {
-    let mut mechanics = Mechanics::new(setup.into(), times)?;
-    watch.begin(mechanics.membrane());
-    let mut electrics = Electrics::new(settings, mechanics.start(), watch)?;
+    times.check()?;
+    let mut simulation = Simulation::new(setup, settings, times.tolerance, watch)?;
+    let mut sums = |time: f64| simulation.advance(time).map(|()| (simulation.gains(), simulation.circuit().ledger()));
     let [before, after] = times.window;
-    let before = mechanics.follow(before, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;
-    let after = mechanics.follow(after, &mut electrics).map(|gains| (gains, electrics.circuit.ledger()))?;
-    mechanics.follow(times.until, &mut electrics)?;
+    let (before, after) = (sums(before)?, sums(after)?);
+    simulation.advance(times.until)?;
     let averages = Averages::over(times.window, &before.0, &after.0);
-    Ok(electrics.results(averages, times.window, [before.1, after.1]))
+    Ok(simulation.electrics.results(averages, times.window, [before.1, after.1]))
 }
 
 /// The circuit of a run, which follows C(t).
@@ -120,14 +122,16 @@ impl<'w, W: Watch> Electrics<'w, W> {
     /// A circuit of `settings` with charged membranes, where `start` ends.
     fn new(settings: &Settings, start: Piece<'_>, watch: &'w mut W) -> Result<Self, CoupledError> {
         let circuit = Circuit::new(settings.parameters(), start.end())?;
-        watch.look(start.deflection(0), circuit.voltage());
+        watch.look(0.0, start.deflection(0), circuit.voltage());
         Ok(Self { circuit, watch, lines: 0 })
     }
 
-    fn results(&self, averages: Averages, window: [f64; 2], [before, after]: [Ledger; 2]) -> Results {
+    fn results(&self, averages: Averages, [from, to]: [f64; 2], [before, after]: [Ledger; 2]) -> Results {
+        let flows = after.flows_since(&before, to - from);
         Results {
             averages,
-            powers: Powers::over(window, &before, &after),
+            powers: Powers::of(&flows),
+            flows,
             circuit: CircuitSample::from(&self.circuit),
             lines: self.lines,
         }
@@ -148,12 +152,13 @@ impl<W: Watch> Follower for Electrics<'_, W> {
         let last = piece.capacitances.len() - 1;
         if piece.is_monotone && circuit.is_path_independent(piece.end()) {
             circuit.advance(piece.length, piece.end())?;
-            watch.look(piece.deflection(last), circuit.voltage());
+            watch.look(circuit.time(), piece.deflection(last), circuit.voltage());
             *lines += 1;
             return Ok(());
         }
+        let begin = circuit.time();
         circuit.advance_along(piece.length, piece.capacitances, |k, voltages| {
-            watch.look(piece.deflection(k), voltages);
+            watch.look(begin + piece.length * (k as f64 / last as f64), piece.deflection(k), voltages);
             *lines += 1;
         })?;
         Ok(())

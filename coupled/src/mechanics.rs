@@ -2,9 +2,9 @@
 
 use videg_model::{ContactLaw, Harvester, Membrane, ModelError, Pulse, Setup, Side};
 
+use crate::CoupledError;
 use crate::averages::Gains;
 use crate::pulses::SharedPulses;
-use crate::{CoupledError, Times};
 
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
 
@@ -63,9 +63,11 @@ pub(crate) struct Mechanics {
 }
 
 impl Mechanics {
-    /// At 0 s.
-    pub fn new(setup: Setup<'_>, times: &Times) -> Result<Self, CoupledError> {
-        times.check()?;
+    /// At 0 s. The lines are off by at most `tolerance` times C(t).
+    pub fn new(setup: Setup<'_>, tolerance: f64) -> Result<Self, CoupledError> {
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(CoupledError::Tolerance { tolerance });
+        }
         if setup.parameters.electrostatic_feedback {
             return Err(CoupledError::Feedback);
         }
@@ -73,12 +75,17 @@ impl Mechanics {
         let mut start = Self {
             pulses: SharedPulses::of(setup.parameters),
             harvester,
-            tolerance: times.tolerance,
+            tolerance,
             capacitances: vec![],
             deflections: vec![],
         };
         start.sample::<true>();
         Ok(start)
+    }
+
+    /// The harvester where it is now.
+    pub fn harvester(&self) -> &Harvester {
+        &self.harvester
     }
 
     /// The films.

@@ -46,7 +46,8 @@ impl Track {
     /// # Errors
     /// As [`run`](crate::run), but for the circuit.
     pub fn of<'a>(setup: impl Into<Setup<'a>>, times: &Times) -> Result<Option<Self>, CoupledError> {
-        let mut mechanics = Mechanics::new(setup.into(), times)?;
+        times.check()?;
+        let mut mechanics = Mechanics::new(setup.into(), times.tolerance)?;
         let mut knots = Knots::default();
         let kept = knots.take(mechanics.start()).and_then(|()| knots.keep(&mut mechanics, times));
         let (gains, edges) = match kept {

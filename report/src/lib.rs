@@ -53,6 +53,7 @@ pub use figure::{Figure, HeatMap, Panel, Scale, Series, Style};
 pub use html::render_html;
 pub use page::{KeyNumber, Report, Section};
 pub use png::render_png;
+pub use policy::inert;
 pub use sankey::{Kind, Sankey, Stage};
 pub use svg::render_svg;
 pub use table::{Cell, Column, Table, Tone};

@@ -31,7 +31,8 @@ pub(super) fn policy(has_charts: bool) -> String {
 }
 
 /// JSON that no page takes for the end of a script.
-pub(super) fn inert(json: &str) -> String {
+#[must_use]
+pub fn inert(json: &str) -> String {
     // Outside of strings, JSON has none of these.
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }

@@ -18,6 +18,7 @@ mod dynamics;
 mod dynamics_report;
 mod energy_flow;
 mod excitation;
+mod explore;
 mod export;
 mod fmu;
 mod fmu_check;
@@ -84,6 +85,8 @@ enum Verb {
     Reproduce(reproduce::Arguments),
     /// Export C(t) for other programs: netlists for simulators of circuits, tables
     Export(export::Arguments),
+    /// Write a page that computes the device live in a browser: in motion, with its circuit and maps; and open it
+    Explore(explore::Arguments),
     /// List the published cases; print all start values of one as TOML, JSON or Python
     Cases(cases::Arguments),
     /// Build, describe and check FMUs
@@ -126,6 +129,7 @@ impl Verb {
             Self::Dynamics(arguments) => dynamics::run(arguments, &interruption),
             Self::Reproduce(arguments) => reproduce::run(arguments, &interruption),
             Self::Export(arguments) => export::run(arguments, &interruption),
+            Self::Explore(arguments) => explore::run(arguments),
             Self::Cases(arguments) => cases::run(arguments),
             Self::Fmu(arguments) => fmu::run(arguments),
             Self::Ssp(arguments) => ssp::run(arguments),

@@ -98,6 +98,11 @@ impl TimedCaseOptions {
         self.request()?.resolve()
     }
 
+    /// Resolves the options, with an averaging window.
+    pub fn scenario_within(&self, window: Option<Window>) -> Result<Scenario, ScenarioError> {
+        Request { window: window.map(|Window(window)| window), ..self.request()? }.resolve()
+    }
+
     fn request(&self) -> Result<Request, ScenarioError> {
         Ok(Request { until: self.until, ..self.case.request()? })
     }

@@ -1,6 +1,6 @@
 //! By how much impacts raise the capacitances, and the voltage of release that suits them.
 
-use videg_circuit::{Settings, Topology, formulas};
+use videg_circuit::formulas;
 
 use super::{CosimError, HarvesterFmu, Schedule};
 use crate::scenario::{Scenario, Setting};
@@ -37,13 +37,4 @@ impl CapacitanceRatios {
         let largest = ratios.iter().copied().fold(1.0, f64::max);
         Ok(Self { best: formulas::best_release_ratio(ratios), largest })
     }
-}
-
-/// The voltage of release with the largest net gain, V, where an impact multiplies the capacitance of a membrane by `ratio`.
-pub fn best_release_voltage(settings: &Settings, ratio: f64) -> f64 {
-    let idle = match settings.circuit.topology {
-        Topology::SharedNode => 1.0,
-        Topology::Isolated => 0.0,
-    };
-    formulas::best_release_voltage(settings.circuit.supply_voltage, 1.0 + idle, ratio + idle)
 }

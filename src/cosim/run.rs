@@ -6,12 +6,12 @@ use fmu_import::Fmu;
 use serde::Serialize;
 use videg_circuit::{Release, Settings, Topology};
 
-use super::ratios::{CapacitanceRatios, best_release_voltage};
+use super::ratios::CapacitanceRatios;
 use super::settings::{CircuitRequest, label, split_between, voltage_warning};
 use super::{
     CircuitSlave, CircuitSummary, CosimError, Coupling, CouplingSummary, ElementEnergy, EmbeddedCircuit, EnergyBalance,
     Flows, FmuCircuit, ForeignCircuit, HarvesterFmu, Master, MechanicsSummary, NetlistCircuit, NgspiceCircuit,
-    Observer, Outcome, Powers, TimeProgress, Trace,
+    Observer, Outcome, Powers, TimeProgress, Trace, best_release_voltage,
 };
 use crate::ngspice::{self, Elements};
 use crate::progress::Progress;

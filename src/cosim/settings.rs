@@ -2,8 +2,8 @@
 
 use fmu_import::{ModelDescription, nearest_name};
 use videg_circuit::{Choice, Settings, names};
+use videg_coupled::Given;
 
-use super::ratios::best_release_voltage;
 use super::{CosimError, EmbeddedCircuit};
 use crate::ngspice::NgspiceError;
 use crate::scenario::{Origin, Setting};
@@ -35,11 +35,6 @@ impl CircuitRequest {
         Ok((mechanical, circuit))
     }
 
-    /// The request of `values` of which those called `given` were asked for.
-    pub fn of<'a>(values: Settings, given: impl IntoIterator<Item = &'a str>) -> Self {
-        Self { values, given: given.into_iter().map(|name| Setting::new(name, "")).collect() }
-    }
-
     /// The variables that were set, with commas between them; none if none was.
     pub fn names(&self) -> Option<String> {
         let names: Vec<_> = self.given.iter().map(|setting| setting.name.as_str()).collect();
@@ -50,18 +45,8 @@ impl CircuitRequest {
     /// Section 4.1, or into a storage at the voltage with the largest net gain at the capacitance `ratio` `C_3` / `C_2`,
     /// unless something else was asked for.
     pub fn resolve(&self, bias_voltage: f64, ratio: f64) -> Settings {
-        let mut settings = self.values;
-        let given = |name| self.given.iter().any(|setting| setting.name == name);
-        if !given(names::SUPPLY_VOLTAGE) {
-            settings.circuit.supply_voltage = bias_voltage;
-        }
-        if !given(names::ZENER_VOLTAGE) {
-            settings.circuit.zener_voltage = settings.circuit.supply_voltage;
-        }
-        if !given(names::STORAGE_VOLTAGE) {
-            settings.circuit.storage_voltage = best_release_voltage(&settings, ratio);
-        }
-        settings
+        let given = Given::among(self.given.iter().map(|setting| setting.name.as_str()));
+        given.complete(self.values, bias_voltage, ratio)
     }
 
     /// The `error` of a circuit with these `settings`, with the places where the user set the variables that it names.

@@ -5,8 +5,7 @@ use std::io::Write;
 
 use super::NgspiceError;
 
-/// The tables and nodes of the netlists hold pF.
-pub const PICO: f64 = 1e-12;
+pub use videg_spice::PICO;
 
 /// Capacitances of both membranes at rising times from 0 s on, linear in between.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{ChildStdout, Command, Stdio};
 use std::thread::Builder;
 
 use serde::Deserialize;
@@ -40,20 +40,10 @@ pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str
         tools::check(workspace, target)?;
     }
     let platform = target.map_or(Platform::HOST, |target| target.platform);
-    let mut command = command(workspace, target);
-    let program = PathBuf::from(command.get_program());
+    let mut command = command(workspace);
+    command.args(arguments(target)).arg("--message-format=json-render-diagnostics");
     let shown = shown(target);
-    let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
-    let mut cargo = ProcessGroup::start(&mut command).map_err(failed)?;
-    let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
-    let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
-    let messages = Builder::new().spawn(messages).map_err(failed)?;
-    let artifacts = stdout.map(|stdout| read_artifacts(stdout, platform)).unwrap_or_default();
-    let tail = messages.join().unwrap_or_default();
-    let status = cargo.wait(None).and_then(|_| cargo.end()).map_err(failed)?;
-    if !status.success() {
-        return Err(PackageError::Build { command: shown, status: status.to_string(), tail });
-    }
+    let artifacts = run(command, &shown, progress, |stdout| read_artifacts(stdout, platform))?;
     let library = |identifier| {
         let found = artifacts.iter().find(|(name, _)| name == identifier).map(|(_, path)| path.clone());
         found.ok_or_else(|| PackageError::NotBuilt { command: shown.clone(), identifier })
@@ -61,9 +51,40 @@ pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str
     FMUS.iter().map(|fmu| library(fmu.identifier)).collect()
 }
 
-fn command(workspace: &Path, target: Option<&Target>) -> Command {
+/// Builds the page that shows the harvester in a browser, without what it knows of variables, into `page`.
+pub(super) fn build_page(workspace: &Path, page: &Path, progress: fn(&str)) -> Result<()> {
+    let arguments = ["run", "--release", "-p", "videg-explorer-bundle", "--"];
+    let mut command = command(workspace);
+    command.args(arguments).arg(page);
+    let ignore = |mut stdout: ChildStdout| drop(std::io::copy(&mut stdout, &mut std::io::sink()));
+    run(command, &format!("cargo {}", arguments.join(" ")), progress, ignore)
+}
+
+/// Runs Cargo to its end, and gives what `read` makes of its output.
+fn run<T: Default>(
+    mut command: Command,
+    shown: &str,
+    progress: fn(&str),
+    read: impl FnOnce(ChildStdout) -> T,
+) -> Result<T> {
+    let program = PathBuf::from(command.get_program());
+    let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
+    let mut cargo = ProcessGroup::start(&mut command).map_err(failed)?;
+    let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
+    let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
+    let messages = Builder::new().spawn(messages).map_err(failed)?;
+    let found = stdout.map(read).unwrap_or_default();
+    let tail = messages.join().unwrap_or_default();
+    let status = cargo.wait(None).and_then(|_| cargo.end()).map_err(failed)?;
+    if !status.success() {
+        return Err(PackageError::Build { command: shown.to_owned(), status: status.to_string(), tail });
+    }
+    Ok(found)
+}
+
+fn command(workspace: &Path) -> Command {
     let mut command = Command::new(tools::cargo());
-    command.current_dir(workspace).args(arguments(target)).arg("--message-format=json-render-diagnostics");
+    command.current_dir(workspace);
     // A relative folder is meant relative to where the user is.
     if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR")
         && let Ok(folder) = std::path::absolute(folder)

@@ -31,6 +31,12 @@ pub enum PackageError {
     /// A library was not found.
     #[error("cannot find the library of {identifier} ({why}); looked for: {}", list(looked))]
     NoLibrary { identifier: &'static str, why: String, looked: Vec<PathBuf> },
+    /// The page of the explorer is neither inside the program nor built.
+    #[error(
+        "cannot find the page of the explorer: this videg was compiled without the feature embedded-explorer, and there is no \
+         {}; in a source tree, cargo run --release -p videg-explorer-bundle -- that file makes it", looked.display()
+    )]
+    NoPage { looked: PathBuf },
     /// A model description was not found.
     #[error("cannot find the model description of {identifier}; looked for: {}", list(looked))]
     NoDescription { identifier: &'static str, looked: Vec<PathBuf> },

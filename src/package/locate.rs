@@ -115,7 +115,7 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
 }
 
 /// The build folder of Cargo.
-fn build_folder(workspace: &Path) -> PathBuf {
+pub(super) fn build_folder(workspace: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
 }
 

@@ -122,6 +122,8 @@ pub struct Request {
 pub struct Scenario {
     /// Name: that of the case, or of the case file.
     pub name: String,
+    /// The published case that it starts from.
+    pub case: &'static str,
     /// One line on what it shows.
     pub description: String,
     /// Variables to set, in order.
@@ -181,6 +183,7 @@ impl Request {
         let paper = PaperValues { voltage_gain: case.paper_voltage_gain, power: case.paper_power };
         Ok(Scenario {
             name: file.name.unwrap_or_else(|| case.name.to_owned()),
+            case: case.name,
             description,
             settings,
             until: times.until,

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fmu_import::{Fmu, Value, Variable};
-use videg_circuit::{Choice, Release, Settings, Topology, names};
-use videg_coupled::{CoupledError, Film, Impacts, OVER_LIMITS, TOLERANCE, Times, Watch};
+use videg_circuit::{Choice, Release, Settings, Topology};
+use videg_coupled::{CoupledError, Film, Given, Impacts, OVER_LIMITS, TOLERANCE, Times, Watch};
 use videg_model::{ContactLaw, ForceTable, Parameters, Recording};
 
 use super::electrical::{CONVERTED, POWERS};
@@ -15,7 +15,7 @@ use super::plan::{Results, Run};
 use super::setter::Setter;
 use super::tracks::{HarvesterInputs, Tracks};
 use super::{Sweep, SweepError};
-use crate::cosim::{CircuitRequest, CircuitSample};
+use crate::cosim::CircuitSample;
 
 /// How a variable is set.
 #[derive(Clone, Copy)]
@@ -68,8 +68,8 @@ pub struct DrivenImpacts {
 struct Inputs {
     harvester: HarvesterInputs,
     circuit: Settings,
-    /// Quantities of the circuit that were asked for.
-    given: Vec<&'static str>,
+    /// Voltages of the circuit that were asked for.
+    given: Given,
 }
 
 /// Files by the names that the user gave.
@@ -94,7 +94,7 @@ impl System {
         let mut base = Inputs {
             harvester: HarvesterInputs { parameters: Parameters::default(), recording: None, table: None },
             circuit: Settings::default(),
-            given: Vec::new(),
+            given: Given::default(),
         };
         sweep.written().try_for_each(|(variable, value)| files.read(variable, sweep, value))?;
         base.set(sweep.settings.iter().map(|(variable, value)| (variable, value)), &files);
@@ -230,7 +230,7 @@ impl Inputs {
                 (Some(SystemSetter::Mechanical(setter)), value) => setter.set(&mut self.harvester.parameters, value),
                 (Some(SystemSetter::Quantity(name, set)), Value::Real(number)) => {
                     set(&mut self.circuit, *number);
-                    self.given.push(name);
+                    self.given.add(name);
                 }
                 (
                     Some(SystemSetter::Choice(set)),
@@ -250,10 +250,9 @@ impl Inputs {
 
     /// Those of the circuit, with what follows from the harvester where nothing else was asked for.
     fn settings(&self, times: &Times) -> Result<Settings, CoupledError> {
-        let request = CircuitRequest::of(self.circuit, self.given.iter().copied());
-        let chooses = self.circuit.circuit.release == Release::Storage && !self.given.contains(&names::STORAGE_VOLTAGE);
+        let chooses = self.circuit.circuit.release == Release::Storage && !self.given.storage;
         let ratio = if chooses { Impacts::of(self.harvester.setup(), [0.0, times.until])?.best_ratio() } else { 1.0 };
-        Ok(request.resolve(self.harvester.parameters.bias_voltage, ratio))
+        Ok(self.given.complete(self.circuit, self.harvester.parameters.bias_voltage, ratio))
     }
 
     fn run<W: Watch>(

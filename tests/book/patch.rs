@@ -59,6 +59,8 @@ fn copy_sources(to: &Path) -> std::io::Result<()> {
         "model",
         "circuit",
         "coupled",
+        "spice",
+        "explorer",
         "python",
         "data",
         "fmu",
