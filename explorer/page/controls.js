@@ -72,7 +72,7 @@ function number(variable, id, node, chosen, say) {
   field.addEventListener("change", () => {
     const text = field.value.trim();
     const wanted = text === "inf" ? Infinity : Number(text);
-    const { min = -Infinity, max = Infinity } = variable;
+    const { min, max } = variable;
     const fits = text !== "" && wanted >= min && wanted <= max && (!isCount || Number.isInteger(wanted));
     if (fits) {
       field.removeAttribute("aria-invalid");

@@ -70,6 +70,8 @@ function condition(variable) {
 
 export const variables = data.variables.map((variable) => ({
   ...variable,
+  min: variable.min ?? -Infinity,
+  max: variable.max ?? Infinity,
   ...meaning(variable.description),
   group: group(variable.name, variable.part),
   condition: condition(variable),
@@ -86,7 +88,7 @@ export const groups = Object.entries(TITLES).map(([key, title]) => ({ key, title
 /** Range of the slider of a number whose value in the case is `base`, and whether it is logarithmic. */
 export function range(variable, base) {
   const { name, min, max } = variable;
-  const clamp = ([low, high]) => [Math.max(low, min ?? -Infinity), Math.min(high, max ?? Infinity)];
+  const clamp = ([low, high]) => [Math.max(low, min), Math.min(high, max)];
   if (LOGARITHMIC.has(name)) return { low: 1e6, high: 1e13, log: true };
   if (RANGES[name]) {
     const [low, high] = clamp(RANGES[name]);

@@ -34,13 +34,15 @@ export class Device {
     const whole = make("g", { transform: `translate(${view.width / 2} ${view.height * 0.46}) rotate(${(-beta * 180) / Math.PI}) translate(${-px(middle)} 0)` }, this.svg);
     // Where the room is: a ruler that does not move.
     const floor = px(tall) + 12;
+    // Letters keep their size on a small screen.
+    const shrink = Math.min(3.5, 1000 / Math.max(200, this.svg.clientWidth));
     const ruler = make("g", { class: "ruler" }, whole);
     make("line", { x1: px(left), x2: px(right), y1: floor, y2: floor }, ruler);
-    const step = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10].find((it) => length / it < 12) ?? length / 8;
-    for (let k = Math.ceil(left / step); k * step <= right; k++) {
+    const step = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10].find((it) => length / it < 13 / shrink) ?? length / 4;
+    const first = Math.ceil(left / step);
+    for (let k = first; k * step <= right && k < first + 20; k++) {
       make("line", { x1: px(k * step), x2: px(k * step), y1: floor - 4, y2: floor + 4 }, ruler);
-      const text = make("text", { x: px(k * step), y: floor + 20 }, ruler);
-      text.textContent = `${Number((k * step * 1000).toPrecision(3))}${k === 0 ? " mm" : ""}`;
+      make("text", { x: px(k * step), y: floor + 8 + 12 * shrink, "font-size": 12 * shrink }, ruler, `${Number((k * step * 1000).toPrecision(3))}${k === 0 ? " mm" : ""}`);
     }
     if (value("cylinder.suspensionStiffness") > 0) this.spring = make("path", { class: "spring" }, whole);
     else this.spring = null;

@@ -6,7 +6,7 @@ import { build, show, take } from "./controls.js";
 import { Plot, around, color, curve } from "./plot.js";
 import { Device } from "./device.js";
 import { Circuit } from "./circuit.js";
-import { Diagram, PowerMap, SHOWN, fill } from "./maps.js";
+import { Diagram, PowerMap, SHOWN, axes, fill } from "./maps.js";
 import { caseName, caseTitle, fmpy, python, save, toml } from "./exports.js";
 import { quantity, short } from "./format.js";
 
@@ -29,6 +29,7 @@ let shown = null;
 let clock = 0;
 let playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 let last = null;
+let answers = 0;
 const times = [];
 
 const engine = new Engine(5000);
@@ -63,6 +64,8 @@ async function ask() {
     if (error instanceof Superseded) return;
     say(error.message, "machine");
     document.body.classList.add("stale");
+  } finally {
+    answers += 1;
   }
 }
 
@@ -90,7 +93,7 @@ function take_answer(answer) {
 function numbers() {
   const { numbers, warnings, derived } = shown;
   const power = (watts) => quantity(watts, "W", 4);
-  find("net-value").textContent = `${(numbers.net_power * micro).toFixed(2)} uW`;
+  find("net-value").textContent = `${(numbers.net_power * micro).toFixed(2)} \u00b5W`;
   find("net-value").dataset.value = numbers.net_power;
   find("net").classList.toggle("loss", numbers.net_power < 0);
   const length = state.until - state.from;
@@ -322,8 +325,9 @@ function fields() {
   fill(find("diagram-name"), name);
   find("diagram-shown").value = what;
   for (const [id, key] of [["diagram-from", "from"], ["diagram-to", "to"]]) if (document.activeElement !== find(id)) find(id).value = state.diagram[key] ?? "";
-  fill(find("map-x"), state.map.x);
-  fill(find("map-y"), state.map.y);
+  const [x, y] = axes();
+  fill(find("map-x"), x);
+  fill(find("map-y"), y);
 }
 
 function keys() {
@@ -344,7 +348,7 @@ async function picture() {
   const add = (text, height) => { parts.push(`<g transform="translate(0 ${top})">${text}</g>`); top += height; };
   const drawing = device.text(width);
   add(drawing.text, drawing.height + 10);
-  for (const [name, title] of [["gap", "Relative displacement, mm"], ["capacitance", "Capacitance, pF"], ["voltage", "Voltage, V"], ["energy", "Energy, uJ"]]) {
+  for (const [name, title] of [["gap", "Relative displacement, mm"], ["capacitance", "Capacitance, pF"], ["voltage", "Voltage, V"], ["energy", "Energy, \u00b5J"]]) {
     add(`<text x="52" y="12" style="font:12px sans-serif" fill="${color("ink")}">${title}</text>`, 16);
     add(plots[name].svg(width, 170), 180);
   }
@@ -465,7 +469,10 @@ function changed() {
 window.videg = {
   get shown() { return shown; },
   get clock() { return clock; },
-  state,
+  /** Questions that were answered, also by a refusal, and whether none waits. */
+  get answers() { return answers; },
+  get settled() { return !engine.asked && !engine.waiting; },
+  state, engine, machine, device, locate,
   frames: () => [...times],
   forget: () => { times.length = 0; },
   diagram, map,

@@ -152,12 +152,20 @@ export function shade(part) {
   return stops[k].map((from, index) => Math.round(from + (stops[k + 1][index] - from) * (place - k)));
 }
 
+/** What takes the place of a parameter that has no effect with the present circuit. */
+const INSTEAD = { "zener.voltage": "storage.voltage", "storage.voltage": "zener.voltage", "load.resistance": "excitation.amplitude" };
+
+/** The parameters of the map. */
+export function axes() {
+  return [state.map.x, state.map.y].map((name) => (counts(variable(name)) ? name : INSTEAD[name] ?? name));
+}
+
 export class PowerMap extends Picture {
   /** `highest` tells by how much impacts raise the voltage of a membrane from which no charge is let out. */
   constructor(box, text, chosen, highest, say) {
     const pick = ({ x, y }) => {
-      const { map } = state;
-      change((state) => { state.set[map.x] = Number(x.toPrecision(4)); state.set[map.y] = Number(y.toPrecision(4)); });
+      const [nameX, nameY] = axes();
+      change((state) => { state.set[nameX] = Number(x.toPrecision(4)); state.set[nameY] = Number(y.toPrecision(4)); });
       commit();
     };
     super(box, text, pick, say);
@@ -168,7 +176,7 @@ export class PowerMap extends Picture {
   }
 
   question() {
-    const { x, y } = state.map;
+    const [x, y] = axes();
     const ranges = [x, y].map((name) => rangeOf(name, this.chosen));
     // A release below the supply is none.
     const supply = value("supply.voltage") ?? value("biasVoltage");
@@ -208,7 +216,7 @@ export class PowerMap extends Picture {
   done() {
     const [x, y] = [this.asked.x, this.asked.y].map(variable);
     const best = this.best();
-    const where = best && `largest ${(best.power * 1e6).toFixed(1)} uW at ${quantity(best.x, x.unit ?? "", 3)}, ${quantity(best.y, y.unit ?? "", 3)}`;
+    const where = best && `largest ${(best.power * 1e6).toFixed(1)} \u00b5W at ${quantity(best.x, x.unit ?? "", 3)}, ${quantity(best.y, y.unit ?? "", 3)}`;
     this.text.textContent = `${where ?? "no machine within the limits of its films"}; ${CELLS[0] * CELLS[1]} runs in ${(this.took / 1000).toFixed(2)} s. Hatched: a film fails. Click to go there.`;
   }
 
@@ -220,7 +228,7 @@ export class PowerMap extends Picture {
     const power = this.cells[row]?.[2 * column];
     if (power === undefined) return;
     const [x, y] = [this.asked.x, this.asked.y].map(variable);
-    this.text.textContent = `${Number.isFinite(power) ? `${(power * 1e6).toFixed(2)} uW` : "no such machine"} at ${quantity(this.asked.xs[column], x.unit ?? "", 3)}, ${quantity(this.asked.ys[row], y.unit ?? "", 3)}`;
+    this.text.textContent = `${Number.isFinite(power) ? `${(power * 1e6).toFixed(2)} \u00b5W` : "no such machine"} at ${quantity(this.asked.xs[column], x.unit ?? "", 3)}, ${quantity(this.asked.ys[row], y.unit ?? "", 3)}`;
   }
 
   paint() {
@@ -272,7 +280,7 @@ export class PowerMap extends Picture {
   }
 
   mark() {
-    const { x, y } = state.map;
+    const [x, y] = axes();
     if (this.asked?.x !== x || this.asked?.y !== y) return;
     const [px, py] = [x, y].map((name) => value(name) ?? this.chosen(name));
     this.plot.cursor(Number.isFinite(px) && Number.isFinite(py) ? [{ x: px, y: py, color: color("accent") }] : []);

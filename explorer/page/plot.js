@@ -13,9 +13,10 @@ export function ticks(low, high, count) {
   if (!(raw > 0) || !Number.isFinite(raw)) return [];
   const size = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].find((factor) => factor * size >= raw) * size;
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(Number((k * step).toPrecision(12)));
-  return found;
+  const first = Math.ceil(low / step - 1e-9);
+  const found = Math.floor(high / step + 1e-9) - first + 1;
+  // A range below the digits of its ends has no round numbers.
+  return Array.from({ length: Math.min(50, Math.max(0, found)) }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
 /** Powers of ten within a range, at most `count` of them. */

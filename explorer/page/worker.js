@@ -31,7 +31,7 @@ function live({ from, until, begin, end, spacing }) {
     derived: named(names.derived, machine.derived()),
     voltages: machine.voltages(until),
     deflectionLimit: machine.deflectionLimit(),
-    rows: machine.motion(begin, end, spacing),
+    rows: machine.motion(begin, end, spacing, until),
     columns: names.motion,
     impacts: machine.impacts(begin, end),
     begin, end, took,

@@ -33,7 +33,7 @@ impl Machine {
     #[wasm_bindgen(js_name = exportCapacitances)]
     pub fn export_capacitances(&self, until: f64, reader: Reader, title: &str) -> Result<String, String> {
         let mut columns = [const { Vec::new() }; 3];
-        self.follow([0.0, until], f64::INFINITY, IN_PULSE, |simulation| {
+        self.follow([0.0, until], until, (f64::INFINITY, IN_PULSE), |simulation| {
             let harvester = simulation.harvester();
             let [left, right] = videg_model::Side::BOTH.map(|side| harvester.capacitance(side));
             columns.iter_mut().zip([harvester.time(), left, right]).for_each(|(column, value)| column.push(value));

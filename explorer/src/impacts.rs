@@ -32,7 +32,10 @@ impl Machine {
         let mut rows = Vec::new();
         let failed = |error: videg_model::ModelError| error.to_string();
         let mut harvester = Harvester::new(self.setup(), 0.0).map_err(failed)?;
-        harvester.advance(from).map_err(failed)?;
+        // An impact at the first time is one of them.
+        if from > 0.0 {
+            harvester.advance(from.next_down()).map_err(failed)?;
+        }
         let show = |event: &Event| {
             if let Event::Impact(impact) = event {
                 rows.extend([impact.time, impact.side.index() as f64, impact.speed]);

@@ -1,5 +1,7 @@
 //! A generator with all its parameters.
 
+use std::cell::Cell;
+
 use videg_circuit::{Release, Settings};
 use videg_coupled::{Impacts, TOLERANCE, Times};
 use videg_data::{membrane, recording};
@@ -15,6 +17,8 @@ pub struct Machine {
     pub(crate) values: Values,
     recording: Option<Recording>,
     table: Option<ForceTable>,
+    /// The circuit beside the harvester in runs up to a time, s, once it is known.
+    resolved: Cell<Option<(f64, Settings)>>,
 }
 
 #[wasm_bindgen]
@@ -28,6 +32,7 @@ impl Machine {
     /// Sets all variables back to their start values; the files stay.
     pub fn clear(&mut self) {
         self.values = Values::default();
+        self.resolved.take();
     }
 
     /// Sets the variable called `name`; a choice by its number, a switch as 0 or 1.
@@ -35,6 +40,7 @@ impl Machine {
     /// # Errors
     /// If there is no such variable, or a choice is no whole number.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), String> {
+        self.resolved.take();
         Setter::of(name)?.set(&mut self.values, value).map_err(|error| format!("{name}: {error}"))
     }
 
@@ -44,6 +50,7 @@ impl Machine {
     /// The first line that is not one of a recording.
     #[wasm_bindgen(js_name = setRecording)]
     pub fn set_recording(&mut self, text: &str) -> Result<(), String> {
+        self.resolved.take();
         let read = |text: &str| recording::parse(text.as_bytes()).map_err(|error| error.to_string());
         self.recording = Some(text).filter(|text| !text.is_empty()).map(read).transpose()?;
         Ok(())
@@ -55,6 +62,7 @@ impl Machine {
     /// The first line that is not one of a membrane.
     #[wasm_bindgen(js_name = setTable)]
     pub fn set_table(&mut self, text: &str) -> Result<(), String> {
+        self.resolved.take();
         let read = |text: &str| membrane::parse(text.as_bytes()).map_err(|error| error.to_string());
         self.table = Some(text).filter(|text| !text.is_empty()).map(read).transpose()?;
         Ok(())
@@ -107,16 +115,22 @@ impl Machine {
 
     /// The circuit beside the harvester, whose best release voltage is that of a run up to `until`, s.
     pub(crate) fn settings(&self, until: f64) -> Result<Settings, String> {
+        if let Some((_, settings)) = self.resolved.get().filter(|(known, _)| *known == until) {
+            return Ok(settings);
+        }
         let Values { parameters, circuit, given } = self.values;
         let chooses = circuit.circuit.release == Release::Storage && !given.storage;
         let ratio = || Impacts::of(self.setup(), [0.0, until]).map(|impacts| impacts.best_ratio());
         let ratio = if chooses { ratio().map_err(|error| error.to_string())? } else { 1.0 };
-        Ok(given.complete(circuit, parameters.bias_voltage, ratio))
+        let settings = given.complete(circuit, parameters.bias_voltage, ratio);
+        self.resolved.set(Some((until, settings)));
+        Ok(settings)
     }
 
     /// The same machine with another value of a variable.
     pub(crate) fn with(&self, setter: Setter, value: f64) -> Result<Self, String> {
         let mut other = self.clone();
+        other.resolved.take();
         setter.set(&mut other.values, value)?;
         Ok(other)
     }

@@ -51,17 +51,17 @@ impl Machine {
         NAMES.map(ToOwned::to_owned).to_vec()
     }
 
-    /// The machine as it moves from `from` to `to`, s, in rows of [`Machine::motion_names`]: at most `spacing`, s, apart, and closer where a
+    /// The machine whose runs end at `until`, s, as it moves from `from` to `to`, s, in rows of [`Machine::motion_names`]: at most `spacing`, s, apart, and closer where a
     /// membrane is deflected.
     ///
     /// # Errors
     /// As [`Machine::run`]; more rows than a page can draw.
-    pub fn motion(&self, from: f64, to: f64, spacing: f64) -> Result<Vec<f64>, String> {
+    pub fn motion(&self, from: f64, to: f64, spacing: f64, until: f64) -> Result<Vec<f64>, String> {
         if spacing.is_nan() || spacing <= 0.0 {
             return Err(format!("a row every {spacing} s: allowed: above 0"));
         }
         let mut rows = Vec::new();
-        self.follow([from, to], spacing, IN_PULSE, |simulation| {
+        self.follow([from, to], until, (spacing, IN_PULSE), |simulation| {
             row(simulation, &mut rows);
             rows.len() / NAMES.len()
         })?;
@@ -90,20 +90,20 @@ impl Machine {
 }
 
 impl Machine {
-    /// Shows the machine to `see` from the first of the times, s, to the second one: at most `spacing`, s, apart, and `in_pulse` times between
-    /// two knots of C(t) where a membrane is deflected. It says how many there are.
+    /// Shows the machine whose runs end at `until`, s, to `see` from the first of the times, s, to the second one: at most a spacing, s, apart,
+    /// and a number of times between two knots of C(t) where a membrane is deflected. It says how many there are.
     pub(crate) fn follow(
         &self,
         [from, to]: [f64; 2],
-        spacing: f64,
-        in_pulse: u32,
+        until: f64,
+        (spacing, in_pulse): (f64, u32),
         mut see: impl FnMut(&Simulation<'_, ()>) -> usize,
     ) -> Result<(), String> {
         let are_times = from >= 0.0 && to > from && to.is_finite();
         if !are_times {
             return Err(format!("from {from} to {to} s: allowed: 0 <= from < to, finite"));
         }
-        let settings = self.settings(to)?;
+        let settings = self.settings(until)?;
         let mut nobody = ();
         let failed = |error: CoupledError| error.to_string();
         let mut simulation = Simulation::new(self.setup(), &settings, TOLERANCE, &mut nobody).map_err(failed)?;
