@@ -47,11 +47,10 @@ CI runs this one, too:
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
-  browser      reports in headless Chromium: drawn, without errors or requests, on a phone and a desktop, on paper;
-               screenshots go to target/screenshots
+  browser      reports and the page of `videg explore` in headless Chromium: drawn, without errors or requests, on a phone and a
+               desktop, on paper; the page has the numbers of the command line; screenshots go to target/screenshots
   book         every code block of the book and the README runs and prints what is shown there; mdBook builds
                target/book/html, which headless Chromium looks at
-
   python       the wheel for Python, in an environment where no Rust is: it gives the bits of the command line, refuses bad input, its
                recipes run
 
@@ -159,6 +158,10 @@ stage_setup() {
         echo "system packages: up to date"
     else
         install_packages "${packages[@]}"
+    fi
+    # What compiles the page of the explorer.
+    if has_command rustup; then
+        rustup target add wasm32-unknown-unknown
     fi
     has_venv || fail "the python3 on the PATH ($(command -v python3)) cannot make virtual environments"
     install_python_packages
@@ -298,6 +301,7 @@ stage_book() {
     run cargo test --test book -- --ignored
     run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
+    run cargo run --quiet --release -- explore --no-open --output target/book/html/explorer.html
     run "$VENV/bin/python" -m pytest tests/book
 }
 

@@ -1,6 +1,7 @@
 """Build backend of the package: what a wheel contains beside the extension module is built first, then maturin does the rest.
 
-A wheel has the FMUs, the system package of both, and the command-line tool with the same FMUs inside. Environment:
+A wheel has the FMUs, the system package of both, and the command-line tool with the same FMUs inside, and with the page of
+`videg explore` where Rust compiles for browsers. Environment:
 
 - VIDEG_PROFILE: profile of Cargo: release (default), or dist, which takes longer to compile and is what is released.
 - VIDEG_PARTS: a folder with both .fmu, Harvester.ssp, the program `videg` (`videg.exe`) and THIRD-PARTY.md: taken as they are, nothing
@@ -44,6 +45,13 @@ def built() -> Path:
     return (ROOT / os.environ.get("CARGO_TARGET_DIR", "target")).resolve() / profile()
 
 
+def has_wasm() -> bool:
+    """Whether Rust compiles for browsers."""
+    rustc = ["rustc", "--print", "target-libdir", "--target", "wasm32-unknown-unknown"]
+    found = subprocess.run(rustc, cwd=ROOT, capture_output=True, text=True, check=False)
+    return found.returncode == 0 and Path(found.stdout.strip()).is_dir()
+
+
 def place(source: Path, name: str) -> None:
     """Copies a file into the package."""
     target = PACKAGE / name
@@ -66,7 +74,13 @@ def build_parts() -> None:
         environment = os.environ | {"VIDEG_NO_BUILD": "1"}
         for arguments in (["fmu", "build"], ["ssp"]):
             subprocess.run([built() / PROGRAM, *arguments, "--output", folder], cwd=ROOT, env=environment, check=True)
-        cargo("build", "-p", "videg", "--bin", "videg", "--features", "embedded-fmus", VIDEG_FMUS=folder)
+        features, page = ["embedded-fmus"], Path(folder, "explorer.html")
+        if has_wasm():
+            subprocess.run([built() / PROGRAM, "explore", "--no-open", "--output", page], cwd=ROOT, check=True)
+            features.append("embedded-explorer")
+        else:
+            print("without the page of `videg explore`: Rust has no target wasm32-unknown-unknown (rustup target add)", flush=True)
+        cargo("build", "-p", "videg", "--bin", "videg", "--features", ",".join(features), VIDEG_FMUS=folder, VIDEG_EXPLORER=str(page))
         for archive in ARCHIVES:
             place(Path(folder, archive), f"fmus/{archive}")
         place(built() / PROGRAM, f"bin/{PROGRAM}")

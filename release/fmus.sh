@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Packages both FMUs with the libraries of all platforms: fmus.sh LIBRARIES FOLDER takes LIBRARIES/PLATFORM/*, as
-# libraries.sh leaves them, and writes FOLDER/*.fmu.
+# libraries.sh leaves them, and writes FOLDER/*.fmu and the page FOLDER/explorer.html, for which Rust needs the target
+# wasm32-unknown-unknown.
 # Environment: VIDEG, the command-line tool (default: `cargo run --release`).
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -22,3 +23,4 @@ for folder in "$libraries"/*/; do
 done
 # What lies in LIBRARIES and nothing else is packaged: the library for this machine must be among it.
 "${videg[@]}" fmu build --output "$2" "${options[@]}"
+"${videg[@]}" explore --no-open --output "$2/explorer.html"

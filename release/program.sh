@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds videg as it is released, with FMUs inside: program.sh NAME FMUS FOLDER takes FMUS/*.fmu and writes FOLDER/videg, or
-# videg.exe.
+# Builds videg as it is released, with FMUs and the page of the explorer inside: program.sh NAME FMUS FOLDER takes FMUS/*.fmu and
+# FMUS/explorer.html, and writes FOLDER/videg, or videg.exe.
 #
 #   linux-x86_64     needs no C library newer than 2.17; needs cargo-zigbuild and zig (release/zig.sh installs them)
 #   windows-x86_64   needs no runtime library to be installed; on Windows
@@ -10,7 +10,7 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 [[ $# -eq 3 ]] || fail "wants a name (linux-x86_64, windows-x86_64, macos-universal), the folder of the FMUs and a folder"
-for fmu in "${FMUS[@]}"; do [[ -f $2/$fmu.fmu ]] || fail "$2/$fmu.fmu is missing"; done
+for part in "${FMUS[@]/%/.fmu}" explorer.html; do [[ -f $2/$part ]] || fail "$2/$part is missing"; done
 VIDEG_FMUS=$(cd "$2" && pwd)
 mkdir -p "$3"
 folder=$(cd "$3" && pwd)
@@ -19,7 +19,7 @@ built=${CARGO_TARGET_DIR:-target}
 
 # build SUBCOMMAND TARGET: Cargo's subcommand, for its name of the target.
 build() {
-    cargo "$1" --profile dist --locked ${2:+--target "$2"} -p videg --bin videg --features embedded-fmus
+    VIDEG_EXPLORER=$VIDEG_FMUS/explorer.html cargo "$1" --profile dist --locked ${2:+--target "$2"} -p videg --bin videg --features embedded-fmus,embedded-explorer
 }
 
 case $1 in

@@ -29,9 +29,10 @@ run fmu build --output fmu
 run fmu check fmu/VibroImpactHarvester.fmu
 run fmu check fmu/HarvestingCircuit.fmu
 run ssp
+run explore --output explorer.html
 run sweep --vary membrane.restitution=0.3:0.9:2 --until 2 --output sweep
 run reproduce table1 fig7 --quick --output reproduce
-for file in cosim/report.html both/report.html sweep/sweep.csv reproduce/report.html target/fmu/Harvester.ssp; do
+for file in explorer.html cosim/report.html both/report.html sweep/sweep.csv reproduce/report.html target/fmu/Harvester.ssp; do
     [ -s "$file" ] || { echo "$file is missing" >&2; exit 1; }
 done
 for name in VibroImpactHarvester HarvestingCircuit; do

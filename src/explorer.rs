@@ -127,7 +127,15 @@ pub fn page(scenario: &Scenario, options: &package::Options) -> Result<String, E
         state: state(&description, scenario)?,
     };
     let json = videg_report::inert(&serde_json::to_string(&description)?);
-    Ok(package::explorer(options)?.replacen("{{ description }}", &json, 1))
+    Ok(with_description(&package::explorer(options)?, &json))
+}
+
+/// The `page` with another description: it has one element for that, which may be empty or of another machine.
+fn with_description(page: &str, json: &str) -> String {
+    const BEGIN: &str = "<script type=\"application/json\" id=\"description\">";
+    let Some((head, rest)) = page.split_once(BEGIN) else { return page.to_owned() };
+    let tail = rest.find("</script>").map_or("", |end| &rest[end..]);
+    format!("{head}{BEGIN}{json}{tail}")
 }
 
 /// Parameters of the harvester, then those of the circuit that can be set without an FMU.
@@ -222,4 +230,47 @@ fn file(setting: &Setting) -> Result<File, ExplorerError> {
     let name =
         Path::new(&setting.value).file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok(File { name, text })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_gets_another_description_and_stays_the_same_otherwise() {
+        let page =
+            "<p>a</p><script type=\"application/json\" id=\"description\">{{ description }}</script><script>b</script>";
+        let one = with_description(page, "{\"a\":1}");
+        assert_eq!(one, page.replace("{{ description }}", "{\"a\":1}"));
+        assert_eq!(with_description(&one, "{{ description }}"), page);
+    }
+
+    #[test]
+    fn every_parameter_of_harvester_and_circuit_is_on_the_page_once() {
+        let description = system_description().unwrap();
+        let parameters = parameters(&description).unwrap();
+        let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
+        let model = videg_model::Parameters::TABLE.iter().map(|it| it.name);
+        let model = model.chain(videg_model::Parameters::CHOICES.iter().map(|it| it.name));
+        let circuit = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
+        for name in model.chain(circuit).chain(["excitation.file", "membrane.file"]) {
+            assert_eq!(names.iter().filter(|known| **known == name).count(), 1, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_scenario_is_the_state_of_the_page() {
+        let settings = ["topology=isolated", "load.resistance=inf", "contact.reaction=true", "excitation.seed=7"];
+        let settings = settings.map(|text| Setting::parse(text).unwrap()).to_vec();
+        let request = Request { case: Some("fig15".to_owned()), settings, until: Some(20.0), ..Request::default() };
+        let state = state(&system_description().unwrap(), &request.resolve().unwrap()).unwrap();
+        let expected = concat!(
+            "{\"case\":\"fig15\",\"set\":{\"contact.reaction\":true,\"excitation.seed\":7,\"load.resistance\":\"Infinity\",",
+            "\"topology\":\"isolated\"},\"files\":{},\"until\":20.0,\"from\":10.0,\"begin\":10.0}"
+        );
+        assert_eq!(serde_json::to_string(&state).unwrap(), expected);
+        let wrong = Setting::parse("topology=star").unwrap();
+        let error = number(&system_description().unwrap(), &wrong).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains("--set topology") && error.contains("star"), "{error}");
+    }
 }

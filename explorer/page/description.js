@@ -12,6 +12,7 @@ export const cases = data.cases;
 const CONDITIONS = [
   [/^membrane\.ogden/, "membrane.law", ["ogden"]],
   [/^membrane\.stiffness/, "membrane.law", ["power"]],
+  [/^membrane\.relaxationTime$/, "membrane.law", ["gent", "ogden"]],
   [/^membrane\.file$/, "membrane.law", ["table"]],
   [/^excitation\.amplitude$/, "excitation.kind", ["force"]],
   [/^cylinder\.suspension/, "excitation.kind", ["force"]],

@@ -1,7 +1,7 @@
 // The page: asks for what the present machine does, and shows it.
 import { cases, groups, initial, variable, variables, version } from "./description.js";
 import { Engine, Superseded } from "./engine.js";
-import { canRedo, canUndo, change, commit, fragment, listen, machine, published, read, redo, state, undo, value } from "./state.js";
+import { canRedo, canUndo, change, commit, fragment, listen, machine, published, read, redo, set, state, undo, value } from "./state.js";
 import { build, show, take } from "./controls.js";
 import { Plot, around, color, curve } from "./plot.js";
 import { Device } from "./device.js";
@@ -243,8 +243,11 @@ function scene() {
   const { derived, numbers } = shown;
   const z = columnOf("cylinder.position");
   const [low, high] = around(z, 0);
-  // The picture keeps its scale while the motion changes little.
   device.build({ ...derived, deepest: Math.max(...columnOf("left.deflection"), ...columnOf("right.deflection"), numbers.largest_deflection), limit: shown.deflectionLimit }, [low, high]);
+  const isImpulsive = value("contact.law") === "impulsive";
+  find("contact-note").textContent = isImpulsive
+    ? "To scale. An impact takes no time here (contact.law = impulsive, the paper's): the ball leaves at once, and the film springs out and back by itself."
+    : "To scale. The film is a spring with losses, and a contact takes time (contact.law = compliant).";
   circuit.build();
   circuit.prepare(shown.rows, shown.width, shown.column, derived.restCapacitance);
 }
@@ -469,10 +472,11 @@ function changed() {
 window.videg = {
   get shown() { return shown; },
   get clock() { return clock; },
+  set clock(time) { clock = time; },
   /** Questions that were answered, also by a refusal, and whether none waits. */
   get answers() { return answers; },
   get settled() { return !engine.asked && !engine.waiting; },
-  state, engine, machine, device, locate,
+  state, engine, machine, set, device, locate,
   frames: () => [...times],
   forget: () => { times.length = 0; },
   diagram, map,

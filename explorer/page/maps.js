@@ -144,9 +144,13 @@ export class Diagram extends Picture {
   }
 }
 
+/** Losses are blue and gains orange; what is neither has the colour of the page. */
+const LIGHT = [[38, 84, 158], [122, 162, 210], [236, 238, 241], [246, 178, 92], [196, 86, 10]];
+const DARK = [[96, 165, 250], [52, 92, 150], [34, 41, 48], [158, 92, 28], [252, 168, 76]];
+
 /** A colour for a part from -1, over 0, to 1. */
-export function shade(part) {
-  const stops = [[38, 84, 158], [122, 162, 210], [232, 234, 238], [246, 178, 92], [196, 86, 10]];
+function shade(part) {
+  const stops = matchMedia("(prefers-color-scheme: dark)").matches ? DARK : LIGHT;
   const place = Math.min(0.9999, Math.max(0, (part + 1) / 2)) * 4;
   const k = Math.floor(place);
   return stops[k].map((from, index) => Math.round(from + (stops[k + 1][index] - from) * (place - k)));

@@ -126,6 +126,7 @@ export async function fragment() {
 }
 
 let written = "";
+let wasRead = false;
 
 /** Puts the state into the address of the page. */
 async function write() {
@@ -186,6 +187,9 @@ export async function read() {
     await readPart(wanted, key, text).catch((error) => left.push(`${error.message}; left out`));
   }
   Object.assign(state, wanted);
+  // The first address is what the page begins with.
+  if (!wasRead) kept = pack();
+  wasRead = true;
   commit();
   notify();
   return left;

@@ -14,7 +14,7 @@ const PAGE: Option<&str> = Some(include_str!(env!(
 #[cfg(not(feature = "embedded-explorer"))]
 const PAGE: Option<&str> = None;
 
-/// The page without what it knows of variables and cases, for which it has the place `{{ description }}`.
+/// The page, in which the element `description` may be empty, or say the start values of another machine.
 ///
 /// # Errors
 /// When it is not inside the program and cannot be built.

@@ -65,6 +65,9 @@ fn joined(folder: &Path, link: &str) -> PathBuf {
     path
 }
 
+/// What the stage `book` of the tests puts beside the pages.
+const MADE: &str = "docs/explorer.html";
+
 /// Why a link of a page leads nowhere.
 fn broken(page: &Chapter, link: &str) -> Option<String> {
     if link.contains("://") || link.starts_with("mailto:") {
@@ -72,6 +75,9 @@ fn broken(page: &Chapter, link: &str) -> Option<String> {
     }
     let (file, anchor) = link.split_once('#').map_or((link, None), |(file, anchor)| (file, Some(anchor)));
     let path = if file.is_empty() { page.path.clone() } else { joined(page.path.parent().unwrap(), file) };
+    if path == Path::new(MADE) {
+        return None;
+    }
     if !root().join(&path).exists() {
         return Some(format!("{} is not there", path.display()));
     }

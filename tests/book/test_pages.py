@@ -8,7 +8,9 @@ import chromium
 from harness import ROOT
 
 BOOK = ROOT / "target" / "book" / "html"
-PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print.html", "toc.html", "404.html"))
+# A page of its own, which tests/browser looks at.
+EXPLORER = BOOK / "explorer.html"
+PAGES = sorted(path for path in BOOK.rglob("*.html") if path.name not in ("print.html", "toc.html", "404.html", EXPLORER.name))
 
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 FLAT = "[...document.querySelectorAll('main math')].filter(math => math.getBoundingClientRect().height < 4).length"
@@ -36,8 +38,17 @@ def test_every_chapter_became_a_page():
     assert chapters and [page for page in chapters if not page.is_file()] == []
 
 
+def test_the_first_page_leads_to_the_explorer(browser):
+    page = browser.new_page()
+    page.goto((BOOK / "index.html").as_uri())
+    page.get_by_role("link", name="Open the explorer").click()
+    page.locator("#net-value").wait_for()
+    assert page.url == EXPLORER.as_uri()
+    page.close()
+
+
 def test_no_page_shows_the_markup_of_an_equation():
-    shown = [path.name for path in BOOK.rglob("*.html") if "&lt;math xmlns" in path.read_text()]
+    shown = [path.name for path in PAGES if "&lt;math xmlns" in path.read_text()]
     assert shown == [], "docs/equations.py took code for an equation"
 
 

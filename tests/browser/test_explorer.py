@@ -14,7 +14,7 @@ import chromium
 import harness
 
 WIDTHS = [375, 800, 1440, 2560]
-# The last bits of these differ between the machine and WebAssembly, see docs/explorer.md.
+# The last bits of these differ between the machine and WebAssembly, see docs/explore.md.
 CLOSE = 1e-12
 # A compliant contact is integrated, and powers in it have other last bits; ball and film multiply them from contact to contact.
 CLOSE_COMPLIANT = 1e-9
