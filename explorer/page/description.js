@@ -8,6 +8,9 @@ export const version = data.version;
 export const initial = data.state;
 export const cases = data.cases;
 
+/** Parameters of exponential diodes, and of what solves their equations. */
+const EXPONENTIAL = /^(diode\.(?!model)|zener\.(?!voltage)|switch\.|solver\.)/;
+
 /** Where a parameter is of no effect: [its name, the name of another one, values of that for which it counts]. */
 const CONDITIONS = [
   [/^membrane\.ogden/, "membrane.law", ["ogden"]],
@@ -16,7 +19,7 @@ const CONDITIONS = [
   [/^membrane\.file$/, "membrane.law", ["table"]],
   [/^excitation\.amplitude$/, "excitation.kind", ["force"]],
   [/^cylinder\.suspension/, "excitation.kind", ["force"]],
-  [/^diode\.(?!model)/, "diode.model", ["exponential"]],
+  [EXPONENTIAL, "diode.model", ["exponential"]],
   [/^storage\.voltage$/, "release", ["storage"]],
   [/^(zener\.voltage|load\.resistance)$/, "release", ["zener", "switch"]],
 ];
@@ -48,7 +51,7 @@ const RANGES = {
   "zener.voltage": [200, 10000],
   "storage.voltage": [200, 10000],
 };
-const LOGARITHMIC = new Set(["load.resistance"]);
+const LOGARITHMIC = { "load.resistance": [1e6, 1e13], "zener.breakdownCurrent": [1e-13, 1] };
 
 const TITLES = {
   cylinder: "Cylinder and mount", ball: "Ball", membrane: "Membrane", contact: "Contact", excitation: "Excitation", initial: "Start",
@@ -58,8 +61,8 @@ const TITLES = {
 function group(name, part) {
   const head = name.split(".")[0];
   if (name === "frame.width" || name === "gravity") return "cylinder";
-  if (name === "biasVoltage" || (part === "circuit" && head !== "diode")) return "circuit";
-  return head;
+  if (name === "diode.model" || EXPONENTIAL.test(name)) return "diode";
+  return name === "biasVoltage" || part === "circuit" ? "circuit" : head;
 }
 
 function condition(variable) {
@@ -90,7 +93,7 @@ export const groups = Object.entries(TITLES).map(([key, title]) => ({ key, title
 export function range(variable, base) {
   const { name, min, max } = variable;
   const clamp = ([low, high]) => [Math.max(low, min), Math.min(high, max)];
-  if (LOGARITHMIC.has(name)) return { low: 1e6, high: 1e13, log: true };
+  if (LOGARITHMIC[name]) return { low: LOGARITHMIC[name][0], high: LOGARITHMIC[name][1], log: true };
   if (RANGES[name]) {
     const [low, high] = clamp(RANGES[name]);
     return { low, high, log: false };

@@ -200,6 +200,8 @@ def test_webassembly_has_the_numbers_of_the_machine(visit):
 
 # What each slider must change, for a machine in which it counts.
 MECHANICAL = "average_voltage_gain"
+VISCOUS = "membrane.law=gent&contact.law=compliant&until=4&from=2"
+EXPONENTIAL = "diode.model=exponential&until=2&from=1"
 SLIDERS = {
     "cylinder.mass": ("", MECHANICAL), "cylinder.length": ("", MECHANICAL), "frame.width": ("", MECHANICAL), "ball.mass": ("", "largest_deflection"),
     "ball.radius": ("", MECHANICAL), "membrane.initialRadius": ("", MECHANICAL), "membrane.initialThickness": ("", "net_power"),
@@ -214,6 +216,17 @@ SLIDERS = {
     "excitation.acceleration": ("excitation.kind=motion&until=4&from=2", MECHANICAL),
     "membrane.shearModulus": ("membrane.law=gent", "largest_deflection"), "membrane.stretchLimit": ("membrane.law=gent", "largest_deflection"),
     "membrane.ogdenModulus1": ("membrane.law=ogden", "largest_deflection"), "membrane.ogdenExponent1": ("membrane.law=ogden", "largest_deflection"),
+    "membrane.ogdenModulus2": ("membrane.law=ogden", "largest_deflection"), "membrane.ogdenModulus3": ("membrane.law=ogden", "largest_deflection"),
+    "membrane.ogdenExponent2": ("membrane.law=ogden&membrane.ogdenModulus2=1e4", "largest_deflection"),
+    "membrane.ogdenExponent3": ("membrane.law=ogden&membrane.ogdenModulus3=1e4", "largest_deflection"),
+    "membrane.viscousModulus": (f"{VISCOUS}&membrane.relaxationTime=0.01", MECHANICAL),
+    "membrane.relaxationTime": (f"{VISCOUS}&membrane.viscousModulus=2e4", MECHANICAL),
+    **{name: (EXPONENTIAL, "net_power") for name in ("diode.saturationCurrent", "diode.emissionCoefficient", "diode.temperature",
+                                                    "zener.emissionCoefficient", "solver.relativeTolerance")},
+    # As in ngspice it counts only above the current that the saturation current gives.
+    "zener.breakdownCurrent": (f"{EXPONENTIAL}&zener.breakdownCurrent=1e-3", "net_power"),
+    "switch.band": (f"{EXPONENTIAL}&release=switch", "net_power"),
+    "excitation.fileScale": ("FILE&until=4&from=2", MECHANICAL), "excitation.fileOffset": ("FILE&until=4&from=2", MECHANICAL),
     "supply.voltage": ("", "net_power"), "zener.voltage": ("", "net_power"), "load.resistance": ("", "net_power"),
     "storage.voltage": ("release=storage&topology=isolated", "net_power"), "leakage.timeConstant": ("", "leakage_power"),
 }
@@ -221,7 +234,15 @@ SLIDERS = {
 
 def test_each_slider_changes_what_it_should(visit):
     visited = visit("#until=4&from=2")
+    variables = visited.page.evaluate("JSON.parse(document.getElementById('description').textContent).variables")
+    assert {it["name"] for it in variables if it["kind"] == "real"} == set(SLIDERS)
+    # A recording as a link carries it.
+    rows = "".join(f"{0.01 * k:.2f},{0.2 * math.sin(0.1 * k):.4f}\n" for k in range(900))
+    visited.settle(lambda: drop(visited.page, "main", "push.csv", f"time,force\n{rows}"))
+    wait(visited.page, "location.hash.includes('excitation.file')")
+    recording = re.search(r"excitation\.file=[^&]*", visited.page.evaluate("location.hash"))[0]
     for name, (fragment, changed) in SLIDERS.items():
+        fragment = fragment.replace("FILE", recording)
         before = visited.go(f"#{'' if 'case=' in fragment else 'case=fig14&'}{fragment or 'until=8&from=4'}")
         slide = """name => {
             const slider = document.querySelector(`[data-name='${name}'] input[type=range]`);
