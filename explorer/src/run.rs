@@ -6,7 +6,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use crate::film::Limits;
 use crate::machine::{Machine, times};
 
-/// Numbers of a run, in the order of [`NAMES`], and warnings about them.
+/// Numbers of a run, in the order of [`Outcome::names`], and warnings about them.
 #[wasm_bindgen]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {

@@ -20,7 +20,9 @@ fn column(rows: &[f64], name: &str) -> Vec<f64> {
 /// The paper's Fig. 14 but for what is given.
 fn machine(settings: &[(&str, f64)]) -> Machine {
     let mut machine = Machine::new();
-    settings.iter().for_each(|(name, value)| machine.set(name, *value).unwrap());
+    for (name, value) in settings {
+        machine.set(name, *value).unwrap();
+    }
     machine
 }
 

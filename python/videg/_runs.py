@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _arguments, _videg
 from ._arguments import Settings
 from ._cases import fmu
+from ._columns import Columns
 from ._progress import bar
 
 if TYPE_CHECKING:
@@ -31,32 +32,15 @@ def recorded(names: str | Sequence[str] | None, argument: str = "record") -> lis
     return [name for name in chosen if name != "time"]
 
 
-class Run(Mapping[str, Array]):
+class Run(Columns):
     """Columns of a run by name, `time` (s) among them: one-dimensional arrays of the same length."""
 
     def __init__(self, columns: dict[str, Array], units: dict[str, str], summary: dict[str, Any]) -> None:
-        self._columns = columns
+        super().__init__(columns)
         self.units = units
         """Unit of each column."""
         self.summary = summary
         """All scalar results, by the names that they have in `--json` of the command line."""
-
-    def __getitem__(self, name: str) -> Array:
-        """The column of this name, shape (rows,)."""
-        try:
-            return self._columns[name]
-        except KeyError:
-            raise KeyError(f"{name}: not recorded; there are {', '.join(self._columns)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
-    # Two runs are equal if they are the same one.
-    __eq__ = object.__eq__
-    __hash__ = object.__hash__
 
     def __repr__(self) -> str:
         rows = len(self.time)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ import numpy.typing as npt
 from . import _arguments, _videg
 from ._arguments import Settings, Value
 from ._cases import fmu
+from ._columns import Columns
 from ._progress import bar
 
 if TYPE_CHECKING:
@@ -157,30 +158,13 @@ def sweep(
     return results
 
 
-class Evaluation(Mapping[str, "npt.NDArray[np.float64]"]):
+class Evaluation(Columns):
     """Results at points, by name: arrays of shape (points,), or (points, samples) if samples were asked for. NaN where a run failed."""
 
     def __init__(self, columns: dict[str, npt.NDArray[np.float64]], errors: dict[int, str] | dict[tuple[int, int], str]) -> None:
-        self._columns = columns
+        super().__init__(columns)
         self.errors = errors
         """Place of each run that failed - the point, or point and sample if samples were asked for -, and why."""
-
-    def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
-        """The results of this name."""
-        try:
-            return self._columns[name]
-        except KeyError:
-            raise KeyError(f"{name}: not recorded; there are {', '.join(self._columns)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
-    # Two evaluations are equal if they are the same one.
-    __eq__ = object.__eq__
-    __hash__ = object.__hash__
 
     def __repr__(self) -> str:
         shape = next((values.shape for values in self._columns.values()), ())
