@@ -42,6 +42,8 @@ pub enum ExplorerError {
     Case(#[from] ScenarioError),
     #[error(transparent)]
     Description(#[from] FmiError),
+    #[error("the page has no place for what it must know of variables and cases; build it anew")]
+    NoPlace,
     #[error("cannot write what the page knows: {0}")]
     Json(#[from] serde_json::Error),
 }
@@ -127,15 +129,15 @@ pub fn page(scenario: &Scenario, options: &package::Options) -> Result<String, E
         state: state(&description, scenario)?,
     };
     let json = videg_report::inert(&serde_json::to_string(&description)?);
-    Ok(with_description(&package::explorer(options)?, &json))
+    with_description(&package::explorer(options)?, &json).ok_or(ExplorerError::NoPlace)
 }
 
 /// The `page` with another description: it has one element for that, which may be empty or of another machine.
-fn with_description(page: &str, json: &str) -> String {
+fn with_description(page: &str, json: &str) -> Option<String> {
     const BEGIN: &str = "<script type=\"application/json\" id=\"description\">";
-    let Some((head, rest)) = page.split_once(BEGIN) else { return page.to_owned() };
-    let tail = rest.find("</script>").map_or("", |end| &rest[end..]);
-    format!("{head}{BEGIN}{json}{tail}")
+    let (head, rest) = page.split_once(BEGIN)?;
+    let tail = &rest[rest.find("</script>")?..];
+    Some(format!("{head}{BEGIN}{json}{tail}"))
 }
 
 /// Parameters of the harvester, then those of the circuit that can be set without an FMU.
@@ -216,7 +218,7 @@ fn number(description: &ModelDescription, setting: &Setting) -> Result<Number, E
 }
 
 fn real(value: f64) -> Number {
-    if value.is_finite() { Number::Real(value) } else { Number::Text("Infinity".to_owned()) }
+    if value == f64::INFINITY { Number::Text("Infinity".to_owned()) } else { Number::Real(value) }
 }
 
 fn file(setting: &Setting) -> Result<File, ExplorerError> {
@@ -240,9 +242,10 @@ mod tests {
     fn a_page_gets_another_description_and_stays_the_same_otherwise() {
         let page =
             "<p>a</p><script type=\"application/json\" id=\"description\">{{ description }}</script><script>b</script>";
-        let one = with_description(page, "{\"a\":1}");
+        let one = with_description(page, "{\"a\":1}").unwrap();
         assert_eq!(one, page.replace("{{ description }}", "{\"a\":1}"));
-        assert_eq!(with_description(&one, "{{ description }}"), page);
+        assert_eq!(with_description(&one, "{{ description }}").unwrap(), page);
+        assert_eq!(with_description("<p>a</p>", "1"), None);
     }
 
     #[test]

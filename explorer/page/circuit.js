@@ -4,6 +4,8 @@ import { value } from "./state.js";
 
 /** Least share of the largest current of the picture at which a branch counts as conducting. */
 const LIT = 1e-3;
+/** Part of a voltage within which diodes conduct: ideal ones at it, others near it. */
+const NEAR = 5e-3;
 
 export class Circuit {
   constructor(svg) {
@@ -83,8 +85,8 @@ export class Circuit {
     make("text", { x, y: y - 18, class: "middle" }, parent, text);
   }
 
-  /** What happens between two rows of the motion: charges that came and left on each branch. */
-  prepare(rows, width, column, rest) {
+  /** What happens between two rows of the motion: charges that came from the supply at its voltage, and left at that of the release. */
+  prepare(rows, width, column, rest, [supplied, released]) {
     this.rest = rest;
     this.width = width;
     this.column = column;
@@ -92,16 +94,23 @@ export class Circuit {
     const isShared = value("topology") === "sharedNode";
     const sides = isShared ? 1 : 2;
     const moved = Array.from({ length: sides }, () => ({ came: new Float64Array(count), left: new Float64Array(count) }));
-    const charge = (at, side) => isShared
-      ? (rows[at + column("left.capacitance")] + rows[at + column("right.capacitance")]) * rows[at + column("left.voltage")]
-      : rows[at + column(side ? "right.capacitance" : "left.capacitance")] * rows[at + column(side ? "right.voltage" : "left.voltage")];
+    const names = ["left", "right"].map((name) => [column(`${name}.capacitance`), column(`${name}.voltage`)]);
+    const charge = (at, side) => rows[at + names[side][0]] * rows[at + names[side][1]];
+    const voltage = (at, side) => rows[at + names[side][1]];
     const [supply, load] = [column("supply.charge"), column("load.charge")];
     for (let k = 1; k < count; k++) {
       const [before, at] = [(k - 1) * width, k * width];
       moved.forEach(({ came, left }, side) => {
+        if (isShared) {
+          came[k] = rows[at + supply] - rows[supply];
+          left[k] = rows[at + load] - rows[load];
+          return;
+        }
+        // Charge that comes or leaves elsewhere leaks through the film.
         const change = charge(at, side) - charge(before, side);
-        came[k] = came[k - 1] + (isShared ? rows[at + supply] - rows[before + supply] : Math.max(0, change));
-        left[k] = left[k - 1] + (isShared ? rows[at + load] - rows[before + load] : Math.max(0, -change));
+        const [low, high] = [Math.min(voltage(before, side), voltage(at, side)), Math.max(voltage(before, side), voltage(at, side))];
+        came[k] = came[k - 1] + (low <= supplied * (1 + NEAR) ? Math.max(0, change) : 0);
+        left[k] = left[k - 1] + (high >= released * (1 - NEAR) ? Math.max(0, -change) : 0);
       });
     }
     this.moved = moved;

@@ -1,7 +1,7 @@
 // Sliders and fields for all parameters.
 import { groups, range } from "./description.js";
-import { base, change, commit, counts, set, state, value } from "./state.js";
-import { quantity, short, symbolNodes } from "./format.js";
+import { base, change, commit, counts, keepFile, set, state, value } from "./state.js";
+import { quantity, short, symbolNode } from "./format.js";
 
 const STEPS = 1000;
 
@@ -24,32 +24,58 @@ export function build(panel, filter, chosen, say) {
     panel.append(details);
   }
   const run = element("details", { class: "group" }, element("summary", {}, "Run"));
-  run.append(timeField("until", "End of the run"), timeField("from", "Averages from"));
+  run.append(timeField("until", "End of the run", say), timeField("from", "Averages from", say));
   panel.append(run);
-  filter.addEventListener("input", () => {
-    const wanted = filter.value.trim().toLowerCase();
-    for (const [name, { node, variable }] of rows) {
-      node.classList.toggle("filtered", wanted !== "" && !`${name} ${variable.description}`.toLowerCase().includes(wanted));
-    }
-    panel.classList.toggle("searching", wanted !== "");
-  });
+  filter.addEventListener("input", () => search(panel, filter.value.trim().toLowerCase()));
 }
 
-function timeField(key, text) {
+/** Shows what has `wanted` in its name or description, in whatever group it is. */
+function search(panel, wanted) {
+  for (const [name, { node, variable }] of rows) {
+    node.classList.toggle("filtered", wanted !== "" && !`${name} ${variable.description}`.toLowerCase().includes(wanted));
+  }
+  const isSearching = panel.classList.contains("searching");
+  for (const group of panel.querySelectorAll(".group")) {
+    if (wanted !== "") {
+      if (!isSearching) group.dataset.open = group.open;
+      const has = group.querySelector(".row:not(.filtered)") !== null;
+      group.open = has;
+      group.hidden = !has;
+    } else if (isSearching) {
+      group.open = group.dataset.open === "true";
+      group.hidden = false;
+    }
+  }
+  panel.classList.toggle("searching", wanted !== "");
+}
+
+function timeField(key, text, say) {
   const input = element("input", { type: "number", min: "0", step: "any", id: `time-${key}` });
   input.addEventListener("change", () => {
     const number = Number(input.value);
-    if (number >= 0 && input.value !== "") change((state) => { state[key] = number; });
+    const fits = input.value !== "" && number >= 0 && (key === "until" ? number > 0 : number < state.until);
+    input.toggleAttribute("aria-invalid", !fits);
+    if (!fits) return say(`${text}: ${input.value || "nothing"} s: allowed: ${key === "until" ? "above 0" : `0 to below ${state.until}`} s`);
+    change((state) => {
+      state[key] = number;
+      // An end before the window moves the window.
+      if (state.from >= state.until) state.from = state.until / 2;
+    });
+    commit();
   });
   const node = element("div", { class: "row" }, element("label", { for: input.id }, text), input, element("span", { class: "unit" }, "s"));
-  rows.set(`time.${key}`, { node, variable: { description: text }, show: () => { if (document.activeElement !== input) input.value = state[key]; } });
+  rows.set(`time.${key}`, { node, variable: { description: text }, show: () => {
+    if (document.activeElement === input) return;
+    input.value = state[key];
+    input.removeAttribute("aria-invalid");
+  } });
   return node;
 }
 
 function row(variable, chosen, say) {
   const id = `value-${variable.name.replaceAll(".", "-")}`;
   const label = element("label", { for: id, title: `${variable.name}: ${variable.description}` });
-  if (variable.symbol) label.append(symbolNodes(variable.symbol), " ");
+  if (variable.symbol) label.append(symbolNode(variable.symbol), " ");
   label.append(element("span", { class: "name" }, variable.name));
   const node = element("div", { class: `row ${variable.kind}`, "data-name": variable.name }, label);
   const make = { real: number, integer: number, boolean: toggle, enumeration: choice, string: file }[variable.kind];
@@ -57,6 +83,7 @@ function row(variable, chosen, say) {
   const back = element("button", { class: "back", title: `Back to the value of the case`, "aria-label": `${variable.name}: back to the value of the case` }, "\u21ba");
   back.addEventListener("click", () => variable.kind === "string" ? change((state) => { delete state.files[variable.name]; }) : set(variable.name, undefined));
   node.append(back);
+  if (variable.condition) node.append(element("span", { class: "condition" }, `counts only with ${variable.condition.name} = ${variable.condition.values.join(" or ")}`));
   rows.set(variable.name, { node, variable, show });
   return node;
 }
@@ -77,6 +104,7 @@ function number(variable, id, node, chosen, say) {
     if (fits) {
       field.removeAttribute("aria-invalid");
       set(name, wanted);
+      field.value = short(wanted, 6);
     } else {
       field.setAttribute("aria-invalid", "true");
       say(`${name} = ${text || "nothing"}: allowed: ${isCount ? "whole numbers " : ""}${short(min)} to ${short(max)}${unit ? ` ${unit}` : ""}`);
@@ -96,7 +124,12 @@ function number(variable, id, node, chosen, say) {
   node.append(line);
   return () => {
     const shown = present();
-    if (document.activeElement !== field || !field.hasAttribute("aria-invalid")) field.value = shown === undefined ? "" : short(shown, 6);
+    // Whoever types is not disturbed.
+    if (document.activeElement !== field) {
+      field.value = shown === undefined ? "" : short(shown, 6);
+      field.removeAttribute("aria-invalid");
+    }
+    field.title = shown !== undefined && value(name) === undefined ? "follows from the harvester until a value is given" : "";
     const { low, high, log } = bounds();
     if (slider && shown !== undefined) {
       const part = log ? Math.log(shown / low) / Math.log(high / low) : (shown - low) / (high - low);
@@ -137,7 +170,7 @@ function file(variable, id, node, _, say) {
 }
 
 /** Largest file, bytes: a million rows. */
-const LARGEST = 64 * 2 ** 20;
+const LARGEST = 2 ** 26;
 
 /** Takes a file for the variable `name`, or by its heading if that is open. */
 export async function take(name, given, say) {
@@ -147,7 +180,7 @@ export async function take(name, given, say) {
   const target = name ?? (heading.includes("deflection") ? "membrane.file" : heading.includes("time") ? "excitation.file" : null);
   if (!target) return say(`${given.name}: its heading is neither that of a recording (time,acceleration or time,force) nor of a membrane (deflection,force)`);
   change((state) => {
-    state.files[target] = { name: given.name.replaceAll(",", "_"), text };
+    state.files[target] = keepFile(given.name.replaceAll(",", "_"), text);
     if (target === "membrane.file") state.set["membrane.law"] = "table";
     if (target === "excitation.file") state.set["excitation.kind"] = heading.includes("force") ? "force" : "motion";
   });

@@ -3,6 +3,9 @@ import { make } from "./svg.js";
 import { color } from "./plot.js";
 import { value } from "./state.js";
 
+/** Half lengths of the cylinder that it moves within the picture. */
+const FAR = 8;
+
 export class Device {
   constructor(svg) {
     this.svg = svg;
@@ -10,7 +13,7 @@ export class Device {
   }
 
   /** Draws the parts for lengths in m: half of the travel, radii of ball and membrane, lengths of the cylinder; `reach` is how far it moves. */
-  build({ travel, membraneRadius: radius, deepest, limit }, [low, high]) {
+  build({ travel, membraneRadius: radius, deepest, limit }, reach) {
     const ball = value("ball.radius");
     this.sizes = { half: travel / 2 + ball, ball, radius };
     const thick = Math.max(radius, ball) * 0.35;
@@ -20,22 +23,25 @@ export class Device {
     const outer = this.sizes.half + room;
     const tall = Math.max(radius, ball) * 1.15 + thick;
     const beta = value("cylinder.inclination") ?? 0;
+    // A cylinder that goes far is followed, lest it be too small to see.
+    this.follows = reach[1] - reach[0] > FAR * outer;
+    const [low, high] = this.follows ? [-0.3 * outer, 0.3 * outer] : reach;
     const [left, right] = [low - outer, high + outer];
     const length = right - left;
     const heightOf = (Math.abs(Math.sin(beta)) * length + 2 * tall * Math.cos(beta)) * 1.12 + tall * 0.9;
     const widthOf = Math.abs(Math.cos(beta)) * length + Math.abs(Math.sin(beta)) * 2 * tall;
     const middle = (left + right) / 2;
+    // Letters keep their size on a small screen.
+    const shrink = Math.min(3.5, 1000 / Math.max(200, this.svg.clientWidth));
     const unit = 1000 / Math.max(widthOf * 1.04, heightOf * 2.4);
     this.unit = unit;
-    const view = { width: 1000, height: Math.max(heightOf * unit, 150) };
+    const view = { width: 1000, height: Math.max(heightOf * unit, 150) + 14 * shrink };
     this.svg.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     this.svg.replaceChildren();
     const px = (metres) => metres * unit;
     const whole = make("g", { transform: `translate(${view.width / 2} ${view.height * 0.46}) rotate(${(-beta * 180) / Math.PI}) translate(${-px(middle)} 0)` }, this.svg);
     // Where the room is: a ruler that does not move.
     const floor = px(tall) + 12;
-    // Letters keep their size on a small screen.
-    const shrink = Math.min(3.5, 1000 / Math.max(200, this.svg.clientWidth));
     const ruler = make("g", { class: "ruler" }, whole);
     make("line", { x1: px(left), x2: px(right), y1: floor, y2: floor }, ruler);
     const step = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10].find((it) => length / it < 13 / shrink) ?? length / 4;
@@ -80,15 +86,15 @@ export class Device {
     return `M${px(at)} ${px(-radius)}L${px(at + side * x)} ${px(-y)}${around}L${px(at)} ${px(radius)}`;
   }
 
-  /** Moves the parts: positions of cylinder and ball, deflections, all in m, and voltages over U_in. */
-  move({ cylinder, ball, left, right, charge, push }) {
+  /** Moves the parts: positions of cylinder and ball, deflections, all in m, and the acceleration of the cylinder, from -1 to 1. */
+  move({ cylinder: position, ball: place, left, right, push }) {
     if (!this.sizes) return;
+    const [cylinder, ball] = this.follows ? [0, place - position] : [position, place];
     const px = (metres) => (metres * this.unit).toFixed(2);
     this.cylinder.setAttribute("transform", `translate(${px(cylinder)} 0)`);
     this.ball.setAttribute("cx", px(ball));
     this.films[0].setAttribute("d", this.film(left, -1));
     this.films[1].setAttribute("d", this.film(right, 1));
-    this.films.forEach((film, index) => film.style.setProperty("--charge", Math.min(1, charge[index]).toFixed(3)));
     const dir = push < 0 ? -1 : 1;
     const long = Math.abs(push) * 60;
     const tip = (cylinder + dir * this.outer) * this.unit;

@@ -1,4 +1,8 @@
 // Threads that compute. One answers a question at a time; a new question takes the place of an old one that waits.
+import { textOf } from "./state.js";
+
+/** How long, in milliseconds, an answer that nobody wants any more may still take. */
+const PATIENCE = 400;
 
 const decode = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
@@ -21,6 +25,8 @@ export class Engine {
     this.asked = null;
     this.waiting = null;
     this.count = 0;
+    // Numbers of the files that the thread has.
+    this.sent = new Set();
   }
 
   async start() {
@@ -29,7 +35,10 @@ export class Engine {
     const worker = new Worker(address);
     URL.revokeObjectURL(address);
     worker.onmessage = ({ data }) => this.hear(data);
-    worker.onerror = (event) => this.fail(`the model could not start: ${event.message}`);
+    worker.onerror = (event) => {
+      this.kill();
+      this.fail(`the model could not start: ${event.message}`);
+    };
     worker.postMessage({ module: await model() });
     return worker;
   }
@@ -39,12 +48,22 @@ export class Engine {
     return new Promise((resolve, reject) => {
       this.waiting?.reject(new Superseded());
       this.waiting = { question, each, resolve, reject };
-      if (this.asked?.question.job !== "live") this.stop();
+      if (this.asked?.question.job === "live") this.hurry(this.asked);
+      else this.stop();
       this.go();
     });
   }
 
-  /** Ends what goes on; its thread is lost if it computes. */
+  /** Ends what goes on soon: most answers come before that. */
+  hurry(asked) {
+    asked.hurry ??= setTimeout(() => {
+      if (this.asked !== asked || !this.waiting) return;
+      this.stop();
+      this.go();
+    }, PATIENCE);
+  }
+
+  /** Ends what goes on; its thread is lost. */
   stop() {
     if (!this.asked) return;
     this.asked.reject(new Superseded());
@@ -53,33 +72,43 @@ export class Engine {
   }
 
   kill() {
-    this.worker?.then((worker) => worker.terminate());
+    this.worker?.then((worker) => worker.terminate(), () => {});
     this.worker = null;
+    this.sent.clear();
   }
 
   end() {
     clearTimeout(this.timer);
+    clearTimeout(this.asked?.hurry);
     this.asked = null;
   }
 
   async go() {
     if (this.asked || !this.waiting) return;
-    this.asked = this.waiting;
+    const asked = this.waiting;
+    this.asked = asked;
     this.waiting = null;
-    const id = ++this.count;
-    this.asked.id = id;
+    asked.id = ++this.count;
     this.watch();
     this.worker ??= this.start();
-    const worker = await this.worker;
-    if (this.asked?.id === id) worker.postMessage({ id, ...this.asked.question });
+    try {
+      const worker = await this.worker;
+      if (this.asked !== asked) return;
+      const missing = Object.values(asked.question.machine.files).filter((id) => !this.sent.has(id));
+      missing.forEach((id) => this.sent.add(id));
+      worker.postMessage({ id: asked.id, ...asked.question, texts: missing.map((id) => [id, textOf(id)]) });
+    } catch (error) {
+      if (this.asked !== asked) return;
+      this.kill();
+      this.fail(`the model could not start: ${error.message}`);
+    }
   }
 
   watch() {
     clearTimeout(this.timer);
-    const seconds = this.limit / 1000;
     this.timer = setTimeout(() => {
       this.kill();
-      this.fail(`this takes more than ${seconds} s: too many impacts, or too long a run. Nothing is shown until the values change.`);
+      this.fail(`this takes more than ${this.limit / 1000} s: too many impacts, or too long a run`);
     }, this.limit);
   }
 

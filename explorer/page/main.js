@@ -1,17 +1,16 @@
 // The page: asks for what the present machine does, and shows it.
-import { cases, groups, initial, variable, variables, version } from "./description.js";
+import { cases, version } from "./description.js";
 import { Engine, Superseded } from "./engine.js";
-import { canRedo, canUndo, change, commit, fragment, listen, machine, published, read, redo, set, state, undo, value } from "./state.js";
+import { SHOWN, SPANS, canRedo, canUndo, change, commit, fragment, listen, machine, published, read, redo, set, state, undo, value } from "./state.js";
 import { build, show, take } from "./controls.js";
 import { Plot, around, color, curve } from "./plot.js";
 import { Device } from "./device.js";
 import { Circuit } from "./circuit.js";
-import { Diagram, PowerMap, SHOWN, axes, fill } from "./maps.js";
+import { Diagram, PowerMap, axes, fill } from "./maps.js";
 import { caseName, caseTitle, fmpy, python, save, toml } from "./exports.js";
-import { quantity, short } from "./format.js";
+import { largest, quantity, short } from "./format.js";
 
 const find = (id) => document.getElementById(id);
-const micro = 1e6;
 
 // A message stays until the next one that concerns the same.
 let messages = {};
@@ -27,9 +26,13 @@ function say(text, about = "hint") {
 /** What the machine does now: the last answer. */
 let shown = null;
 let clock = 0;
+// The largest acceleration of the cylinder in the picture.
+let strongest = 1;
 let playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 let last = null;
 let answers = 0;
+// The question that was asked last: what has not changed is not computed again.
+let asked = "";
 const times = [];
 
 const engine = new Engine(5000);
@@ -44,9 +47,9 @@ const plots = {
 
 /** The voltages that the model chooses where none is given. */
 const chosen = (name) => shown?.voltages[["supply.voltage", "zener.voltage", "storage.voltage"].indexOf(name)];
-const diagram = new Diagram(find("plot-diagram"), find("diagram-text"), chosen, say);
-const highest = () => (shown ? Math.max(...columnOf("left.capacitance"), ...columnOf("right.capacitance")) / shown.derived.restCapacitance : 2);
-const map = new PowerMap(find("plot-map"), find("map-text"), chosen, highest, say);
+const diagram = new Diagram(find("plot-diagram"), find("diagram-text"), chosen);
+const highest = () => (shown ? largest(columnOf("left.capacitance"), columnOf("right.capacitance")) / shown.derived.restCapacitance : 2);
+const map = new PowerMap(find("plot-map"), find("map-text"), chosen, highest);
 
 const period = () => 1 / Number(value("excitation.frequency"));
 
@@ -55,6 +58,12 @@ async function ask() {
   const length = state.span * period();
   const begin = Math.min(state.begin, 1e6);
   const question = { job: "live", machine: machine(), from: state.from, until: state.until, begin, end: begin + length, spacing: period() / 100 };
+  const key = JSON.stringify(question);
+  if (key === asked) {
+    answers += 1;
+    return;
+  }
+  asked = key;
   try {
     const answer = await engine.ask(question);
     say("", "machine");
@@ -62,7 +71,7 @@ async function ask() {
     take_answer(answer);
   } catch (error) {
     if (error instanceof Superseded) return;
-    say(error.message, "machine");
+    say(`${error.message}${shown ? "; the picture is that of the values before" : ""}`, "machine");
     document.body.classList.add("stale");
   } finally {
     answers += 1;
@@ -93,9 +102,11 @@ function take_answer(answer) {
 function numbers() {
   const { numbers, warnings, derived } = shown;
   const power = (watts) => quantity(watts, "W", 4);
-  find("net-value").textContent = `${(numbers.net_power * micro).toFixed(2)} \u00b5W`;
-  find("net-value").dataset.value = numbers.net_power;
+  const film = Math.max(numbers.area_ratio_over_limit, numbers.field_over_limit, numbers.stress_over_limit, numbers.deflection_over_limit);
+  find("net-value").textContent = power(numbers.net_power);
   find("net").classList.toggle("loss", numbers.net_power < 0);
+  find("net").classList.toggle("fails", film > 1);
+  find("net-note").textContent = film > 1 ? "by a machine whose films fail, see below" : "load less supply, with the change of what the membranes store";
   const length = state.until - state.from;
   const facts = [
     ["to the load", power(numbers.load_power)],
@@ -106,7 +117,7 @@ function numbers() {
     ["impacts", `${short(numbers.impacts / length, 4)} a second`],
     ["deepest deflection", quantity(numbers.largest_deflection, "m", 3)],
     ["highest voltage", `${numbers.highest_voltage.toFixed(0)} V`],
-    ["film", `${(100 * Math.max(numbers.area_ratio_over_limit, numbers.field_over_limit, numbers.stress_over_limit, numbers.deflection_over_limit)).toFixed(0)} % of its nearest limit`],
+    ["film", `${(100 * film).toFixed(0)} % of its nearest limit`],
     ["C at rest", quantity(derived.restCapacitance, "F", 4)],
     ["travel of the ball", quantity(derived.travel, "m", 4)],
     ["cylinder / half travel", short(derived.gamma, 3)],
@@ -133,6 +144,8 @@ function flow(numbers) {
   find("flow").replaceChildren(...bars.map(([title, parts]) => {
     const bar = document.createElement("div");
     bar.className = "bar";
+    bar.setAttribute("role", "img");
+    bar.setAttribute("aria-label", `${title} ${parts.map(([name, watts]) => `${name} ${quantity(watts, "W", 3)}`).join(", ")}`);
     bar.append(Object.assign(document.createElement("span"), { className: "title", textContent: title }));
     for (const [name, watts] of parts.filter(([, watts]) => watts > 1e-4 * whole)) {
       const part = document.createElement("span");
@@ -140,7 +153,6 @@ function flow(numbers) {
       part.style.flexGrow = watts / whole;
       part.title = `${name}: ${quantity(watts, "W", 4)}`;
       part.textContent = watts > 0.12 * whole ? `${name} ${quantity(watts, "W", 3)}` : "";
-      part.setAttribute("aria-label", part.title);
       bar.append(part);
     }
     return bar;
@@ -189,7 +201,8 @@ function charts() {
   const [supply, zener, storage] = shown.voltages;
   const release = value("release") === "storage" ? storage : zener;
   const voltages = both("voltage", 1);
-  const limits = both("limit", 1).filter((volts) => volts < 3 * Math.max(...voltages, release));
+  const highestShown = Math.max(largest(voltages), release);
+  const limits = both("limit", 1).filter((volts) => volts < 3 * highestShown);
   plots.voltage.draw({ x, xUnit: "s", y: around([...voltages, ...limits, supply, release]), draw: (pen, x, y, size) => {
     level(pen, y, size, supply, "supply", [2, 3]);
     level(pen, y, size, release, "load", [6, 4]);
@@ -203,17 +216,19 @@ function charts() {
   const start = (name) => rows[column(name)];
   const energies = [["load.energy", "load"], ["supply.energy", "supply"], ["mechanical.energy", "motion"]];
   const net = net_energy();
-  const all = [...energies.flatMap(([name]) => columnOf(name, micro, start(name))), ...net];
-  plots.energy.draw({ x, xUnit: "s", y: around(all), draw: (pen, x, y) => {
+  const range = around(function* () { for (const [name] of energies) yield* columnOf(name, 1, start(name)); yield* net; }());
+  const [factor, prefix] = Math.max(-range[0], range[1]) < 1e-2 ? [1e6, "\u00b5"] : [1e3, "m"];
+  find("energy-unit").textContent = `${prefix}J`;
+  plots.energy.draw({ x, xUnit: "s", y: range.map((joules) => joules * factor), draw: (pen, x, y) => {
     for (const [name, hue] of energies) {
       pen.strokeStyle = color(hue);
       pen.lineWidth = 1.4;
-      curve(pen, x, y, rows, width, 0, column(name), [1, micro], [0, start(name)]);
+      curve(pen, x, y, rows, width, 0, column(name), [1, factor], [0, start(name)]);
     }
     pen.strokeStyle = color("ink");
     pen.lineWidth = 2.2;
     pen.beginPath();
-    net.forEach((value, k) => (k ? pen.lineTo(x(rows[k * width]), y(value)) : pen.moveTo(x(rows[0]), y(value))));
+    net.forEach((value, k) => (k ? pen.lineTo(x(rows[k * width]), y(value * factor)) : pen.moveTo(x(rows[0]), y(value * factor))));
     pen.stroke();
   } });
   const speed = columnOf("relative.velocity");
@@ -231,9 +246,9 @@ function charts() {
   } });
 }
 
-/** Load less supply, with the change of the stored energy, uJ, since the beginning of the picture. */
+/** Load less supply, with the change of the stored energy, J, since the beginning of the picture. */
 function net_energy() {
-  const [load, supply, stored] = ["load.energy", "supply.energy", "stored.energy"].map((name) => columnOf(name, micro));
+  const [load, supply, stored] = ["load.energy", "supply.energy", "stored.energy"].map((name) => columnOf(name));
   const at = (k) => load[k] - supply[k] + stored[k];
   return load.map((_, k) => at(k) - at(0));
 }
@@ -243,13 +258,17 @@ function scene() {
   const { derived, numbers } = shown;
   const z = columnOf("cylinder.position");
   const [low, high] = around(z, 0);
-  device.build({ ...derived, deepest: Math.max(...columnOf("left.deflection"), ...columnOf("right.deflection"), numbers.largest_deflection), limit: shown.deflectionLimit }, [low, high]);
+  device.build({ ...derived, deepest: numbers.largest_deflection, limit: shown.deflectionLimit }, [low, high]);
   const isImpulsive = value("contact.law") === "impulsive";
-  find("contact-note").textContent = isImpulsive
-    ? "To scale. An impact takes no time here (contact.law = impulsive, the paper's): the ball leaves at once, and the film springs out and back by itself."
-    : "To scale. The film is a spring with losses, and a contact takes time (contact.law = compliant).";
+  const contact = isImpulsive
+    ? "An impact takes no time here (contact.law = impulsive, the paper's): the ball leaves at once, and the film springs out and back by itself."
+    : "The film is a spring with losses, and a contact takes time (contact.law = compliant).";
+  const seen = device.follows ? "To scale, and the picture follows the cylinder." : "To scale.";
+  find("contact-note").textContent = `${seen} Arrow: acceleration of the cylinder. ${contact}`;
   circuit.build();
-  circuit.prepare(shown.rows, shown.width, shown.column, derived.restCapacitance);
+  const [supply, zener, storage] = shown.voltages;
+  circuit.prepare(shown.rows, shown.width, shown.column, derived.restCapacitance, [supply, value("release") === "storage" ? storage : zener]);
+  strongest = Math.max(largest(columnOf("cylinder.acceleration").map(Math.abs)), 1e-12);
 }
 
 /** The row before a time, and the part of the way to the next one. */
@@ -266,16 +285,15 @@ function locate(time) {
 }
 
 function draw() {
-  const { rows, width, column, voltages } = shown;
+  const { rows, width, column } = shown;
   const { k, next, part } = locate(clock);
   const at = (name) => {
     const index = column(name);
     return rows[k * width + index] + part * (rows[next * width + index] - rows[k * width + index]);
   };
-  const force = Math.cos(2 * Math.PI * value("excitation.frequency") * clock + Number(value("excitation.phase")));
   device.move({
     cylinder: at("cylinder.position"), ball: at("ball.position"), left: at("left.deflection"), right: at("right.deflection"),
-    charge: ["left", "right"].map((side) => at(`${side}.voltage`) / (1.5 * voltages[0])), push: force,
+    push: at("cylinder.acceleration") / strongest,
   });
   circuit.move(rows, k, part);
   for (const name of ["gap", "capacitance", "voltage", "energy"]) plots[name].cursor([{ x: clock }]);
@@ -315,7 +333,6 @@ function step(forward) {
 function setPlaying(wanted) {
   playing = wanted;
   find("play").textContent = playing ? "Pause" : "Play";
-  find("play").setAttribute("aria-pressed", String(playing));
 }
 
 /** Shows the values of all fields that are not those of parameters. */
@@ -325,7 +342,7 @@ function fields() {
   find("redo").disabled = !canRedo();
   for (const [id, wanted] of [["begin", state.begin], ["span", state.span]]) if (document.activeElement !== find(id)) find(id).value = wanted;
   const { name, shown: what } = state.diagram;
-  fill(find("diagram-name"), name);
+  fill(find("diagram-name"), name, true);
   find("diagram-shown").value = what;
   for (const [id, key] of [["diagram-from", "from"], ["diagram-to", "to"]]) if (document.activeElement !== find(id)) find(id).value = state.diagram[key] ?? "";
   const [x, y] = axes();
@@ -351,7 +368,7 @@ async function picture() {
   const add = (text, height) => { parts.push(`<g transform="translate(0 ${top})">${text}</g>`); top += height; };
   const drawing = device.text(width);
   add(drawing.text, drawing.height + 10);
-  for (const [name, title] of [["gap", "Relative displacement, mm"], ["capacitance", "Capacitance, pF"], ["voltage", "Voltage, V"], ["energy", "Energy, \u00b5J"]]) {
+  for (const [name, title] of [["gap", "Relative displacement, mm"], ["capacitance", "Capacitance, pF"], ["voltage", "Voltage, V"], ["energy", `Energy, ${find("energy-unit").textContent}`]]) {
     add(`<text x="52" y="12" style="font:12px sans-serif" fill="${color("ink")}">${title}</text>`, 16);
     add(plots[name].svg(width, 170), 180);
   }
@@ -382,6 +399,7 @@ const EXPORTS = [
 ];
 
 async function copyLink() {
+  commit();
   const { text, left } = await fragment();
   const address = location.href.split("#")[0] + text;
   try {
@@ -409,7 +427,6 @@ function toolbar() {
   const menu = find("export").querySelector("div");
   for (const [name, act] of EXPORTS) {
     const button = Object.assign(document.createElement("button"), { textContent: name });
-    button.setAttribute("role", "menuitem");
     button.addEventListener("click", () => { find("export").open = false; act(); });
     menu.append(button);
   }
@@ -420,7 +437,7 @@ function toolbar() {
 }
 
 function transport() {
-  for (const [periods, text] of [[1, "1 period"], [2, "2 periods"], [4, "4 periods"], [8, "8 periods"], [20, "20 periods"], [60, "60 periods"]]) find("span").append(new Option(text, periods));
+  for (const periods of SPANS) find("span").append(new Option(`${periods} ${periods === 1 ? "period" : "periods"}`, periods));
   find("span").addEventListener("change", (event) => { change((state) => { state.span = Number(event.target.value); }); commit(); });
   find("begin").addEventListener("change", (event) => {
     const wanted = Number(event.target.value);
@@ -435,16 +452,19 @@ function transport() {
   speed();
   setPlaying(playing);
   document.addEventListener("keydown", (event) => {
-    const typing = event.target.closest("input, select, textarea, summary, button");
+    const typing = event.target.closest("input, select, textarea, summary");
+    const isPlain = !typing && !event.altKey && !event.ctrlKey && !event.metaKey;
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !event.target.matches("input[type=text], input[type=number], input[type=search]")) {
       event.preventDefault();
       (event.shiftKey ? redo : undo)();
-    } else if (!typing && event.key === " ") {
+    } else if (isPlain && event.key === " " && !event.target.closest("button")) {
       event.preventDefault();
       setPlaying(!playing);
-    } else if (!typing && event.key === "ArrowRight") step(true);
-    else if (!typing && event.key === "ArrowLeft") step(false);
+    } else if (isPlain && event.key === "ArrowRight") step(true);
+    else if (isPlain && event.key === "ArrowLeft") step(false);
+    else if (event.key === "Escape") find("export").open = false;
   });
+  document.addEventListener("click", (event) => { if (!event.target.closest("#export")) find("export").open = false; });
 }
 
 function maps() {
@@ -461,9 +481,9 @@ function maps() {
 
 function changed() {
   say("");
-  show();
   fields();
   ask();
+  show();
   diagram.later();
   map.later();
 }
@@ -491,12 +511,17 @@ async function start() {
   find("footer").textContent = `videg ${version}. Computed in this page by the library itself; nothing is loaded or sent.`;
   document.addEventListener("dragover", (event) => event.preventDefault());
   document.addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) take(null, event.dataTransfer.files[0], say); });
-  const again = () => { Object.values(plots).forEach((plot) => plot.redraw()); diagram.paint(); map.paint(); };
+  const again = () => {
+    Object.values(plots).forEach((plot) => plot.redraw());
+    diagram.paint();
+    map.paint();
+    if (shown) scene();
+  };
   new ResizeObserver(again).observe(document.querySelector("main"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
   const address = async () => { const left = await read(); if (left.length) say(left.join("\n"), "address"); };
   window.addEventListener("hashchange", address);
-  listen(changed);
+  listen(changed, fields);
   await address();
   changed();
   requestAnimationFrame(frame);

@@ -1,17 +1,10 @@
 // Diagrams over ranges of parameters, computed in a thread of their own.
 import { range, variable, variables } from "./description.js";
 import { Engine, Superseded } from "./engine.js";
-import { base, change, commit, counts, machine, set, state, value } from "./state.js";
+import { SHOWN, base, change, commit, counts, machine, set, state, value } from "./state.js";
 import { Plot, around, color } from "./plot.js";
 import { quantity, short } from "./format.js";
 
-export const SHOWN = {
-  Speed: { text: "relative speed of impacts, m/s", factor: 1 },
-  Phase: { text: "phase of impacts in the period", factor: 1 },
-  Interval: { text: "periods from impact to impact", factor: 1 },
-  Voltage: { text: "U_DE4 of impacts, V", factor: 1 },
-  Displacement: { text: "relative displacement each period, mm", factor: 1e3 },
-};
 const COLUMNS = 600;
 const POINTS = 200;
 /** Periods that pass before a motion is looked at. */
@@ -20,10 +13,10 @@ const CELLS = [56, 40];
 
 const between = ({ low, high, log }, count) => Array.from({ length: count }, (_, k) => (log ? low * (high / low) ** (k / (count - 1)) : low + ((high - low) * k) / (count - 1)));
 
-/** Fills a list with the numbers that may be varied. */
-export function fill(select, wanted) {
+/** Fills a list with the numbers that may be varied; the motion does not depend on those of the circuit. */
+export function fill(select, wanted, ofMotion = false) {
   if (!select.options.length) {
-    for (const it of variables.filter((it) => it.kind === "real")) select.append(new Option(it.symbol ? `${it.symbol}  ${it.name}` : it.name, it.name));
+    for (const it of variables.filter((it) => it.kind === "real" && !(ofMotion && it.part === "circuit"))) select.append(new Option(it.symbol ? `${it.symbol}  ${it.name}` : it.name, it.name));
   }
   for (const option of select.options) option.disabled = !counts(variable(option.value)) && option.value !== wanted;
   select.value = wanted;
@@ -33,15 +26,15 @@ export function fill(select, wanted) {
 function rangeOf(name, chosen) {
   const present = value(name) ?? chosen(name) ?? 1;
   const found = range(variable(name), base(name) ?? chosen(name) ?? 1);
-  return { ...found, low: Math.min(found.low, present), high: Number.isFinite(present) ? Math.max(found.high, present) : found.high };
+  const fits = Number.isFinite(present) && (present > 0 || !found.log);
+  return fits ? { ...found, low: Math.min(found.low, present), high: Math.max(found.high, present) } : found;
 }
 
 class Picture {
-  constructor(box, text, pick, say) {
-    this.plot = new Plot(box, pick);
+  constructor(box, text, pick) {
+    this.plot = new Plot(box, pick, commit);
     this.plot.left = 62;
     this.text = text;
-    this.say = say;
     this.engine = new Engine(20000);
     this.visible = true;
     this.key = "";
@@ -72,7 +65,7 @@ class Picture {
       this.done();
     } catch (error) {
       if (error instanceof Superseded) return;
-      this.text.textContent = error.message;
+      this.text.textContent = `stopped: ${error.message}`;
     }
   }
 
@@ -82,16 +75,17 @@ class Picture {
 }
 
 export class Diagram extends Picture {
-  constructor(box, text, chosen, say) {
-    super(box, text, ({ x }) => { set(this.asked.name, Number(x.toPrecision(4))); commit(); }, say);
+  constructor(box, text, chosen) {
+    super(box, text, ({ x }) => set(this.asked.name, Number(x.toPrecision(4))));
     this.chosen = chosen;
   }
 
   question() {
     const { name, shown, from, to } = state.diagram;
     const found = rangeOf(name, this.chosen);
-    const has = Number.isFinite(from) && Number.isFinite(to) && to > from;
-    this.range = has ? { low: from, high: to, log: found.log && from > 0 && to / from > 3 } : found;
+    const range = { low: from ?? found.low, high: to ?? found.high };
+    this.isEmpty = !(range.high > range.low);
+    this.range = this.isEmpty ? found : { ...range, log: found.log && range.low > 0 && range.high / range.low > 3 };
     const without = machine();
     without.values = without.values.filter(([other]) => other !== name);
     return { job: "diagram", machine: without, name, shown, values: between(this.range, COLUMNS), transient: TRANSIENT, points: POINTS };
@@ -114,7 +108,8 @@ export class Diagram extends Picture {
 
   done() {
     const points = this.columns.reduce((sum, column) => sum + column.length, 0);
-    this.text.textContent = `${points} points at ${this.columns.length} values in ${(this.took / 1000).toFixed(2)} s`;
+    const range = this.isEmpty ? " (the range given is empty)" : "";
+    this.text.textContent = `${points} points at ${this.columns.length} values${range} after ${TRANSIENT} periods, in ${(this.took / 1000).toFixed(2)} s. Click to take a value.`;
   }
 
   paint() {
@@ -156,23 +151,28 @@ function shade(part) {
   return stops[k].map((from, index) => Math.round(from + (stops[k + 1][index] - from) * (place - k)));
 }
 
-/** What takes the place of a parameter that has no effect with the present circuit. */
-const INSTEAD = { "zener.voltage": "storage.voltage", "storage.voltage": "zener.voltage", "load.resistance": "excitation.amplitude" };
+/** What takes the place of a parameter that has no effect at present. */
+const INSTEAD = ["zener.voltage", "storage.voltage", "load.resistance", "biasVoltage", "excitation.frequency"];
 
-/** The parameters of the map. */
+/** The parameters of the map: two that differ and have an effect. */
 export function axes() {
-  return [state.map.x, state.map.y].map((name) => (counts(variable(name)) ? name : INSTEAD[name] ?? name));
+  const { x, y } = state.map;
+  const found = [];
+  for (const name of [x, y]) {
+    const fits = (it) => !found.includes(it) && counts(variable(it));
+    found.push(fits(name) ? name : INSTEAD.find((it) => fits(it) && it !== y) ?? name);
+  }
+  return found;
 }
 
 export class PowerMap extends Picture {
   /** `highest` tells by how much impacts raise the voltage of a membrane from which no charge is let out. */
-  constructor(box, text, chosen, highest, say) {
+  constructor(box, text, chosen, highest) {
     const pick = ({ x, y }) => {
       const [nameX, nameY] = axes();
       change((state) => { state.set[nameX] = Number(x.toPrecision(4)); state.set[nameY] = Number(y.toPrecision(4)); });
-      commit();
     };
-    super(box, text, pick, say);
+    super(box, text, pick);
     this.chosen = chosen;
     this.highest = highest;
     this.plot.over.addEventListener("pointermove", (event) => this.tell(event));
@@ -199,11 +199,14 @@ export class PowerMap extends Picture {
   begin(question) {
     this.asked = question;
     this.cells = [];
+    this.fault = undefined;
     this.text.textContent = "computing";
   }
 
-  take({ row, cells }) {
+  take({ row, cells, fault }) {
     this.cells[row] = cells;
+    this.fault ??= fault;
+    this.text.textContent = `computing: ${row + 1} of ${CELLS[1]} rows`;
   }
 
   best() {
@@ -220,19 +223,20 @@ export class PowerMap extends Picture {
   done() {
     const [x, y] = [this.asked.x, this.asked.y].map(variable);
     const best = this.best();
-    const where = best && `largest ${(best.power * 1e6).toFixed(1)} \u00b5W at ${quantity(best.x, x.unit ?? "", 3)}, ${quantity(best.y, y.unit ?? "", 3)}`;
-    this.text.textContent = `${where ?? "no machine within the limits of its films"}; ${CELLS[0] * CELLS[1]} runs in ${(this.took / 1000).toFixed(2)} s. Hatched: a film fails. Click to go there.`;
+    const place = best && `${quantity(best.x, x.unit ?? "", 3)}, ${quantity(best.y, y.unit ?? "", 3)}`;
+    const nothing = this.cells.every((cells) => cells.every((it, k) => k % 2 || Number.isNaN(it))) && this.fault ? `none of them runs: ${this.fault}` : "no machine within the limits of its films";
+    const where = !best ? nothing : best.power > 0 ? `largest ${quantity(best.power, "W", 4)} at ${place}` : "nothing gains here";
+    this.text.textContent = `${where}. ${CELLS[0] * CELLS[1]} runs in ${(this.took / 1000).toFixed(2)} s. Hatched: a film fails. Click to go there.`;
   }
 
   tell(event) {
     const place = this.plot.place(event);
     if (!place?.inside || !this.cells?.length) return;
-    const nearest = (values, wanted) => values.reduce((best, it, k) => (Math.abs(Math.log(it / wanted)) < Math.abs(Math.log(values[best] / wanted)) ? k : best), 0);
-    const [column, row] = [nearest(this.asked.xs, place.x), nearest(this.asked.ys, place.y)];
+    const [column, row] = [place.part.x, place.part.y].map((part, axis) => Math.min(CELLS[axis] - 1, Math.floor(part * CELLS[axis])));
     const power = this.cells[row]?.[2 * column];
     if (power === undefined) return;
     const [x, y] = [this.asked.x, this.asked.y].map(variable);
-    this.text.textContent = `${Number.isFinite(power) ? `${(power * 1e6).toFixed(2)} \u00b5W` : "no such machine"} at ${quantity(this.asked.xs[column], x.unit ?? "", 3)}, ${quantity(this.asked.ys[row], y.unit ?? "", 3)}`;
+    this.text.textContent = `${Number.isFinite(power) ? quantity(power, "W", 4) : "no such machine"} at ${quantity(this.asked.xs[column], x.unit ?? "", 3)}, ${quantity(this.asked.ys[row], y.unit ?? "", 3)}`;
   }
 
   paint() {

@@ -31,26 +31,34 @@ function decades(low, high, count) {
 }
 
 export class Plot {
-  /** A chart in `box`; `pick` gets the place at which a user clicks or drags. */
-  constructor(box, pick) {
+  /** A chart in `box`; `pick` gets the place at which a user clicks or drags, `picked` is called when that ends. */
+  constructor(box, pick, picked = () => {}) {
     this.box = box;
     this.base = document.createElement("canvas");
     this.over = document.createElement("canvas");
     box.append(this.base, this.over);
     this.spec = null;
     this.left = 52;
-    if (pick) this.listen(pick);
+    if (pick) this.listen(pick, picked);
   }
 
-  listen(pick) {
+  listen(pick, picked) {
     let down = false;
-    const act = (event) => {
+    this.over.addEventListener("pointerdown", (event) => {
       const place = this.place(event);
-      if (place) pick(place);
-    };
-    this.over.addEventListener("pointerdown", (event) => { down = true; this.over.setPointerCapture(event.pointerId); act(event); });
-    this.over.addEventListener("pointermove", (event) => { if (down) act(event); });
-    for (const name of ["pointerup", "pointercancel"]) this.over.addEventListener(name, () => { down = false; });
+      // Numbers beside the axes are no place to pick.
+      if (!place?.inside) return;
+      down = true;
+      this.over.setPointerCapture(event.pointerId);
+      pick(place);
+    });
+    this.over.addEventListener("pointermove", (event) => { if (down) pick(this.place(event)); });
+    for (const name of ["pointerup", "pointercancel"]) {
+      this.over.addEventListener(name, () => {
+        if (down) picked();
+        down = false;
+      });
+    }
   }
 
   /** Where a pointer is, in the units of the axes. */
@@ -59,7 +67,10 @@ export class Plot {
     const bounds = this.over.getBoundingClientRect();
     const { x, y } = this.scales(bounds.width, bounds.height);
     const [px, py] = [event.clientX - bounds.left, event.clientY - bounds.top];
-    return { x: x.back(px), y: y.back(py), inside: px >= this.left && py <= bounds.height - 24 };
+    const [width, height] = [bounds.width - 8 - this.left, bounds.height - 30];
+    const part = { x: (px - this.left) / width, y: (bounds.height - 22 - py) / height };
+    const inside = [part.x, part.y].every((it) => it >= 0 && it <= 1);
+    return { x: x.back(px), y: y.back(py), part, inside };
   }
 
   scales(width, height) {
@@ -167,7 +178,7 @@ export class Plot {
   }
 }
 
-const label = (value) => (value >= 1e4 || value < 1e-2 ? value.toExponential(value.toExponential().length > 6 ? 1 : 0).replace("e+", "e") : short(value, 3));
+const label = (value) => (value >= 1e4 || value < 1e-2 ? Number(value.toPrecision(2)).toExponential().replace("e+", "e") : short(value, 3));
 
 /** A curve through rows: columns `a` and `b`, each times a factor. */
 export function curve(pen, x, y, rows, width, a, b, scale = [1, 1], shift = [0, 0]) {

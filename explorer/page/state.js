@@ -1,15 +1,44 @@
 // What the user has chosen, its history, and its text in the address of the page.
 import { cases, initial, variable } from "./description.js";
 
-/** Longest file that a link carries, in letters of its compressed text. */
+/** Longest file that a link carries, in letters of its compressed text, and in bytes of its own. */
 const LONGEST = 24000;
+const LARGEST = 2 ** 23;
+/** Steps back that are kept. */
+const STEPS = 200;
+
+export const SPANS = [1, 2, 4, 8, 20, 60];
+export const SHOWN = {
+  Speed: { text: "relative speed of impacts, m/s", factor: 1 },
+  Phase: { text: "phase of impacts in the period", factor: 1 },
+  Interval: { text: "periods from impact to impact", factor: 1 },
+  Voltage: { text: "U_DE4 of impacts at biasVoltage, V", factor: 1 },
+  Displacement: { text: "relative displacement each period, mm", factor: 1e3 },
+};
 
 const DEFAULT = {
   case: "fig14", set: {}, files: {}, until: 100, from: 50, begin: 50, span: 4,
   diagram: { name: "membrane.restitution", shown: "Speed" }, map: { x: "zener.voltage", y: "load.resistance" },
 };
 
-export const state = { ...structuredClone(DEFAULT), ...structuredClone(initial ?? {}) };
+/** Voltages that follow from the harvester where none is given. */
+const CHOSEN = new Set(["supply.voltage", "zener.voltage", "storage.voltage"]);
+
+// Texts of files by number: the state and its history have only the numbers.
+const texts = [];
+
+/** Keeps a file for the state. */
+export function keepFile(name, text) {
+  return { name, id: texts.push({ name, text, packed: null }) - 1 };
+}
+
+/** The text of the file with this number. */
+export const textOf = (id) => texts[id].text;
+
+const begun = structuredClone(initial ?? {});
+for (const [name, file] of Object.entries(begun.files ?? {})) begun.files[name] = keepFile(file.name, file.text);
+
+export const state = { ...structuredClone(DEFAULT), ...begun };
 
 // JSON knows no infinity, which a load resistance may be.
 const INFINITE = "Infinity";
@@ -17,20 +46,25 @@ const pack = () => JSON.stringify(state, (_, wanted) => (wanted === Infinity ? I
 const unpack = (text) => JSON.parse(text, (_, wanted) => (wanted === INFINITE ? Infinity : wanted));
 
 const listeners = [];
+const historyListeners = [];
 const past = [];
 const future = [];
 let kept = pack();
 let timer = 0;
 
-/** Calls `listener` after each change. */
-export const listen = (listener) => listeners.push(listener);
+/** Calls `listener` after each change of the state, and `ofHistory` after each change of what can be undone. */
+export function listen(listener, ofHistory) {
+  listeners.push(listener);
+  historyListeners.push(ofHistory);
+}
+
+const notify = () => listeners.forEach((listener) => listener());
+const notifyHistory = () => historyListeners.forEach((listener) => listener());
 
 export const published = () => cases.find((it) => it.name === state.case) ?? cases[0];
 
-/** The value of a variable in the case, without what the user has set. */
-export function base(name) {
-  return published().settings[name] ?? variable(name)?.start;
-}
+/** The value of a variable in the case, without what the user has set; undefined where it follows from others. */
+export const base = (name) => published().settings[name] ?? (CHOSEN.has(name) ? undefined : variable(name)?.start);
 
 /** The value of a variable; undefined where the model chooses it. */
 export const value = (name) => state.set[name] ?? base(name);
@@ -40,50 +74,47 @@ export function counts({ condition }) {
   return !condition || condition.values.includes(value(condition.name));
 }
 
-function notify() {
-  for (const listener of listeners) listener();
-}
-
-/** Keeps the present state for undo, once the user has paused. */
-function keep() {
-  clearTimeout(timer);
-  timer = setTimeout(commit, 400);
-}
-
 export function commit() {
   clearTimeout(timer);
   const now = pack();
   if (now === kept) return;
   past.push(kept);
-  if (past.length > 200) past.shift();
+  if (past.length > STEPS) past.shift();
   future.length = 0;
   kept = now;
   write();
-  notify();
+  notifyHistory();
 }
 
-/** Changes the state by a function. */
+/** Changes the state by a function; it can be undone once the user has paused. */
 export function change(edit) {
   edit(state);
-  keep();
+  future.length = 0;
+  clearTimeout(timer);
+  timer = setTimeout(commit, 400);
   notify();
+  notifyHistory();
 }
 
 /** Sets a variable; undefined takes the case's value again. */
 export function set(name, wanted) {
   change((state) => {
-    const same = wanted === undefined || wanted === base(name);
-    if (same) delete state.set[name];
+    if (wanted === undefined || wanted === base(name)) delete state.set[name];
     else state.set[name] = wanted;
   });
 }
 
-function restore(text) {
+function assign(wanted) {
   for (const key of Object.keys(state)) delete state[key];
-  Object.assign(state, unpack(text));
+  Object.assign(state, wanted);
+}
+
+function restore(text) {
+  assign(unpack(text));
   kept = text;
   write();
   notify();
+  notifyHistory();
 }
 
 export const canUndo = () => past.length > 0 || pack() !== kept;
@@ -97,16 +128,40 @@ export function undo() {
 }
 
 export function redo() {
+  commit();
   if (!future.length) return;
   past.push(kept);
   restore(future.pop());
 }
 
-const pipe = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+/** What a stream makes of `bytes`, if that is not too large. */
+async function pipe(bytes, stream) {
+  const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
+  const parts = [];
+  let size = 0;
+  for (;;) {
+    const { done, value: part } = await reader.read();
+    if (done) break;
+    size += part.length;
+    if (size > LARGEST) throw new Error(`more than ${LARGEST} bytes`);
+    parts.push(part);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
+}
+
 const toBase64 = (bytes) => btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 const fromBase64 = (text) => Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
 
-/** The state as the fragment of an address, and files that are too long for it. */
+/** The text of a file for a link; empty if that would be too long. */
+async function packed(id) {
+  const file = texts[id];
+  // Nothing packs to less than a thousandth.
+  if (file.text.length > 1000 * LONGEST) return "";
+  file.packed ??= pipe(new TextEncoder().encode(file.text), new CompressionStream("deflate-raw")).then((bytes) => (bytes.length * 4 > LONGEST * 3 ? "" : toBase64(bytes)), () => "");
+  return file.packed;
+}
+
+/** The state as the fragment of an address, and names of files that are too long for it. */
 export async function fragment() {
   const parts = new URLSearchParams({ case: state.case });
   for (const [name, wanted] of Object.entries(state.set)) parts.set(name, wanted);
@@ -117,22 +172,30 @@ export async function fragment() {
   if (JSON.stringify(diagram) !== JSON.stringify(DEFAULT.diagram)) parts.set("diagram", [diagram.name, diagram.shown, diagram.from ?? "", diagram.to ?? ""].join(","));
   if (JSON.stringify(map) !== JSON.stringify(DEFAULT.map)) parts.set("map", [map.x, map.y].join(","));
   const left = [];
-  for (const [name, file] of Object.entries(state.files)) {
-    const packed = toBase64(await pipe(new TextEncoder().encode(file.text), new CompressionStream("deflate-raw")));
-    if (packed.length > LONGEST) left.push(file.name);
-    else parts.set(name, `${file.name},${packed}`);
+  for (const [name, file] of Object.entries({ ...state.files })) {
+    const text = await packed(file.id);
+    if (!text) left.push(file.name);
+    parts.set(name, `${file.name},${text}`);
   }
   return { text: `#${parts}`, left };
 }
 
 let written = "";
 let wasRead = false;
+let writes = 0;
 
 /** Puts the state into the address of the page. */
 async function write() {
+  const number = ++writes;
   const { text } = await fragment();
+  // Another one may have overtaken it.
+  if (number !== writes) return;
   written = text;
-  history.replaceState(null, "", text);
+  try {
+    history.replaceState(null, "", text);
+  } catch {
+    // Browsers bound how often an address may change; the next change has this one in it.
+  }
 }
 
 /** A number, a choice or a switch as an address has it; an error says what it is not. */
@@ -147,34 +210,56 @@ function parse(found, text) {
   return number;
 }
 
-async function readPart(read, key, text) {
+function real(what, name) {
+  if (variable(name)?.kind !== "real") throw new Error(`${what} over ${name}: no such number`);
+  return name;
+}
+
+/** A file as an address has it: its content, or its name alone, which the page may know. */
+async function readFile(key, text) {
+  const comma = text.indexOf(",");
+  const [name, content] = [text.slice(0, comma), text.slice(comma + 1)];
+  if (content === "") {
+    const known = texts.findLastIndex((file) => file.name === name);
+    if (known < 0) throw new Error(`${key} = ${name}: too long for a link; drop the file here`);
+    return { name, id: known };
+  }
+  try {
+    return keepFile(name, new TextDecoder().decode(await pipe(fromBase64(content), new DecompressionStream("deflate-raw"))));
+  } catch {
+    throw new Error(`${key} = ${name}: the link is damaged`);
+  }
+}
+
+async function readPart(wanted, key, text) {
   if (key === "case") return;
-  if (["until", "from", "begin", "span"].includes(key)) {
+  if (["until", "from", "begin"].includes(key)) {
     const number = Number(text);
-    if (!(number >= 0)) throw new Error(`${key} = ${text}: no time`);
-    read[key] = number;
+    if (!(number >= 0) || text === "") throw new Error(`${key} = ${text}: no time`);
+    wanted[key] = number;
+  } else if (key === "span") {
+    if (!SPANS.includes(Number(text))) throw new Error(`span = ${text}: allowed: ${SPANS.join(", ")}`);
+    wanted.span = Number(text);
   } else if (key === "diagram") {
     const [name, shown, from, to] = text.split(",");
-    if (!variable(name)) throw new Error(`diagram over ${name}: no such parameter`);
-    read.diagram = { name, shown, ...(from && to ? { from: Number(from), to: Number(to) } : {}) };
+    if (!(shown in SHOWN)) throw new Error(`diagram of ${shown}: allowed: ${Object.keys(SHOWN).join(", ")}`);
+    wanted.diagram = { name: real("diagram", name), shown, ...(from && to ? { from: Number(from), to: Number(to) } : {}) };
   } else if (key === "map") {
-    const [x, y] = text.split(",");
-    if (!variable(x) || !variable(y)) throw new Error(`map over ${x} and ${y}: no such parameters`);
-    read.map = { x, y };
+    const [x, y] = text.split(",").map((name) => real("map", name));
+    if (y === undefined || x === y) throw new Error(`map over ${text}: two different numbers are wanted`);
+    wanted.map = { x, y };
   } else {
     const found = variable(key);
     if (!found) throw new Error(`${key}: no such parameter`);
-    if (found.kind === "string") {
-      const [name, packed] = text.split(",");
-      read.files[key] = { name, text: new TextDecoder().decode(await pipe(fromBase64(packed), new DecompressionStream("deflate-raw"))) };
-    } else {
-      read.set[key] = parse(found, text);
-    }
+    if (found.kind === "string") wanted.files[key] = await readFile(key, text);
+    else wanted.set[key] = parse(found, text);
   }
 }
 
 /** Takes the state from the address of the page; texts say what was left out. */
 export async function read() {
+  const isFirst = !wasRead;
+  wasRead = true;
   if (location.hash.length < 2 || location.hash === written) return [];
   const parts = new URLSearchParams(location.hash.slice(1));
   const wanted = { ...structuredClone(DEFAULT), case: parts.get("case") ?? DEFAULT.case };
@@ -186,19 +271,22 @@ export async function read() {
   for (const [key, text] of parts) {
     await readPart(wanted, key, text).catch((error) => left.push(`${error.message}; left out`));
   }
-  Object.assign(state, wanted);
-  // The first address is what the page begins with.
-  if (!wasRead) kept = pack();
-  wasRead = true;
   commit();
-  notify();
+  assign(wanted);
+  if (isFirst) {
+    // What the page begins with is nothing to undo.
+    kept = pack();
+  } else {
+    commit();
+    notify();
+  }
   return left;
 }
 
-/** The machine as the thread that computes takes it. */
+/** The machine as the thread that computes takes it; files by number. */
 export function machine() {
   const values = Object.entries({ ...published().settings, ...state.set }).map(([name, wanted]) => [name, number(name, wanted)]);
-  const files = Object.fromEntries(["excitation.file", "membrane.file"].map((name) => [name, state.files[name]?.text ?? ""]));
+  const files = Object.fromEntries(Object.entries(state.files).map(([name, { id }]) => [name, id]));
   return { values, files };
 }
 

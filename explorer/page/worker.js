@@ -1,22 +1,35 @@
-// Computes what the page asks for, in a thread of its own. A message is { id, machine, job, ...}; the answer has the same id.
+// Computes what the page asks for, in a thread of its own. A message is { id, machine, texts, job, ... }; the answer has the same id.
 
 let machine = null;
 let names = null;
-// Files that the machine has already read.
-let files = {};
+// Settles once the model can be called: questions may come before.
+let ready = null;
+// Texts of files by number, and the numbers of those that the machine has read.
+const texts = new Map();
+const taken = new Map();
 
-/** Sets the machine: numbers by name, and the texts of its files. */
-function set(wanted) {
-  machine ??= new wasm_bindgen.Machine();
-  for (const [name, text] of Object.entries(wanted.files)) {
-    if (files[name] === text) continue;
-    delete files[name];
-    if (name === "excitation.file") machine.setRecording(text);
-    if (name === "membrane.file") machine.setTable(text);
-    files[name] = text;
-  }
+async function start(module) {
+  await wasm_bindgen({ module_or_path: module });
+  const { Machine, Outcome } = wasm_bindgen;
+  names = { outcome: Outcome.names(), derived: Machine.derivedNames(), motion: Machine.motionNames() };
+  machine = new Machine();
+}
+
+/** Gives the machine a file, or takes it away. */
+function takeFile(name, id) {
+  if (taken.get(name) === id) return;
+  taken.delete(name);
+  const text = id === undefined ? "" : texts.get(id);
+  if (name === "excitation.file") machine.setRecording(text);
+  else machine.setTable(text);
+  taken.set(name, id);
+}
+
+/** Sets the machine: numbers by name, and files by number. */
+function set({ values, files }) {
+  for (const name of ["excitation.file", "membrane.file"]) takeFile(name, files[name]);
   machine.clear();
-  for (const [name, value] of wanted.values) machine.set(name, value);
+  for (const [name, value] of values) machine.set(name, value);
 }
 
 /** What a picture of the motion and the numbers beside it need. */
@@ -53,7 +66,7 @@ function* diagram({ name, values, transient, points, shown }) {
 function* power({ x, xs, y, ys, from, until }) {
   const map = new wasm_bindgen.Map(machine, x, xs, y, from, until);
   try {
-    for (let row = 0; row < ys.length; row++) yield { row, cells: map.row(ys[row]) };
+    for (let row = 0; row < ys.length; row++) yield { row, cells: map.row(ys[row]), fault: map.fault() };
   } finally {
     map.free();
   }
@@ -68,13 +81,15 @@ const jobs = {
 
 self.onmessage = async ({ data }) => {
   if (data.module) {
-    await wasm_bindgen({ module_or_path: data.module });
-    const { Machine, Outcome } = wasm_bindgen;
-    names = { outcome: Outcome.names(), derived: Machine.derivedNames(), motion: Machine.motionNames() };
+    ready = start(data.module);
+    // A question waits for it, too, and says what is wrong.
+    ready.catch(() => {});
     return;
   }
   const { id } = data;
   try {
+    await ready;
+    for (const [number, text] of data.texts) texts.set(number, text);
     set(data.machine);
     for (const part of jobs[data.job](data)) self.postMessage({ id, part });
     self.postMessage({ id, done: true });

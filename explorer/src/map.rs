@@ -1,5 +1,7 @@
 //! Net power over two variables, row by row.
 
+use std::cell::RefCell;
+
 use videg_coupled::{CoupledError, Film, Results, Track, run_watched};
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -16,6 +18,8 @@ pub struct Map {
     window: [f64; 2],
     /// C(t), if it is the same in all rows.
     track: Option<Track>,
+    /// Why the first of those cells that have none has no number.
+    fault: RefCell<Option<String>>,
 }
 
 #[wasm_bindgen]
@@ -27,7 +31,7 @@ impl Map {
     #[wasm_bindgen(constructor)]
     pub fn new(machine: &Machine, x: &str, xs: Vec<f64>, y: &str, from: f64, until: f64) -> Result<Self, String> {
         let (machine, x, y) = (machine.clone(), Setter::of(x)?, Setter::of(y)?);
-        let mut map = Self { machine, x, y, xs, window: [from, until], track: None };
+        let mut map = Self { machine, x, y, xs, window: [from, until], track: None, fault: RefCell::default() };
         if x.is_electrical() && y.is_electrical() {
             map.track = map.track(&map.machine);
         }
@@ -43,8 +47,19 @@ impl Map {
         let machine = self.machine.with(self.y, y)?;
         let own = if self.track.is_none() && self.x.is_electrical() { self.track(&machine) } else { None };
         let track = self.track.as_ref().or(own.as_ref());
-        let cell = |x: &f64| self.cell(&machine, *x, track).unwrap_or([f64::NAN; 2]);
+        let cell = |x: &f64| {
+            let numbers = self.cell(&machine, *x, track);
+            numbers.unwrap_or_else(|reason| {
+                self.fault.borrow_mut().get_or_insert(reason);
+                [f64::NAN; 2]
+            })
+        };
         Ok(self.xs.iter().flat_map(cell).collect())
+    }
+
+    /// Why the first cell without a number has none, if there is one so far.
+    pub fn fault(&self) -> Option<String> {
+        self.fault.borrow().clone()
     }
 }
 

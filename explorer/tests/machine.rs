@@ -101,7 +101,9 @@ proptest! {
             prop_assert_eq!(cells[2 * k + 1], over.into_iter().fold(0.0, f64::max));
         }
         // A release below the supply is no machine.
+        prop_assert_eq!(map.fault(), None);
         prop_assert!(map.row(1000.0).unwrap().iter().all(|value| value.is_nan()));
+        prop_assert!(map.fault().unwrap().contains("zener.voltage"));
     }
 
     #[test]
