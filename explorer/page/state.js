@@ -186,10 +186,10 @@ let writes = 0;
 
 /** Puts the state into the address of the page. */
 async function write() {
-  const number = ++writes;
+  const [number, before] = [++writes, location.hash];
   const { text } = await fragment();
-  // Another one may have overtaken it.
-  if (number !== writes) return;
+  // Another one, or another address, may have overtaken it.
+  if (number !== writes || location.hash !== before) return;
   written = text;
   try {
     history.replaceState(null, "", text);
