@@ -104,6 +104,7 @@ export class Diagram extends Picture {
       this.columns[index] = columns.subarray(at + 1, at + 1 + count);
       at += 1 + count;
     }
+    this.text.textContent = `computing: ${this.columns.length} of ${COLUMNS} values`;
   }
 
   done() {

@@ -55,7 +55,7 @@ function live({ from, until, begin, end, spacing }) {
 
 /** A bifurcation diagram, some columns at a time. */
 function* diagram({ name, values, transient, points, shown }) {
-  const chunk = 20;
+  const chunk = 10;
   for (let first = 0; first < values.length; first += chunk) {
     const part = values.slice(first, first + chunk);
     yield { first, columns: machine.diagram(name, part, transient, points, wasm_bindgen.Shown[shown]) };
