@@ -1,15 +1,15 @@
-//! Where a run first leaves the limits of its films.
+//! What a run takes of the limits of its films, and where it first leaves them.
 
 use videg_coupled::{Film, Watch};
 use videg_model::{Excess, Membrane};
 
-/// What a run takes of the limits, and where each was first left.
+/// What a run takes of the limits.
 #[derive(Default)]
 pub struct Limits {
     film: Film,
-    membrane: Option<Membrane>,
-    pub first: Vec<Excess>,
+    /// Largest deflection, m.
     pub deepest: f64,
+    /// Highest voltage, V.
     pub highest: f64,
 }
 
@@ -24,19 +24,39 @@ impl Watch for Limits {
     const LOOKS: bool = true;
 
     fn begin(&mut self, membrane: &Membrane) {
-        *self = Self { membrane: Some(membrane.clone()), ..Self::default() };
+        *self = Self::default();
         self.film.begin(membrane);
     }
 
     fn look(&mut self, time: f64, deflections: [f64; 2], voltages: [f64; 2]) {
         self.film.look(time, deflections, voltages);
-        let Some(membrane) = &self.membrane else { return };
         for (deflection, voltage) in deflections.into_iter().zip(voltages) {
             self.deepest = self.deepest.max(deflection);
             self.highest = self.highest.max(voltage);
+        }
+    }
+}
+
+/// Where each limit is first left, which is more work than [`Limits`].
+#[derive(Default)]
+pub struct FirstExcesses {
+    membrane: Option<Membrane>,
+    pub found: Vec<Excess>,
+}
+
+impl Watch for FirstExcesses {
+    const LOOKS: bool = true;
+
+    fn begin(&mut self, membrane: &Membrane) {
+        *self = Self { membrane: Some(membrane.clone()), found: Vec::new() };
+    }
+
+    fn look(&mut self, time: f64, deflections: [f64; 2], voltages: [f64; 2]) {
+        let Some(membrane) = &self.membrane else { return };
+        for (deflection, voltage) in deflections.into_iter().zip(voltages) {
             for excess in membrane.excesses(deflection, voltage, time) {
-                if self.first.iter().all(|known| known.limit != excess.limit) {
-                    self.first.push(excess);
+                if self.found.iter().all(|known| known.limit != excess.limit) {
+                    self.found.push(excess);
                 }
             }
         }

@@ -1,9 +1,9 @@
 //! What a run gives.
 
-use videg_coupled::{OVER_LIMITS, Results, run_watched};
+use videg_coupled::{CoupledError, OVER_LIMITS, Results, run_watched};
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use crate::film::Limits;
+use crate::film::{FirstExcesses, Limits};
 use crate::machine::{Machine, times};
 
 /// Numbers of a run, in the order of [`Outcome::names`], and warnings about them.
@@ -66,12 +66,17 @@ impl Machine {
     /// # Errors
     /// Parameters that harvester or circuit refuse; times that are none; more events than can be resolved.
     pub fn run(&self, from: f64, until: f64) -> Result<Outcome, String> {
-        let settings = self.settings(until)?;
+        let (settings, times) = (self.settings(until)?, times(from, until));
+        let failed = |error: CoupledError| error.to_string();
         let mut limits = Limits::default();
-        let results = run_watched(self.setup(), &settings, &times(from, until), &mut limits);
-        let results = results.map_err(|error| error.to_string())?;
+        let results = run_watched(self.setup(), &settings, &times, &mut limits).map_err(failed)?;
         let mut warnings: Vec<_> = self.values.parameters.neglected_mass().iter().map(ToString::to_string).collect();
-        warnings.extend(limits.first.iter().map(ToString::to_string));
+        // Only a run that leaves them is asked where.
+        if limits.over_limits().iter().any(|share| *share > 1.0) {
+            let mut first = FirstExcesses::default();
+            run_watched(self.setup(), &settings, &times, &mut first).map_err(failed)?;
+            warnings.extend(first.found.iter().map(ToString::to_string));
+        }
         Ok(Outcome { values: numbers(&results, &limits).to_vec(), warnings })
     }
 }

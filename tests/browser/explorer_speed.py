@@ -40,6 +40,18 @@ def wait(page, condition):
         page.wait_for_timeout(10)
 
 
+def native(page):
+    """Milliseconds of the same run outside of a browser."""
+    command = ["cargo", "run", "--quiet", "--release", "--package", "videg-explorer", "--example", "native"]
+    machine = " ".join(f"{name}={value!r}" for name, value in page.evaluate("videg.machine().values"))
+    took = {}
+    for count in (1, 1, 201):
+        began = time.monotonic()
+        subprocess.run(command, cwd=harness.ROOT, check=True, capture_output=True, text=True, input=f"50 100 {machine}\n" * count)
+        took[count] = time.monotonic() - began
+    return 1000 * (took[201] - took[1]) / 200
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder, chromium.headless() as browser:
         path = Path(folder) / "explorer.html"
@@ -54,8 +66,9 @@ def main():
         frames = dragged["frames"]
         late = sum(frame > 20 for frame in frames)
         print(f"dragging a slider of Fig. 14: median of {len(frames)} frames {statistics.median(frames):.1f} ms, {late} above 20 ms; {dragged['answers']} machines computed")
-        print(f"a run of 100 s with its limits: {statistics.median(page.evaluate(RUNS)):.1f} ms")
         page.evaluate("videg.set('membrane.restitution', undefined)")
+        here, there = statistics.median(page.evaluate(RUNS)), native(page)
+        print(f"a run of 100 s with its limits: {here:.1f} ms, natively compiled {there:.1f} ms: {here / there:.2f} times")
         page.evaluate("document.getElementById('maps').scrollIntoView()")
         wait(page, "videg.settled && videg.diagram.took && videg.map.took")
         for name, text in (("diagram", "bifurcation diagram"), ("map", "map of net power")):
