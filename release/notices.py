@@ -11,25 +11,25 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# What is released, see release/program.sh.
-TARGETS = ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-msvc", "x86_64-apple-darwin", "aarch64-apple-darwin"]
+# What is released, see release/program.sh; the last one is the page of the explorer.
+TARGETS = ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-msvc", "x86_64-apple-darwin", "aarch64-apple-darwin", "wasm32-unknown-unknown"]
 TEXT = re.compile(r"(LICEN[CS]E|COPYING|NOTICE|UNLICENSE)", re.IGNORECASE)
 # Of several licences to choose from, the first of these is taken for a crate without a text of its own.
 KNOWN = {"MIT": ROOT / "release/licenses/MIT.txt", "Apache-2.0": ROOT / "LICENSE-APACHE"}
 
 
 def metadata() -> dict:
-    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--features", "embedded-fmus"]
+    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--features", "embedded-fmus,embedded-explorer"]
     filters = [argument for target in TARGETS for argument in ("--filter-platform", target)]
     return json.loads(subprocess.run(command + filters, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
 
 
 def linked(found: dict) -> list[dict]:
-    """The crates of others that the program and the extension module for Python are linked with, by name; those for building and
+    """The crates of others that the program, the page of the explorer and the extension module for Python are linked with, by name; those for building and
     testing are left out."""
     packages = {package["id"]: package for package in found["packages"]}
     nodes = {node["id"]: node for node in found["resolve"]["nodes"]}
-    todo = [found["resolve"]["root"], *(name for name, package in packages.items() if package["name"] == "videg-python")]
+    todo = [found["resolve"]["root"], *(name for name, package in packages.items() if package["name"] in ("videg-python", "videg-explorer"))]
     seen = set(todo)
     while todo:
         for dependency in nodes[todo.pop()]["deps"]:
