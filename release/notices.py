@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# What is released, see release/program.sh; the last one is the page of the explorer.
-TARGETS = ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-msvc", "x86_64-apple-darwin", "aarch64-apple-darwin", "wasm32-unknown-unknown"]
+# What is released, see release/program.sh.
+TARGETS = ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-msvc", "x86_64-apple-darwin", "aarch64-apple-darwin"]
 TEXT = re.compile(r"(LICEN[CS]E|COPYING|NOTICE|UNLICENSE)", re.IGNORECASE)
 # Of several licences to choose from, the first of these is taken for a crate without a text of its own.
 KNOWN = {"MIT": ROOT / "release/licenses/MIT.txt", "Apache-2.0": ROOT / "LICENSE-APACHE"}
