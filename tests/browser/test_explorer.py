@@ -57,12 +57,6 @@ def explorer(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope="session")
-def browser():
-    with chromium.headless() as browser:
-        yield browser
-
-
 class Visit:
     """The open page with all that it did wrong."""
 
