@@ -1,6 +1,6 @@
 // Sliders and fields for all parameters.
 import { groups, range } from "./description.js";
-import { base, change, commit, counts, keepFile, set, state, value } from "./state.js";
+import { base, change, commit, counts, hold, keepFile, set, state, value } from "./state.js";
 import { quantity, short, symbolNode } from "./format.js";
 
 const STEPS = 1000;
@@ -117,7 +117,8 @@ function number(variable, id, node, chosen, say) {
     const wanted = log ? low * (high / low) ** part : low + (high - low) * part;
     set(name, Number(wanted.toPrecision(4)));
   });
-  slider?.addEventListener("change", commit);
+  slider?.addEventListener("pointerdown", hold);
+  for (const name of ["change", "pointerup", "pointercancel"]) slider?.addEventListener(name, commit);
   const line = element("div", { class: "line" });
   if (slider) line.append(slider);
   line.append(field, element("span", { class: "unit" }, unit ?? ""));

@@ -1,7 +1,7 @@
 // Diagrams over ranges of parameters, computed in a thread of their own.
 import { range, variable, variables } from "./description.js";
 import { Engine, Superseded } from "./engine.js";
-import { SHOWN, base, change, commit, counts, machine, set, state, value } from "./state.js";
+import { SHOWN, base, change, commit, counts, hold, machine, set, state, value } from "./state.js";
 import { Plot, around, color } from "./plot.js";
 import { quantity, short } from "./format.js";
 
@@ -32,7 +32,11 @@ function rangeOf(name, chosen) {
 
 class Picture {
   constructor(box, text, pick) {
-    this.plot = new Plot(box, pick, commit);
+    const drag = (place) => {
+      hold();
+      pick(place);
+    };
+    this.plot = new Plot(box, drag, commit);
     this.plot.left = 62;
     this.text = text;
     this.engine = new Engine(20000);

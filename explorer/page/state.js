@@ -51,6 +51,7 @@ const past = [];
 const future = [];
 let kept = pack();
 let timer = 0;
+let held = false;
 
 /** Calls `listener` after each change of the state, and `ofHistory` after each change of what can be undone. */
 export function listen(listener, ofHistory) {
@@ -74,7 +75,15 @@ export function counts({ condition }) {
   return !condition || condition.values.includes(value(condition.name));
 }
 
+/** Takes all changes up to the next commit as one: a drag is a single step, however long it takes. */
+export function hold() {
+  held = true;
+  clearTimeout(timer);
+}
+
+/** Keeps the present state for undo, and puts it into the address. */
 export function commit() {
+  held = false;
   clearTimeout(timer);
   const now = pack();
   if (now === kept) return;
@@ -91,7 +100,7 @@ export function change(edit) {
   edit(state);
   future.length = 0;
   clearTimeout(timer);
-  timer = setTimeout(commit, 400);
+  if (!held) timer = setTimeout(commit, 400);
   notify();
   notifyHistory();
 }

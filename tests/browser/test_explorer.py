@@ -379,6 +379,7 @@ def test_undo_and_redo_lose_nothing(visit):
     page.mouse.down()
     for k in range(20):
         page.mouse.move(box["x"] + box["width"] * (1 / 3 + k / 100), box["y"] + 50)
+    page.wait_for_timeout(600)
     page.mouse.up()
     assert page.evaluate("'membrane.restitution' in videg.state.set")
     page.locator("#undo").click()
