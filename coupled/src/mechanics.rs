@@ -1,6 +1,6 @@
 //! The harvester's side of a run: C(t) in pieces between its knots.
 
-use videg_model::{ContactLaw, Harvester, Membrane, ModelError, Pulse, Setup, Side};
+use videg_model::{ContactLaw, Harvester, ModelError, Pulse, Setup, Side};
 
 use crate::CoupledError;
 use crate::averages::Gains;
@@ -86,11 +86,6 @@ impl Mechanics {
     /// The harvester where it is now.
     pub fn harvester(&self) -> &Harvester {
         &self.harvester
-    }
-
-    /// The films.
-    pub fn membrane(&self) -> &Membrane {
-        self.harvester.membrane()
     }
 
     /// C(t) at 0 s, before anything is followed.
@@ -236,7 +231,7 @@ fn balance(samples: &mut [[f64; 2]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use videg_model::Parameters;
+    use videg_model::{Membrane, Parameters};
 
     #[test]
     fn lines_are_as_close_to_a_pulse_as_they_say() {

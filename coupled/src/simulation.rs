@@ -10,7 +10,6 @@ use crate::{CoupledError, Electrics, Watch};
 /// Harvester and circuit on their way from 0 s, both membranes charged.
 pub struct Simulation<'w, W> {
     mechanics: Mechanics,
-    gains: Gains,
     pub(crate) electrics: Electrics<'w, W>,
 }
 
@@ -27,9 +26,9 @@ impl<'w, W: Watch> Simulation<'w, W> {
         watch: &'w mut W,
     ) -> Result<Self, CoupledError> {
         let mechanics = Mechanics::new(setup.into(), tolerance)?;
-        watch.begin(mechanics.membrane());
+        watch.begin(mechanics.harvester().membrane());
         let electrics = Electrics::new(settings, mechanics.start(), watch)?;
-        Ok(Self { gains: Gains::from(mechanics.harvester().totals()), mechanics, electrics })
+        Ok(Self { mechanics, electrics })
     }
 
     /// Goes on to `time`, s; not back.
@@ -37,8 +36,7 @@ impl<'w, W: Watch> Simulation<'w, W> {
     /// # Errors
     /// More events than can be resolved; numbers that are none.
     pub fn advance(&mut self, time: f64) -> Result<(), CoupledError> {
-        self.gains = self.mechanics.follow(time, &mut self.electrics)?;
-        Ok(())
+        self.mechanics.follow(time, &mut self.electrics).map(|_| ())
     }
 
     /// The harvester where it is now.
@@ -53,6 +51,6 @@ impl<'w, W: Watch> Simulation<'w, W> {
 
     /// The sums of the harvester so far.
     pub fn gains(&self) -> Gains {
-        self.gains
+        Gains::from(self.harvester().totals())
     }
 }

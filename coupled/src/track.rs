@@ -57,7 +57,7 @@ impl Track {
         };
         knots.shrink();
         let averages = Averages::over(times.window, &gains[0], &gains[1]);
-        let membrane = mechanics.membrane().clone();
+        let membrane = mechanics.harvester().membrane().clone();
         Ok(Some(Self { times: *times, membrane, averages, knots, edges }))
     }
 

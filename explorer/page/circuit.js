@@ -89,7 +89,6 @@ export class Circuit {
   prepare(rows, width, column, rest, [supplied, released]) {
     this.rest = rest;
     this.width = width;
-    this.column = column;
     const count = rows.length / width;
     const isShared = value("topology") === "sharedNode";
     const sides = isShared ? 1 : 2;
@@ -120,11 +119,10 @@ export class Circuit {
     this.total = Math.max(...moved.map(({ came, left }) => Math.max(came.at(-1) ?? 0, left.at(-1) ?? 0)), 1e-30);
   }
 
-  /** Shows the circuit at row `k` and a `part` of the way to the next one. */
-  move(rows, k, part) {
+  /** Shows the circuit at row `k` and a `part` of the way to the `next` one, where columns have the values that `at` tells. */
+  move(rows, { k, next, part }, at) {
     if (!this.moved) return;
-    const { width, column } = this;
-    const next = Math.min(k + 1, rows.length / width - 1);
+    const { width } = this;
     const between = (values) => values[k] + part * (values[next] - values[k]);
     const seconds = Math.max(1e-12, rows[next * width] - rows[k * width]);
     // Dashes of a picture move a few hundred pixels in all.
@@ -143,7 +141,6 @@ export class Circuit {
     this.loadBranch.classList.toggle("on", this.branches.some(({ leaving }) => leaving.classList.contains("on")));
     this.loadFlow.setAttribute("stroke-dashoffset", (-pixels * out).toFixed(1));
     this.plates.forEach(({ x, y, plates, text, volts }, side) => {
-      const at = (name) => { const c = column(name); return rows[k * width + c] + part * (rows[next * width + c] - rows[k * width + c]); };
       const name = side ? "right" : "left";
       const ratio = at(`${name}.capacitance`) / this.rest;
       const wide = Math.min(24, 13 * Math.sqrt(ratio));

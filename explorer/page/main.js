@@ -5,6 +5,7 @@ import { SHOWN, SPANS, canRedo, canUndo, change, commit, fragment, listen, machi
 import { build, show, take } from "./controls.js";
 import { Plot, around, color, curve } from "./plot.js";
 import { Device } from "./device.js";
+import { escape } from "./pen.js";
 import { Circuit } from "./circuit.js";
 import { Diagram, PowerMap, axes, fill } from "./maps.js";
 import { caseName, caseTitle, fmpy, python, save, toml } from "./exports.js";
@@ -122,13 +123,13 @@ function numbers() {
     ["travel of the ball", quantity(derived.travel, "m", 4)],
     ["cylinder / half travel", short(derived.gamma, 3)],
   ];
-  find("facts").replaceChildren(...facts.flatMap(([name, text]) => {
+  find("facts").replaceChildren(...facts.map(([name, text]) => {
     const box = document.createElement("div");
     const [term, data] = [document.createElement("dt"), document.createElement("dd")];
     term.textContent = name;
     data.textContent = text;
     box.append(term, data);
-    return [box];
+    return box;
   }));
   find("warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   flow(numbers);
@@ -165,13 +166,13 @@ const columnOf = (name, factor = 1, shift = 0) => {
   return Array.from({ length: shown.count }, (_, k) => (rows[k * width + at] - shift) * factor);
 };
 
-const pair = (pen, x, y, name, factor, shift = [0, 0]) => {
+const pair = (pen, x, y, name, factor) => {
   const { rows, width, column } = shown;
   pen.lineWidth = 1.6;
-  ["left", "right"].forEach((side, index) => {
+  for (const side of ["left", "right"]) {
     pen.strokeStyle = color(side);
-    curve(pen, x, y, rows, width, 0, column(`${side}.${name}`), [1, factor], [0, shift[index]]);
-  });
+    curve(pen, x, y, rows, width, 0, column(`${side}.${name}`), [1, factor]);
+  }
 };
 
 const level = (pen, y, size, value, name, dash = [4, 4]) => {
@@ -198,8 +199,7 @@ function charts() {
   } });
   const both = (name, factor) => [...columnOf(`left.${name}`, factor), ...columnOf(`right.${name}`, factor)];
   plots.capacitance.draw({ x, xUnit: "s", y: around(both("capacitance", 1e12)), draw: (pen, x, y) => pair(pen, x, y, "capacitance", 1e12) });
-  const [supply, zener, storage] = shown.voltages;
-  const release = value("release") === "storage" ? storage : zener;
+  const [supply, release] = supplyAndRelease();
   const voltages = both("voltage", 1);
   const highestShown = Math.max(largest(voltages), release);
   const limits = both("limit", 1).filter((volts) => volts < 3 * highestShown);
@@ -253,6 +253,12 @@ function net_energy() {
   return load.map((_, k) => at(k) - at(0));
 }
 
+/** Voltages of the supply, and at which charge is let out. */
+function supplyAndRelease() {
+  const [supply, zener, storage] = shown.voltages;
+  return [supply, value("release") === "storage" ? storage : zener];
+}
+
 /** Draws what does not move. */
 function scene() {
   const { derived, numbers } = shown;
@@ -266,8 +272,7 @@ function scene() {
   const seen = device.follows ? "To scale, and the picture follows the cylinder." : "To scale.";
   find("contact-note").textContent = `${seen} Arrow: acceleration of the cylinder. ${contact}`;
   circuit.build();
-  const [supply, zener, storage] = shown.voltages;
-  circuit.prepare(shown.rows, shown.width, shown.column, derived.restCapacitance, [supply, value("release") === "storage" ? storage : zener]);
+  circuit.prepare(shown.rows, shown.width, shown.column, derived.restCapacitance, supplyAndRelease());
   strongest = Math.max(largest(columnOf("cylinder.acceleration").map(Math.abs)), 1e-12);
 }
 
@@ -287,6 +292,7 @@ function locate(time) {
 function draw() {
   const { rows, width, column } = shown;
   const { k, next, part } = locate(clock);
+  /** A column now. */
   const at = (name) => {
     const index = column(name);
     return rows[k * width + index] + part * (rows[next * width + index] - rows[k * width + index]);
@@ -295,7 +301,7 @@ function draw() {
     cylinder: at("cylinder.position"), ball: at("ball.position"), left: at("left.deflection"), right: at("right.deflection"),
     push: at("cylinder.acceleration") / strongest,
   });
-  circuit.move(rows, k, part);
+  circuit.move(rows, { k, next, part }, at);
   for (const name of ["gap", "capacitance", "voltage", "energy"]) plots[name].cursor([{ x: clock }]);
   plots.phase.cursor([{ x: at("relative.displacement") * 1e3, y: at("relative.velocity"), color: color("accent") }]);
   find("clock").textContent = `${clock.toFixed(4)} s`;
@@ -372,7 +378,7 @@ async function picture() {
     add(`<text x="52" y="12" style="font:12px sans-serif" fill="${color("ink")}">${title}</text>`, 16);
     add(plots[name].svg(width, 170), 180);
   }
-  const title = caseTitle().replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  const title = escape(caseTitle());
   const text = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${top}" viewBox="0 0 ${width} ${top}"><rect width="100%" height="100%" fill="${color("page")}"/><text x="10" y="20" style="font:13px sans-serif" fill="${color("ink")}">${title}</text>${parts.join("\n")}</svg>\n`;
   save(`${caseName()}.svg`, text, "image/svg+xml");
 }

@@ -1,6 +1,7 @@
 // The part of a canvas's interface that the charts use, as SVG.
 
-const escape = (text) => String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+/** A text within SVG. */
+export const escape = (text) => String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 const fixed = (number) => String(Math.round(number * 100) / 100);
 
 export class SvgPen {
