@@ -189,6 +189,26 @@ impl Harvester {
         self.advance_shown(time, Some(&mut show))
     }
 
+    /// Moves on as [`Harvester::advance_with`] does, but no further than to the first knot of the capacitances behind the present
+    /// time, [`Harvester::next_knot`]; impacts are such knots. Whether it stopped at one.
+    ///
+    /// # Errors
+    /// As [`Harvester::advance`].
+    pub fn advance_to_knot(&mut self, time: f64, mut show: impl FnMut(&Event)) -> Result<bool, ModelError> {
+        loop {
+            let (now, impacts) = (self.time, self.totals().impacts);
+            let knot = self.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);
+            let end = knot.min(self.known_until()).min(time);
+            self.advance_shown(end, Some(&mut show))?;
+            if end == knot || self.totals().impacts > impacts {
+                return Ok(true);
+            }
+            if end >= time {
+                return Ok(false);
+            }
+        }
+    }
+
     #[inline]
     fn advance_shown(&mut self, time: f64, show: Option<&mut Show<'_>>) -> Result<(), ModelError> {
         if self.time <= time && time < self.calm_until {

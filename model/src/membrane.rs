@@ -122,6 +122,12 @@ impl Membrane {
         }
     }
 
+    /// W of an impact at relative `speed`, m/s, J: Eq. (13) at the largest deflection of Eq. (10), with `bias`, V.
+    pub fn impact_energy(&self, bias: f64, speed: f64) -> f64 {
+        let excess = self.capacitance_excess(self.deflection(speed));
+        crate::paper::impact::energy(bias, self.rest_capacitance(), excess)
+    }
+
     /// The same and its derivative, 1/m.
     pub(crate) fn capacitance_excess_and_slope(&self, deflection: f64) -> [f64; 2] {
         if let Some(measured) = self.measured_excess_and_slope(deflection) {

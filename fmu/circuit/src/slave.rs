@@ -1,7 +1,7 @@
 //! The circuit behind the functions of FMI.
 
-use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable};
-use videg_circuit::{Circuit, Error, Settings, State};
+use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Terminal, Variable};
+use videg_circuit::{Circuit, Error, Settings, State, names};
 
 use crate::harvesting::{Harvesting, REST_CAPACITANCE, handed_over};
 use crate::variables::VARIABLES;
@@ -19,7 +19,19 @@ impl Slave for Harvesting {
         .license("MIT OR Apache-2.0")
         .generation_tool(concat!("videg ", env!("CARGO_PKG_VERSION")))
         .default_experiment(0.0, 100.0, 1e-3)
-        .can_serialize();
+        .can_serialize()
+        .terminals(&[
+            Terminal {
+                name: "left",
+                description: "Left membrane, as a harvester sees it",
+                members: &[("capacitance", names::LEFT_CAPACITANCE), ("voltage", names::LEFT_VOLTAGE)],
+            },
+            Terminal {
+                name: "right",
+                description: "Right membrane, as a harvester sees it",
+                members: &[("capacitance", names::RIGHT_CAPACITANCE), ("voltage", names::RIGHT_VOLTAGE)],
+            },
+        ]);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES

@@ -2,14 +2,24 @@
 //! `InitialUnknowns` say.
 
 use HarvestingCircuit::Harvesting;
-use fmu_export::{changed_references, model_description};
+use fmu_export::{Standard, changed_references, model_description, terminals_and_icons};
 use fmu_host::initial::{found, promised};
 
+/// A file of the folder `modelDescription`.
+macro_rules! kept {
+    ($file:literal) => {
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../modelDescription/", $file)
+    };
+}
+
 #[test]
-fn the_packaged_model_description_is_that_of_the_variable_table() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../modelDescription/HarvestingCircuit.xml");
-    let made = model_description::<Harvesting>().unwrap();
-    videg_golden::model_description(path, &made, |kept, made| changed_references(kept, made).unwrap());
+fn the_packaged_model_descriptions_are_those_of_the_variable_table() {
+    let check = |path, made: &str| {
+        videg_golden::model_description(path, made, |kept, made| changed_references(kept, made).unwrap());
+    };
+    check(kept!("HarvestingCircuit.xml"), &model_description::<Harvesting>(Standard::Fmi2).unwrap());
+    check(kept!("fmi3/HarvestingCircuit.xml"), &model_description::<Harvesting>(Standard::Fmi3).unwrap());
+    check(kept!("fmi3/HarvestingCircuit.terminalsAndIcons.xml"), &terminals_and_icons::<Harvesting>(true).unwrap());
 }
 
 /// Size that a variable typically has.

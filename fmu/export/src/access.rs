@@ -1,14 +1,16 @@
 //! Which variables a Get or Set that is legal as such may name: the footnotes of the tables of FMI 2.0, sections 3.2.3
-//! and 4.2.4.
+//! and 4.2.4, and the descriptions of the states of FMI 3.0.
 
 use crate::call_state::{CallState, Legality};
+use crate::standard::Standard;
 use crate::variable::{Causality, Initial, Variability, Variable};
 
 impl<M> Variable<M> {
     /// Whether it is among the `InitialUnknowns` of `ModelStructure` (section 2.2.8): calculated outputs, calculated
-    /// parameters, continuous states and their derivatives.
+    /// parameters, continuous states and their derivatives; no clocks and what belongs to them.
     pub fn is_initial_unknown(&self, table: &[Self]) -> bool {
         self.initial() == Some(Initial::Calculated)
+            && self.is_of(Standard::Fmi2)
             && (matches!(self.causality(), Causality::Output | Causality::CalculatedParameter)
                 || self.derivative_of().is_some()
                 || self.is_continuous_state(table))
@@ -23,15 +25,17 @@ impl<M> Variable<M> {
     /// `initial = "exact"`; in initialization mode inputs, too; afterwards inputs and tunable parameters; in
     /// continuous-time mode continuous inputs and continuous states.
     ///
-    /// Inputs have no `initial`, so the standard does not let them be set before initialization mode. Importers set all
+    /// Inputs of FMI 2.0 have no `initial`, so that standard does not let them be set before initialization mode. Importers set all
     /// start values there: tolerated.
-    pub fn may_be_set(&self, table: &[Self], state: CallState) -> Legality {
-        use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete};
+    pub fn may_be_set(&self, table: &[Self], state: CallState, standard: Standard) -> Legality {
+        use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete, StepMode};
         let legal = match (self.causality(), state) {
             (Causality::Parameter, Instantiated | InitializationMode)
             | (Causality::Input, InitializationMode | StepComplete | EventMode) => true,
-            (Causality::Input, Instantiated) => return Legality::Tolerated,
-            (Causality::Parameter, StepComplete | EventMode) => self.variability() == Variability::Tunable,
+            (Causality::Input, StepMode) => self.clocks().is_empty(),
+            (Causality::Input, Instantiated) if standard == Standard::Fmi2 => return Legality::Tolerated,
+            (Causality::Input, Instantiated) => true,
+            (Causality::Parameter, StepComplete | StepMode | EventMode) => self.variability() == Variability::Tunable,
             (Causality::Input, ContinuousTimeMode) => self.variability() == Variability::Continuous,
             (_, ContinuousTimeMode) => self.is_continuous_state(table),
             _ => false,
@@ -40,8 +44,13 @@ impl<M> Variable<M> {
     }
 
     /// Whether it may be read in a state, if a Get is legal there: in initialization mode outputs and initial unknowns,
-    /// elsewhere everything. Importers show parameters and inputs in initialization mode, too: tolerated.
-    pub fn may_be_read(&self, table: &[Self], state: CallState) -> Legality {
+    /// elsewhere everything. Importers show parameters and inputs in initialization mode, too: tolerated. FMI 3.0 restricts clocked
+    /// variables only, which cannot be read between events; importers show them: tolerated.
+    pub fn may_be_read(&self, table: &[Self], state: CallState, standard: Standard) -> Legality {
+        if standard == Standard::Fmi3 {
+            let between = matches!(state, CallState::StepMode | CallState::ContinuousTimeMode);
+            return if between && !self.clocks().is_empty() { Legality::Tolerated } else { Legality::Legal };
+        }
         let restricted = state == CallState::InitializationMode && !self.is_initial_unknown(table);
         if restricted && self.causality() != Causality::Output { Legality::Tolerated } else { Legality::Legal }
     }

@@ -1,5 +1,6 @@
-//! Which function is legal in which state: one table, after those of FMI 2.0 for model exchange (section 3.2.3) and
-//! co-simulation (section 4.2.4). Which variables a legal Get or Set may name, their footnotes, is in `access.rs`.
+//! States of an instance, and which function is legal in which: the table of FMI 2.0, after those for model exchange (section
+//! 3.2.3) and co-simulation (section 4.2.4). That of FMI 3.0 is in `fmi3/call_table.rs`. Which variables a legal Get or Set may
+//! name, their footnotes, is in `access.rs`.
 //!
 //! One rule of section 4.2.4 is left to the importer: that no Get follows a Set before the next step. Importers do it at
 //! every communication point, and what they read is well defined: outputs of the last step, inputs as set.
@@ -35,7 +36,7 @@ macro_rules! call_states {
 
         impl CallState {
             /// All states, in the order of their numbers.
-            pub const ALL: [Self; 11] = [$(Self::$state,)*];
+            pub const ALL: [Self; 13] = [$(Self::$state,)*];
         }
 
         impl fmt::Display for CallState {
@@ -44,7 +45,7 @@ macro_rules! call_states {
             }
         }
 
-        $(const $bit: u16 = CallState::$state.bit();)*
+        $(pub(crate) const $bit: u16 = CallState::$state.bit();)*
     };
 }
 
@@ -53,7 +54,7 @@ call_states! {
     Instantiated "instantiated" INST;
     /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
     InitializationMode "initializationMode" INIT;
-    /// Initialised, between two steps.
+    /// FMI 2.0: initialised, between two steps.
     StepComplete "stepComplete" DONE;
     /// An asynchronous step is under way. No instance of this exporter ever is here.
     StepInProgress "stepInProgress" BUSY;
@@ -63,14 +64,18 @@ call_states! {
     StepCanceled "stepCanceled" CANC;
     /// After `fmi2Terminate`.
     Terminated "terminated" TERM;
-    /// After any call that returned `fmi2Error`.
+    /// FMI 2.0: after any call that returned `fmi2Error`.
     Error "error" ERR;
     /// After a call that returned `fmi2Fatal`.
     Fatal "fatal" FATAL;
-    /// Model exchange: initialised, at an event.
+    /// Initialised, at an event; co-simulation of FMI 2.0 has none.
     EventMode "eventMode" EVENT;
     /// Model exchange: between events.
     ContinuousTimeMode "continuousTimeMode" CONT;
+    /// FMI 3.0, co-simulation: initialised, between two steps.
+    StepMode "stepMode" STEP;
+    /// FMI 3.0, co-simulation: within a step, while the importer looks at intermediate values.
+    IntermediateUpdateMode "intermediateUpdateMode" INTER;
 }
 
 impl CallState {
@@ -90,21 +95,58 @@ impl CallState {
 pub enum Legality {
     /// FMI 2.0 allows it.
     Legal,
-    /// FMI 2.0 forbids it, but importers do it and no harm comes of it: it works, and is logged.
+    /// The standard forbids it, but importers do it and no harm comes of it: it works, and is logged.
     Tolerated,
-    /// Refused with `fmi2Error`.
+    /// Refused with an error.
     Illegal,
 }
 
-const NONE: u16 = 0;
-const BOTH: Option<Interface> = None;
-const ME: Option<Interface> = Some(Interface::ModelExchange);
-const CS: Option<Interface> = Some(Interface::CoSimulation);
+/// A row of the table: a function of the C interface that acts on an instance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    /// Name of the C function.
+    pub(crate) name: &'static str,
+    /// The interface that it belongs to; `None` if to both.
+    pub(crate) interface: Option<Interface>,
+    /// The states in which it is legal, as bits.
+    pub(crate) legal: u16,
+    /// Those in which it is tolerated.
+    pub(crate) tolerated: u16,
+}
+
+impl Row {
+    /// What this row says of a state of an instance for `interface`.
+    #[inline]
+    pub(crate) fn legality(&self, interface: Interface, state: CallState) -> Legality {
+        if self.interface.is_some_and(|own| own != interface) {
+            Legality::Illegal
+        } else if self.legal & state.bit() != 0 {
+            Legality::Legal
+        } else if self.tolerated & state.bit() != 0 {
+            Legality::Tolerated
+        } else {
+            Legality::Illegal
+        }
+    }
+
+    /// The states in which this function is legal, for messages.
+    pub(crate) fn legal_states(&self, interface: Interface) -> String {
+        let legal = |state: &CallState| self.legality(interface, *state) == Legality::Legal;
+        let names: Vec<_> = CallState::ALL.into_iter().filter(legal).map(|s| s.to_string()).collect();
+        if names.is_empty() { format!("no state of a {interface} instance") } else { names.join(", ") }
+    }
+}
+
+pub(crate) const NONE: u16 = 0;
+pub(crate) const BOTH: Option<Interface> = None;
+pub(crate) const ME: Option<Interface> = Some(Interface::ModelExchange);
+pub(crate) const CS: Option<Interface> = Some(Interface::CoSimulation);
 // Sets of states that several rows share.
 const AT_REST: u16 = INST | INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
 const READABLE: u16 = INIT | DONE | FAIL | CANC | TERM | ERR | EVENT | CONT;
 const EXCHANGED: u16 = INIT | TERM | ERR | EVENT | CONT;
 
+/// A table: an enumeration of its functions, and what it says of each.
 macro_rules! call_table {
     ($($function:ident $name:literal $interface:expr, $legal:expr, $tolerated:expr;)*) => {
         /// A function of the C interface that acts on an instance.
@@ -119,22 +161,38 @@ macro_rules! call_table {
 
             /// The name of the C function.
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$function => $name,)* }
+                self.row().name
             }
 
             /// The interface that it belongs to; `None` if to both.
             pub const fn interface(self) -> Option<Interface> {
-                match self { $(Self::$function => $interface,)* }
+                self.row().interface
             }
 
-            /// The states in which it is legal and in which it is tolerated, as bits.
-            const fn states(self) -> (u16, u16) {
-                match self { $(Self::$function => ($legal, $tolerated),)* }
+            /// What the table says of this function in `state` of an instance for `interface`.
+            pub fn legality(self, interface: Interface, state: CallState) -> Legality {
+                self.row().legality(interface, state)
+            }
+
+            /// Its row.
+            #[inline]
+            pub(crate) const fn row(self) -> Row {
+                match self {
+                    $(Self::$function => {
+                        Row { name: $name, interface: $interface, legal: $legal, tolerated: $tolerated }
+                    })*
+                }
             }
         }
     };
 }
+pub(crate) use call_table;
 
+// Tolerated are
+// - Get before initialisation: importers show start values,
+// - `fmi2SetTime` in event mode, where the standard wants a purely discrete FMU: importers go to the time of an event on either
+//   side of `fmi2EnterEventMode`,
+// - giving memory back after a fatal error: otherwise it would be lost.
 call_table! {
     // function                C name                                interface legal               tolerated
     SetDebugLogging          "fmi2SetDebugLogging"                 BOTH, AT_REST | BUSY,                 NONE;
@@ -178,32 +236,4 @@ call_table! {
     GetEventIndicators       "fmi2GetEventIndicators"              ME,   EXCHANGED,                      NONE;
     GetContinuousStates      "fmi2GetContinuousStates"             ME,   EXCHANGED,                      NONE;
     GetNominals              "fmi2GetNominalsOfContinuousStates"   ME,   INST | EXCHANGED,               NONE;
-}
-
-impl Function {
-    /// What the table says of this function in `state` of an instance for `interface`. Tolerated are
-    /// - Get before initialisation: importers show start values,
-    /// - `fmi2SetTime` in event mode, where the standard wants a purely discrete FMU: importers go to the time of an
-    ///   event on either side of `fmi2EnterEventMode`,
-    /// - giving memory back after a fatal error: otherwise it would be lost.
-    #[inline]
-    pub fn legality(self, interface: Interface, state: CallState) -> Legality {
-        let (legal, tolerated) = self.states();
-        if self.interface().is_some_and(|own| own != interface) {
-            Legality::Illegal
-        } else if legal & state.bit() != 0 {
-            Legality::Legal
-        } else if tolerated & state.bit() != 0 {
-            Legality::Tolerated
-        } else {
-            Legality::Illegal
-        }
-    }
-
-    /// The states in which this function is legal, for messages.
-    pub(crate) fn legal_states(self, interface: Interface) -> String {
-        let legal = |state: &CallState| self.legality(interface, *state) == Legality::Legal;
-        let names: Vec<_> = CallState::ALL.into_iter().filter(legal).map(|s| s.to_string()).collect();
-        if names.is_empty() { format!("no state of a {interface} instance") } else { names.join(", ") }
-    }
 }

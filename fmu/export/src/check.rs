@@ -1,9 +1,9 @@
 //! Checks of a table and its [`ModelInfo`] as a whole, once per process: a mistake in it would otherwise surface
 //! as an FMU that some importers refuse.
 
-use crate::info::ModelInfo;
+use crate::info::{ModelInfo, Terminal};
 use crate::slave::Slave;
-use crate::variable::{Causality, EnumerationType, Initial, Kind, RealSpec, Variability, Variable};
+use crate::variable::{Causality, ClockInterval, ClockSpec, EnumerationType, Initial, Kind, RealSpec, Variability, Variable};
 use std::collections::{HashMap, HashSet};
 
 /// A mistake in a variable table or in the facts about the FMU.
@@ -28,7 +28,8 @@ fn ensure(holds: bool, subject: &str, what: impl FnOnce() -> String) -> Check {
 pub(crate) fn check_fmu<S: Slave>() -> Check {
     check_info(&S::INFO)?;
     check_table(S::variables())?;
-    check_states(S::variables(), S::INFO.model_exchange.is_some())
+    check_states(S::variables(), S::INFO.model_exchange.is_some())?;
+    check_terminals(S::INFO.terminals, S::variables())
 }
 
 fn check_info(info: &ModelInfo) -> Check {
@@ -79,7 +80,19 @@ fn check_table<M>(table: &[Variable<M>]) -> Check {
     let times = table.iter().filter(|v| v.causality == Causality::Independent);
     ensure(times.count() <= 1, "table", || "there are two independent variables".into())?;
     table.iter().try_for_each(|v| check_dependencies(v, &names))?;
+    table.iter().try_for_each(|v| check_clocks(v, table).and_then(|()| check_alias(v, table)))?;
     table.iter().try_for_each(|v| check_initial_dependencies(v, table))
+}
+
+fn check_terminals<M>(terminals: &[Terminal], table: &[Variable<M>]) -> Check {
+    for terminal in terminals {
+        for (member, name) in terminal.members {
+            check_text(terminal.name, member)?;
+            let known = table.iter().any(|row| row.name == *name);
+            ensure(known, terminal.name, || format!("its member {member} is {name}, which is not in the table"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Only a continuous state of model exchange can jump.
@@ -135,6 +148,7 @@ fn check_kind<M>(variable: &Variable<M>) -> Check {
             check_start(name, spec.start, |start| spec.complaint(start))
         }
         Kind::Boolean(_) => Ok(()),
+        Kind::Clock(spec) => check_clock(variable, spec),
         Kind::String(spec) => check_text(name, spec.start.unwrap_or_default()),
     }
 }
@@ -151,6 +165,34 @@ fn check_real<M>(variable: &Variable<M>, spec: &RealSpec<M>) -> Check {
     let output = spec.output_derivatives.is_none() || variable.causality == Causality::Output;
     ensure(output, name, || "only an output gives output derivatives".into())?;
     check_start(name, spec.start, |start| spec.complaint(start))
+}
+
+/// Only what the environment sets can tick at times that the description tells.
+fn check_clock<M>(variable: &Variable<M>, spec: &ClockSpec<M>) -> Check {
+    let ClockInterval::Periodic { interval, shift } = spec.interval else { return Ok(()) };
+    let sensible = interval.is_finite() && interval > 0.0 && shift.is_finite() && shift >= 0.0;
+    ensure(sensible, variable.name, || format!("a clock cannot tick every {interval} s from {shift} s on"))
+}
+
+fn check_clocks<M>(variable: &Variable<M>, table: &[Variable<M>]) -> Check {
+    for name in variable.clocks() {
+        let known = table.iter().any(|row| row.is_clock() && row.name == *name);
+        ensure(known, variable.name, || format!("it belongs to {name}, which is no clock"))?;
+        let discrete = variable.variability == Variability::Discrete && !variable.is_clock();
+        ensure(discrete, variable.name, || "only a discrete variable belongs to a clock".into())?;
+    }
+    Ok(())
+}
+
+/// FMI 3.0 has one variable for both, so all of the other row must hold for this one.
+fn check_alias<M>(variable: &Variable<M>, table: &[Variable<M>]) -> Check {
+    let Some(name) = variable.alias_of() else { return Ok(()) };
+    let Some(other) = table.iter().find(|row| row.name == name) else {
+        return mistake(variable.name, format!("it is an alias of {name}, which is not in the table"));
+    };
+    let unit = |row: &Variable<M>| if let Kind::Real(spec) = &row.kind { Some(spec.unit) } else { None };
+    let fits = unit(variable).is_some() && unit(variable) == unit(other) && other.derivative_of().is_none();
+    ensure(fits, variable.name, || format!("it cannot be an alias of {name}: another unit, or a derivative itself"))
 }
 
 fn check_start<T: Copy + ToString>(name: &str, start: Option<T>, complaint: impl FnOnce(T) -> Option<String>) -> Check {

@@ -105,6 +105,10 @@ pub(crate) enum CallError {
         role: &'static str,
         state: CallState,
     },
+    #[error(
+        "variable {name} ({type_name}) was not among the requiredIntermediateVariables of this instance: it cannot be read within a step"
+    )]
+    NotIntermediate { name: &'static str, type_name: &'static str },
     #[error("not supported by this FMU: {0}")]
     Unsupported(&'static str),
     #[error("status {0} is not available here")]

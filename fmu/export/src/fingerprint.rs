@@ -3,52 +3,71 @@
 use crate::fnv::fnv128;
 use crate::guid::Guid;
 use crate::slave::Slave;
-use crate::variable::{Kind, Variable};
+use crate::standard::Standard;
+use crate::variable::{ClockInterval, Kind, Variable};
 
 impl Guid {
-    /// The GUID of an FMU.
-    pub fn of<S: Slave>() -> Self {
-        let mut fields = Fields(Vec::new());
+    /// The GUID of an FMU; in FMI 3.0 it is the instantiation token.
+    pub fn of<S: Slave>(standard: Standard) -> Self {
+        let mut fields = Fields { bytes: Vec::new(), standard };
         let info = S::INFO;
-        fields.text("fmi 2.0 co-simulation");
+        fields.text(match standard {
+            Standard::Fmi2 => "fmi 2.0 co-simulation",
+            Standard::Fmi3 => "fmi 3.0",
+        });
         fields.text(info.model_identifier);
         fields.text(info.version);
         fields.bool(info.can_serialize);
         fields.bool(info.directional_derivatives);
         fields.option(info.model_exchange, Fields::count);
         fields.bool(info.variable_step_size);
-        for variable in S::variables() {
+        for variable in S::variables().iter().filter(|variable| variable.is_of(standard)) {
             fields.variable(variable);
         }
+        if standard == Standard::Fmi3 {
+            fields.bool(info.stops_at_events);
+        }
         // A UUID of version 8 (RFC 9562: contents defined by the implementation).
-        let version = (fnv128(&fields.0) & !(0xf << 76)) | (8 << 76);
+        let version = (fnv128(&fields.bytes) & !(0xf << 76)) | (8 << 76);
         Self((version & !(0b11 << 62)) | (0b10 << 62))
     }
 }
 
 /// The values that are hashed, without ambiguity: each has a length or a fixed size.
-struct Fields(Vec<u8>);
+struct Fields {
+    bytes: Vec<u8>,
+    standard: Standard,
+}
 
 impl Fields {
     fn text(&mut self, text: &str) {
         self.count(text.len());
-        self.0.extend(text.as_bytes());
+        self.bytes.extend(text.as_bytes());
     }
 
     fn count(&mut self, count: usize) {
-        self.0.extend((count as u64).to_le_bytes());
+        self.bytes.extend((count as u64).to_le_bytes());
     }
 
     fn bool(&mut self, value: bool) {
-        self.0.push(u8::from(value));
+        self.bytes.push(u8::from(value));
     }
 
     fn f64(&mut self, value: f64) {
-        self.0.extend(value.to_bits().to_le_bytes());
+        self.bytes.extend(value.to_bits().to_le_bytes());
     }
 
     fn i32(&mut self, value: i32) {
-        self.0.extend(value.to_le_bytes());
+        self.bytes.extend(value.to_le_bytes());
+    }
+
+    /// FMI 2.0 has 32 bits, whatever the width.
+    fn integer(&mut self, value: i64) {
+        let narrow = i32::try_from(value).unwrap_or(if value < 0 { i32::MIN } else { i32::MAX });
+        match self.standard {
+            Standard::Fmi2 => self.i32(narrow),
+            Standard::Fmi3 => self.bytes.extend(value.to_le_bytes()),
+        }
     }
 
     fn option<T>(&mut self, value: Option<T>, write: impl FnOnce(&mut Self, T)) {
@@ -69,6 +88,11 @@ impl Fields {
                 fields.text(name);
             }
         });
+        if self.standard == Standard::Fmi3 {
+            variable.clocks().iter().for_each(|clock| self.text(clock));
+            self.option(variable.alias_of(), Self::text);
+            self.text(variable.kind().type_name_3());
+        }
         // Marks of their own, so that tables without such states and promises keep their GUID.
         if variable.reinit() {
             self.text("reinit");
@@ -94,10 +118,19 @@ impl Fields {
                 self.count(s.output_derivatives.map_or(0, |d| d.0 as usize));
             }
             Kind::Integer(s) => {
-                self.option(s.start, Self::i32);
-                self.i32(s.min);
-                self.i32(s.max);
+                self.option(s.start, Self::integer);
+                let (min, max) = s.width.bounds(); // no bounds of its own
+                self.integer(if s.min == min { i64::MIN } else { s.min });
+                self.integer(if s.max == max { i64::MAX } else { s.max });
             }
+            Kind::Clock(s) => match s.interval {
+                ClockInterval::Triggered => self.bool(false),
+                ClockInterval::Periodic { interval, shift } => {
+                    self.bool(true);
+                    self.f64(interval);
+                    self.f64(shift);
+                }
+            },
             Kind::Boolean(s) => self.option(s.start, Self::bool),
             Kind::String(s) => self.option(s.start, Self::text),
             Kind::Enumeration(s) => {

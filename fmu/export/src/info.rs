@@ -32,6 +32,11 @@ pub struct ModelInfo {
     /// Number of event indicators, if the FMU offers model exchange, too: the functions of [`Slave`](crate::Slave) for it
     /// are implemented and the table names the derivatives of the continuous states.
     pub model_exchange: Option<usize>,
+    /// Whether [`Slave::do_step_to_event`](crate::Slave::do_step_to_event) is implemented: in FMI 3.0 the FMU returns early
+    /// from steps (`mightReturnEarlyFromDoStep`) and has event mode in co-simulation (`hasEventMode`).
+    pub stops_at_events: bool,
+    /// What FMI 3.0 connects at a stroke.
+    pub terminals: &'static [Terminal],
     /// Whether the step size may differ from step to step (`canHandleVariableCommunicationStepSize`).
     pub variable_step_size: bool,
 }
@@ -47,6 +52,18 @@ pub struct DefaultExperiment {
     pub step_size: f64,
     /// Relative tolerance; none if the slave has no use for one.
     pub tolerance: Option<f64>,
+}
+
+/// Variables that belong together, for connections in FMI 3.0 (`terminalsAndIcons.xml`): terminals of two FMUs fit if their members
+/// have the same names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Terminal {
+    /// Name of the terminal.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Name of each member, and the variable that it is.
+    pub members: &'static [(&'static str, &'static str)],
 }
 
 macro_rules! setters {
@@ -76,6 +93,8 @@ impl ModelInfo {
             can_serialize: false,
             directional_derivatives: false,
             model_exchange: None,
+            stops_at_events: false,
+            terminals: &[],
             variable_step_size: true,
         }
     }
@@ -133,6 +152,20 @@ impl ModelInfo {
     #[must_use]
     pub const fn model_exchange(mut self, event_indicators: usize) -> Self {
         self.model_exchange = Some(event_indicators);
+        self
+    }
+
+    /// Says that steps can stop at events ([`Slave::do_step_to_event`](crate::Slave::do_step_to_event)).
+    #[must_use]
+    pub const fn stops_at_events(mut self) -> Self {
+        self.stops_at_events = true;
+        self
+    }
+
+    /// Sets the terminals.
+    #[must_use]
+    pub const fn terminals(mut self, terminals: &'static [Terminal]) -> Self {
+        self.terminals = terminals;
         self
     }
 

@@ -83,6 +83,7 @@ mod call_state;
 mod check;
 mod error;
 pub mod ffi;
+pub mod fmi3;
 mod fingerprint;
 mod fnv;
 mod guid;
@@ -99,6 +100,7 @@ mod references;
 mod resource;
 mod serialize;
 mod slave;
+mod standard;
 #[cfg(feature = "model-description")]
 mod units;
 mod variable;
@@ -108,16 +110,17 @@ pub use check::TableError;
 pub use error::{Severity, SlaveError};
 pub use fmu_abi as abi;
 pub use guid::Guid;
-pub use info::{DefaultExperiment, ModelInfo};
+pub use info::{DefaultExperiment, ModelInfo, Terminal};
 pub use logger::{LogCategory, Logger};
 #[cfg(feature = "model-description")]
-pub use model_description::{DescriptionError, model_description};
+pub use model_description::{DescriptionError, model_description, terminals_and_icons};
 #[cfg(feature = "model-description")]
 pub use references::changed_references;
 pub use serialize::{StateError, StateReader, StateWriter};
-pub use slave::{EventOutcome, Experiment, Slave};
+pub use slave::{EventOutcome, Experiment, Slave, Stop};
+pub use standard::Standard;
 pub use variable::{
-    BooleanSpec, Causality, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial, IntegerSpec, Kind,
-    PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat,
+    BooleanSpec, Causality, ClockInterval, ClockSpec, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial,
+    IntegerSpec, IntegerWidth, Kind, PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat,
     value_reference,
 };

@@ -3,18 +3,19 @@
 use core::cell::Cell;
 use core::ffi::CStr;
 use core::fmt::Display;
+use fmu_abi::fmi3::{fmi3InstanceEnvironment, fmi3Status, fmi3String};
 use fmu_abi::{
-    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
+    fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
     fmi2Status, fmi2Warning,
 };
 use std::ffi::CString;
 
-/// A log category of FMI 2.0, as listed in `modelDescription.xml`.
+/// A log category, as listed in `modelDescription.xml`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LogCategory {
     /// Events of the model.
     Events,
-    /// Calls that FMI 2.0 forbids and that work all the same.
+    /// Calls that the standard forbids and that work all the same.
     Tolerated,
     /// Messages that go with `fmi2Warning`.
     Warning,
@@ -71,9 +72,20 @@ impl LogCategory {
     }
 }
 
+/// What takes the messages.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Callback {
+    /// Nothing.
+    None,
+    /// The logger of FMI 2.0.
+    Fmi2(fmi2CallbackLogger),
+    /// That of FMI 3.0.
+    Fmi3(unsafe extern "C" fn(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String)),
+}
+
 /// Sends messages to the importer. Nothing is formatted that is not sent.
 pub struct Logger {
-    callback: Option<fmi2CallbackLogger>,
+    callback: Callback,
     environment: fmi2ComponentEnvironment,
     instance_name: CString,
     enabled: u8,
@@ -88,14 +100,19 @@ const ALWAYS_ON: u8 = LogCategory::Error.bit() | LogCategory::Fatal.bit();
 impl Logger {
     /// A logger that says nothing, for use of a slave without an importer.
     pub fn silent() -> Self {
-        Self::new(None, "", false)
+        Self::new(Callback::None, core::ptr::null_mut(), "", false)
     }
 
     /// A logger on the callback of the importer.
-    pub(crate) fn new(functions: Option<&fmi2CallbackFunctions>, instance_name: &str, logging_on: bool) -> Self {
+    pub(crate) fn new(
+        callback: Callback,
+        environment: fmi2ComponentEnvironment,
+        instance_name: &str,
+        logging_on: bool,
+    ) -> Self {
         Self {
-            callback: functions.and_then(|f| f.logger),
-            environment: functions.map_or(core::ptr::null_mut(), |f| f.componentEnvironment),
+            callback,
+            environment,
             instance_name: c_string(instance_name),
             enabled: if logging_on { ALL_BITS } else { 0 },
             warned: Cell::new(false),
@@ -148,7 +165,7 @@ impl Logger {
     /// Whether messages of this category reach anyone, for models that must work to make them. Errors always do: what
     /// an importer switches on and off is debug logging, and a call that fails owes its reason.
     pub fn is_enabled(&self, category: LogCategory) -> bool {
-        self.callback.is_some() && (self.enabled | ALWAYS_ON) & category.bit() != 0
+        !matches!(self.callback, Callback::None) && (self.enabled | ALWAYS_ON) & category.bit() != 0
     }
 
     /// Reports a call that did not succeed, under the category of its status.
@@ -168,6 +185,15 @@ impl Logger {
         self.enabled = if on { ALL_BITS } else { 0 };
     }
 
+    /// Switches one category on or off.
+    pub(crate) const fn enable(&mut self, category: LogCategory, on: bool) {
+        if on {
+            self.enabled |= category.bit();
+        } else {
+            self.enabled &= !category.bit();
+        }
+    }
+
     /// Leaves exactly these categories on.
     pub(crate) fn enable_only(&mut self, categories: impl Iterator<Item = LogCategory>) {
         self.enabled = categories.fold(0, |bits, c| bits | c.bit());
@@ -184,24 +210,22 @@ impl Logger {
     }
 
     fn send(&self, status: fmi2Status, category: LogCategory, message: &dyn Display) {
-        let Some(callback) = self.callback else {
-            return;
-        };
         if !self.is_enabled(category) {
             return;
         }
-        let text = c_string(&message.to_string());
-        // SAFETY: the callback came from the importer with this environment; all strings are zero-terminated
+        let (environment, text, category) = (self.environment, message.to_string(), category.c_name().as_ptr());
+        // SAFETY, for both: the callback came from the importer with this environment; all strings are zero-terminated
         // and outlive the call. The fixed format keeps a percent sign in the message from being interpreted.
-        unsafe {
-            callback(
-                self.environment,
-                self.instance_name.as_ptr(),
-                status,
-                category.c_name().as_ptr(),
-                c"%s".as_ptr(),
-                text.as_ptr(),
-            );
+        match self.callback {
+            Callback::None => {}
+            Callback::Fmi2(callback) => {
+                let (name, text) = (self.instance_name.as_ptr(), c_string(&text));
+                unsafe { callback(environment, name, status, category, c"%s".as_ptr(), text.as_ptr()) };
+            }
+            Callback::Fmi3(callback) => {
+                let text = c_string(&text.replace('#', "##")); // what stands between two of them is a variable
+                unsafe { callback(environment, status, category, text.as_ptr()) };
+            }
         }
     }
 }

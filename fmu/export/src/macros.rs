@@ -1,15 +1,19 @@
 //! The macro that gives a slave its exported C symbols.
 
-/// Exports a [`Slave`](crate::Slave) as an FMU: defines every C function of FMI 2.0 for co-simulation and, with
-/// `export_fmu!(MySlave, model_exchange)`, those for model exchange. Use it once in a `cdylib`. The functions exist as C
-/// symbols only; the macro leaves no Rust names behind.
+/// Exports a [`Slave`](crate::Slave) as an FMU: defines every C function of FMI 3.0, and those of FMI 2.0 for co-simulation and,
+/// with `export_fmu!(MySlave, model_exchange)`, for model exchange. One library serves the FMUs of both versions. Use it once in a
+/// `cdylib`. The functions exist as C symbols only; the macro leaves no Rust names behind.
 #[macro_export]
 macro_rules! export_fmu {
     ($slave:ty $(, $model_exchange:ident)?) => {
         const _: () = {
+            use $crate::abi::fmi3::*;
             use $crate::abi::*;
 
+            static FMU: $crate::ffi::Fmu = $crate::ffi::Fmu::new();
+
             $crate::abi::functions!([$crate::__export_fmu] $slave $(, $model_exchange)?);
+            $crate::abi::functions3!([$crate::__export_fmu3] $slave);
         };
     };
 }
@@ -31,8 +35,6 @@ macro_rules! __export_fmu {
         common { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
         exchange { $($exchange:tt)* }
     ) => {
-        static FMU: $crate::ffi::Fmu = $crate::ffi::Fmu::new();
-
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $create($($part: $part_type),*) -> $component {
             // SAFETY: the importer keeps the contract of the C function; so below.
@@ -48,6 +50,37 @@ macro_rules! __export_fmu {
             #[unsafe(no_mangle)]
             unsafe extern "C" fn $name(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status {
                 unsafe { $crate::ffi::$name::<$slave>(c $(, $argument)*) }
+            }
+        )*
+    };
+}
+
+/// Defines the functions of [`abi::functions3`](crate::abi::functions3) for a slave.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __export_fmu3 {
+    ($slave:ty;
+        create { $($create:ident $create_type:ident($($part:ident: $part_type:ty),*) -> $component:ty;)* }
+        other { $($other:ident $other_type:ident($($c:ident: $c_type:ty)?) $(-> $ret:ty)?;)* }
+        status { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
+    ) => {
+        $(
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn $create($($part: $part_type),*) -> $component {
+                // SAFETY: the importer keeps the contract of the C function; so below.
+                unsafe { $crate::fmi3::$create::<$slave>(&FMU, $($part),*) }
+            }
+        )*
+        $(
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn $other($($c: $c_type)?) $(-> $ret)? {
+                unsafe { $crate::fmi3::$other::<$slave>($($c)?) }
+            }
+        )*
+        $(
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn $name(instance: fmi3Instance $(, $argument: $kind)*) -> fmi3Status {
+                unsafe { $crate::fmi3::$name::<$slave>(instance $(, $argument)*) }
             }
         )*
     };

@@ -27,12 +27,14 @@ fn references(document: &str) -> Result<BTreeMap<String, String>, quick_xml::Err
     loop {
         match reader.read_event()? {
             Event::Eof => return Ok(found),
-            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == "ScalarVariable" => {
-                let text = |name| -> Result<String, quick_xml::Error> {
-                    let attribute = tag.try_get_attribute(name)?;
-                    Ok(attribute.map(|it| it.value.into_owned()).unwrap_or_default())
+            Event::Start(tag) | Event::Empty(tag) => {
+                let text = |name| -> Result<Option<String>, quick_xml::Error> {
+                    Ok(tag.try_get_attribute(name)?.map(|it| it.value.into_owned()))
                 };
-                found.insert(text("name")?, text("valueReference")?);
+                // Nothing but a variable has both, in any version of FMI.
+                if let (Some(name), Some(reference)) = (text("name")?, text("valueReference")?) {
+                    found.insert(name, reference);
+                }
             }
             _ => {}
         }

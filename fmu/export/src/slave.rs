@@ -1,6 +1,5 @@
 //! The trait that a model implements to become an FMU.
 
-use crate::call_state::Function;
 use crate::error::SlaveError;
 use crate::info::ModelInfo;
 use crate::logger::Logger;
@@ -19,7 +18,17 @@ pub struct Experiment {
     pub tolerance: Option<f64>,
 }
 
-/// What an event did, in model exchange.
+/// Where a step stopped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Time that was reached, s: behind the begin of the step and not behind its end.
+    pub time: f64,
+    /// An event has happened there: the environment is told, and output clocks may tick. Otherwise it is a point that is worth
+    /// looking at, such as a kink of an output.
+    pub is_event: bool,
+}
+
+/// What an event did.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EventOutcome {
     /// Continuous states have changed.
@@ -88,6 +97,16 @@ pub trait Slave: Clone + Send + 'static {
     /// [`SlaveError::terminate`] to end the simulation, [`SlaveError::error`] if the instance cannot go on.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError>;
 
+    /// FMI 3.0: advances as [`do_step`](Self::do_step) does, from `t` to `end`, s, but stops at the first point behind `t` that an
+    /// environment wants to see. Called in its place, with what is left of the step, where the environment can handle events, or
+    /// wants to return early or see intermediate values. None where the step went to its end without such a point.
+    ///
+    /// # Errors
+    /// As [`do_step`](Self::do_step); a discarded step must leave the model as it was.
+    fn do_step_to_event(&mut self, t: f64, end: f64, log: &Logger) -> Result<Option<Stop>, SlaveError> {
+        self.do_step(t, end - t, log).map(|()| None)
+    }
+
     /// Model exchange: takes over `time`, s, the inputs as they are set and, if given, the continuous states. Getters, event
     /// indicators and events that follow are those of this point. The first call, right after
     /// [`initialize`](Self::initialize), gives no states: the model keeps its initial ones.
@@ -104,7 +123,8 @@ pub trait Slave: Clone + Send + 'static {
         Vec::new()
     }
 
-    /// Model exchange: does what is due at the present point. A second call at the same point changes nothing more.
+    /// Does what is due at the present point: in model exchange, and in event mode of co-simulation (FMI 3.0), where what the model
+    /// does within its steps is done already. A second call at the same point changes nothing more.
     ///
     /// # Errors
     /// If the model cannot go on.
@@ -125,7 +145,7 @@ pub trait Slave: Clone + Send + 'static {
     /// Called at the head of each C function that acts on the instance and is legal, but `fmi2FreeInstance`. For tests
     /// that look at the exporter, or make it fail anywhere.
     #[doc(hidden)]
-    fn on_call(&self, function: Function) {
+    fn on_call(&self, function: &'static str) {
         let _ = function;
     }
 

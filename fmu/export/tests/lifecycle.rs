@@ -9,7 +9,7 @@ use core::ffi::CStr;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
 use fmu_export::ffi::{self, Fmu};
-use fmu_export::{Guid, Logger, ModelInfo, Slave, SlaveError, Variable};
+use fmu_export::{Guid, Logger, ModelInfo, Slave, SlaveError, Standard, Variable};
 
 #[test]
 fn version_and_platform_are_those_of_fmi_2() {
@@ -236,14 +236,14 @@ fn a_call_from_inside_the_logger_is_refused() {
 
 /// A slave without any extras; `MIN` is the smallest value of its only parameter, whose start value is 1.
 #[derive(Clone)]
-struct Bare<const MIN: i32>(i32);
+struct Bare<const MIN: i64>(i64);
 
-impl<const MIN: i32> Bare<MIN> {
+impl<const MIN: i64> Bare<MIN> {
     const TABLE: [Variable<Self>; 1] =
         [Variable::<Self>::integer_parameter("a", 1, "").min(MIN).access(|m| m.0, |m, v| m.0 = v)];
 }
 
-impl<const MIN: i32> Slave for Bare<MIN> {
+impl<const MIN: i64> Slave for Bare<MIN> {
     const INFO: ModelInfo = ModelInfo::new("Bare");
 
     fn variables() -> &'static [Variable<Self>] {
@@ -259,9 +259,9 @@ impl<const MIN: i32> Slave for Bare<MIN> {
     }
 }
 
-fn bare<const MIN: i32>(kind: fmi2Type, log: &mut Log) -> fmi2Component {
+fn bare<const MIN: i64>(kind: fmi2Type, log: &mut Log) -> fmi2Component {
     static FMU: Fmu = Fmu::new();
-    let (name, guid) = (c"bare", c(&Guid::of::<Bare<MIN>>().to_string()));
+    let (name, guid) = (c"bare", c(&Guid::of::<Bare<MIN>>(Standard::Fmi2).to_string()));
     let functions = Log::callbacks(log);
     let fmu = if MIN == 0 { &FMU } else { &Fmu::new() };
     let functions = &raw const functions;

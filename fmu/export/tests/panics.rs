@@ -36,7 +36,7 @@ fn a_panic_behind_any_function_is_an_error_of_that_call_and_the_host_lives_on() 
                 continue;
             };
             let saved = host.save();
-            PANIC_IN_CALL.set(Some(function));
+            PANIC_IN_CALL.set(Some(function.name()));
             let status = call(&host, function, saved);
             PANIC_IN_CALL.set(None);
             assert_eq!(status, fmi2Error, "{function:?}");

@@ -64,11 +64,15 @@ fn reals() -> Vec<V> {
     ]
 }
 
+fn narrow(value: i64) -> i32 {
+    i32::try_from(value).unwrap()
+}
+
 fn others() -> Vec<V> {
     vec![
-        V::integer_parameter("i", 3, "").min(1).max(9).access(|it| it.integer, |it, value| it.integer = value),
-        V::integer_input("j", 3, "").access(|it| it.integer, |it, value| it.integer = value),
-        V::integer_output("k", "").get(|it| it.integer),
+        V::integer_parameter("i", 3, "").min(1).max(9).access(|it| it.integer.into(), |it, value| it.integer = narrow(value)),
+        V::integer_input("j", 3, "").access(|it| it.integer.into(), |it, value| it.integer = narrow(value)),
+        V::integer_output("k", "").get(|it| it.integer.into()),
         V::boolean_parameter("l", true, "").access(|it| it.on, |it, value| it.on = value),
         V::boolean_input("m", true, "").access(|it| it.on, |it, value| it.on = value),
         V::boolean_output("n", "").get(|it| it.on),
@@ -106,6 +110,7 @@ fn words(row: &V) -> String {
             spec.set.into_iter().for_each(|set| set(&mut it, 1));
             (spec.start.and_then(|start| spec.of.item(start)).map(str::to_owned), (spec.get)(&it).to_string())
         }
+        Kind::Clock(_) => unreachable!("no clock among these"),
     };
     assert!(row.initial() != Some(Initial::Exact) || start.is_some());
     let start = start.or(row.initial().map(|initial| initial.as_str().to_owned()));
@@ -168,7 +173,7 @@ fn facts_about_an_fmu_are_those_that_were_set() {
     let wanted = "ModelInfo { model_identifier: \"Sample\", model_name: \"A sample\", description: \"d\", author: \"a\", \
         version: \"1.2.3\", copyright: \"c\", license: \"l\", generation_tool: \"g\", default_experiment: \
         Some(DefaultExperiment { start_time: 1.0, stop_time: 2.0, step_size: 0.1, tolerance: Some(1e-6) }), \
-        can_serialize: true, directional_derivatives: true, model_exchange: Some(3), variable_step_size: false }";
+        can_serialize: true, directional_derivatives: true, model_exchange: Some(3), stops_at_events: false, terminals: [], variable_step_size: false }";
     assert_eq!(found, wanted);
 }
 

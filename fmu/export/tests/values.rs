@@ -130,7 +130,7 @@ fn a_variable_of_another_type_or_beyond_the_table_is_refused() {
     for reference in [COUNT_OF_VARIABLES, u32::MAX] {
         let host = Host::initializing();
         assert_eq!(host.try_real(reference).0, fmi2Error);
-        let message = format!("fmi2GetReal: no variable has value reference {reference}; allowed: 0 to 18");
+        let message = format!("fmi2GetReal: no variable has value reference {reference}; allowed: 0 to 33");
         assert_eq!(host.error(), message);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use videg_model::{ForceTable, Harvester as Model, ModelError, Parameters, Recording, Setup};
+use videg_model::{ForceTable, Harvester as Model, ModelError, Parameters, Recording, Setup, Side};
 
 use crate::file::{Files, Loaded};
 
@@ -20,6 +20,10 @@ pub struct Harvester {
     pub(crate) placed: bool,
     /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
     pub(crate) checked: [f64; 2],
+    /// The last impact that was seen: side, and relative speed, m/s.
+    pub(crate) last_impact: Option<(Side, f64)>,
+    /// It is of the present time.
+    pub(crate) has_hit: bool,
     /// The model, or why there is none; before initialisation it is made anew from the parameters whenever they are read.
     pub(crate) model: Result<Model, String>,
 }
@@ -41,6 +45,8 @@ impl Clone for Harvester {
             start_time,
             placed,
             checked,
+            last_impact,
+            has_hit,
             ref model,
         } = *source;
         self.model.clone_from(model);
@@ -50,6 +56,7 @@ impl Clone for Harvester {
         (self.parameters, self.start_time, self.placed, self.checked) = (parameters, start_time, placed, checked);
         (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
         (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
+        (self.last_impact, self.has_hit) = (last_impact, has_hit);
     }
 }
 

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fmu_export::{
-    EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter,
-    Variable,
+    EventOutcome, Experiment, LogCategory, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Stop,
+    Terminal, Variable,
 };
-use videg_model::{ContactLaw, Event, Harvester as Model, Impact, Parameters, Peak, PulseShape, Side};
+use videg_model::{ContactLaw, Event, Harvester as Model, Impact, ModelError, Parameters, Peak, PulseShape, Side};
 
 use crate::file::Files;
 use crate::harvester::Harvester;
@@ -24,6 +24,54 @@ impl Harvester {
         self.external_force += core::mem::take(&mut self.external_force_rate) * h;
         let rates = core::mem::take(&mut self.voltage_rates);
         self.voltages = [0, 1].map(|k| self.voltages[k] + rates[k] * h);
+    }
+
+    /// A step of `h`, s, from `t` to `end`, s, as `advance` takes it, which says whether it stopped before. Force and voltages run on at
+    /// their rates over the step and stay where those took them, unless they are set again.
+    #[inline]
+    fn step(
+        &mut self,
+        t: f64,
+        h: f64,
+        end: f64,
+        log: &Logger,
+        advance: impl FnOnce(&mut Model, f64, &mut dyn FnMut(&Event)) -> Result<bool, ModelError>,
+    ) -> Result<bool, SlaveError> {
+        if self.is_too_long(h) {
+            return Err(self.too_long(t, h));
+        }
+        self.check_limits(log);
+        let time = self.model().map_or(t, Model::time);
+        let behind = t - time;
+        if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
+            return Err(elsewhere(t, time));
+        }
+        let Self { parameters, files, model, .. } = self;
+        let model = running(model)?;
+        let mut number = model.totals().impacts;
+        let mut last_impact = None;
+        let mut show = |event: &Event| match event {
+            Event::Impact(impact) => {
+                (number, last_impact) = (number + 1, Some((impact.side, impact.speed)));
+                if log.is_enabled(LogCategory::Events) {
+                    log.event(describe(number, impact));
+                }
+            }
+            Event::Peak(peak) => limits::check(parameters.with_table(files.table()), peak, log),
+        };
+        let advanced = model
+            .set_external_force(self.external_force, self.external_force_rate)
+            .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
+            .and_then(|()| advance(model, end, &mut show));
+        let stopped = advanced.map_err(|error| SlaveError::error(error.to_string()))?;
+        self.has_hit = last_impact.is_some();
+        if self.has_hit {
+            self.last_impact = last_impact;
+        }
+        if self.external_force_rate != 0.0 || self.voltage_rates[0] != 0.0 || self.voltage_rates[1] != 0.0 {
+            self.follow_rates(h);
+        }
+        Ok(stopped)
     }
 
     /// Warns of limits exceeded at present. Nothing needs looking at while the voltages have not changed since both membranes
@@ -56,7 +104,20 @@ impl Slave for Harvester {
         .default_tolerance(EXCHANGE_TOLERANCE)
         .can_serialize()
         .directional_derivatives()
-        .model_exchange(3);
+        .model_exchange(3)
+        .stops_at_events()
+        .terminals(&[
+            Terminal {
+                name: "left",
+                description: "Left membrane, as a circuit sees it",
+                members: &[("capacitance", "left.capacitance"), ("voltage", "left.voltage")],
+            },
+            Terminal {
+                name: "right",
+                description: "Right membrane, as a circuit sees it",
+                members: &[("capacitance", "right.capacitance"), ("voltage", "right.voltage")],
+            },
+        ]);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -74,6 +135,8 @@ impl Slave for Harvester {
             start_time: 0.0,
             placed: false,
             checked: [f64::NAN; 2],
+            last_impact: None,
+            has_hit: false,
             model: Model::new(&parameters, 0.0).map_err(|error| error.to_string()),
         }
     }
@@ -106,49 +169,30 @@ impl Slave for Harvester {
             log.warning(neglected);
         }
         let model = running(&mut self.model)?;
-        if let Some(impact) = model.present_impact() {
+        let impact = model.present_impact();
+        if let Some(impact) = impact {
             show_impact(model, &impact, self.voltages, log);
         }
+        self.has_hit = impact.is_some();
+        self.last_impact = impact.map(|impact| (impact.side, impact.speed));
         Ok(())
     }
 
-    /// Force and voltages run on at their rates over the step and stay where those took them, unless they are set again.
     fn do_step(&mut self, t: f64, h: f64, log: &Logger) -> Result<(), SlaveError> {
-        if self.is_too_long(h) {
-            return Err(self.too_long(t, h));
-        }
-        self.check_limits(log);
-        let time = self.model().map_or(t, Model::time);
-        let behind = t - time;
-        if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
-            return Err(elsewhere(t, time));
-        }
-        let Self { parameters, files, model, .. } = self;
-        let model = running(model)?;
-        let mut number = model.totals().impacts;
-        let show = |event: &Event| match event {
-            Event::Impact(impact) => {
-                number += 1;
-                if log.is_enabled(LogCategory::Events) {
-                    log.event(describe(number, impact));
-                }
-            }
-            Event::Peak(peak) => limits::check(parameters.with_table(files.table()), peak, log),
-        };
-        let advanced = model
-            .set_external_force(self.external_force, self.external_force_rate)
-            .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
-            .and_then(|()| model.advance_with(t + h, show));
-        advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        if self.external_force_rate != 0.0 || self.voltage_rates[0] != 0.0 || self.voltage_rates[1] != 0.0 {
-            self.follow_rates(h);
-        }
+        self.step(t, h, t + h, log, |model, end, show| model.advance_with(end, show).map(|()| false))?;
         Ok(())
+    }
+
+    /// Events are the impacts; other knots of C(t) are points that are worth looking at.
+    fn do_step_to_event(&mut self, t: f64, end: f64, log: &Logger) -> Result<Option<Stop>, SlaveError> {
+        let stopped = self.step(t, end - t, end, log, |model, end, show| model.advance_to_knot(end, show))?;
+        let time = self.model().map_or(end, Model::time);
+        Ok(stopped.then_some(Stop { time, is_event: self.has_hit }))
     }
 
     fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
         let force = self.external_force;
-        self.placed = true;
+        (self.placed, self.has_hit) = (true, false);
         let model = running(&mut self.model)?;
         let present = model.states();
         let states = states.map_or(Ok(present), <[f64; 5]>::try_from);
@@ -161,12 +205,16 @@ impl Slave for Harvester {
     }
 
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
+        if !self.placed {
+            return Ok(EventOutcome::default()); // co-simulation does what is due within its steps
+        }
         let voltages = self.voltages;
         let model = running(&mut self.model)?;
         let impacts = model.totals().impacts;
         let states_changed = model.handle_events().map_err(|error| SlaveError::error(error.to_string()))?;
         if let Some(impact) = model.present_impact().filter(|_| model.totals().impacts > impacts) {
             show_impact(model, &impact, voltages, log);
+            (self.has_hit, self.last_impact) = (true, Some((impact.side, impact.speed)));
         }
         Ok(EventOutcome { states_changed, next_event_time: model.next_time_event() })
     }

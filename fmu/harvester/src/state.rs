@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use fmu_export::{Slave, StateError, StateReader, StateWriter};
-use videg_model::{ForceTable, Harvester as Model, ModelError, Recording, Snapshot};
+use videg_model::{ForceTable, Harvester as Model, ModelError, Recording, Side, Snapshot};
 
 use crate::file::Loaded;
 use crate::harvester::Harvester;
 
 /// External force and its rate, voltages and their rates, and the start time.
 type Inputs = ([f64; 2], [f64; 2], [f64; 2], f64);
+
+/// The last impact, whether it was on the right membrane and its speed, and whether it is of the present time.
+type Hit = (Option<(bool, f64)>, bool);
 
 impl Harvester {
     /// Parameters, inputs and, once it has a state of its own, the model.
@@ -21,14 +24,15 @@ impl Harvester {
         let model = self.model().filter(is_present);
         out.write_parameters(self)?;
         let origin = model.and_then(Model::origin).map(Model::snapshot);
-        out.write(&(inputs, self.placed, model.map(Model::snapshot), origin))
+        let hit = (self.last_impact.map(|(side, speed)| (side == Side::Right, speed)), self.has_hit);
+        out.write(&(inputs, self.placed, hit, model.map(Model::snapshot), origin))
     }
 
     /// What [`Harvester::write`] wrote, for the instance of `present`.
     pub(crate) fn read_from(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
         let mut slave = Self { files: Arc::new(present.files.unnamed()), ..Self::new() };
         from.read_parameters(&mut slave)?;
-        let (inputs, placed, snapshot, origin): (Inputs, bool, Option<Snapshot>, Option<Snapshot>) = from.take()?;
+        let (inputs, placed, hit, snapshot, origin): (Inputs, bool, Hit, Option<Snapshot>, Option<Snapshot>) = from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
         // No Set lets these become infinite or NaN.
         let mut values = [force, voltages, voltage_rates].into_iter().flatten().chain([start_time]);
@@ -38,6 +42,11 @@ impl Harvester {
         [slave.external_force, slave.external_force_rate] = force;
         (slave.voltages, slave.voltage_rates, slave.start_time) = (voltages, voltage_rates, start_time);
         slave.placed = placed;
+        let side = |right| if right { Side::Right } else { Side::Left };
+        (slave.last_impact, slave.has_hit) = (hit.0.map(|(right, speed)| (side(right), speed)), hit.1);
+        if let Some((_, speed)) = slave.last_impact.filter(|(_, speed)| !(speed.is_finite() && *speed >= 0.0)) {
+            return Err(StateError::Invalid(format!("the speed of the last impact is {speed}")));
+        }
         slave.read_files();
         slave.model = match snapshot {
             Some(snapshot) => Ok(slave.restored(&snapshot).map_err(StateError::Invalid)?),

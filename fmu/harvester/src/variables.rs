@@ -6,7 +6,7 @@ mod parameters;
 
 use std::sync::Arc;
 
-use fmu_export::{Variable, concat};
+use fmu_export::{EnumerationType, IntegerWidth, Variable, concat};
 use videg_model::{ForceTable, Recording, Side};
 
 use crate::file::{Content, LONGEST};
@@ -182,8 +182,9 @@ static MOTION: [V; 5] = [
 
 static EVENTS: [V; 8] = [
     V::integer_output("impact.count", "Number of impacts since the start; the endless tail of a chattering end is not counted")
+        .width(IntegerWidth::UInt64)
         .local()
-        .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().impacts).unwrap_or(i32::MAX))),
+        .get(|slave| slave.model().map_or(0, |model| as_count(model.totals().impacts))),
     V::output("impact.lastVelocity", "m/s", "abs(v_m - v_M) before the last impact, Eq. (10); 0 before the first")
         .discrete()
         .depends_on(&[])
@@ -227,8 +228,9 @@ static EVENTS: [V; 8] = [
         .local()
         .get(|slave| slave.model().is_some_and(|model| model.resting().is_some())),
     V::integer_output("solver.events", "Number of events computed since the start: impacts and releases")
+        .width(IntegerWidth::UInt64)
         .local()
-        .get(|slave| slave.model().map_or(0, |model| i32::try_from(model.totals().events()).unwrap_or(i32::MAX))),
+        .get(|slave| slave.model().map_or(0, |model| as_count(model.totals().events()))),
 ];
 
 /// Books of the mechanical energy: name, what is read of the model's, typical magnitude, dependencies at a communication point and
@@ -344,6 +346,7 @@ static RIGHT_LOADS: [V; 2] = membrane_loads!(Side::Right, "right");
 static DERIVATIVES: [V; 4] = [
     V::output("der(cylinder.position)", "m/s", "z_M': time derivative of cylinder.position")
         .local()
+        .alias_of("cylinder.velocity")
         .depends_on(&["cylinder.velocity"])
         .derivative_of("cylinder.position")
         .initially_depends_on(&[IMPACT])
@@ -358,6 +361,7 @@ static DERIVATIVES: [V; 4] = [
         .get(|slave| slave.read(videg_model::Harvester::cylinder_acceleration)),
     V::output("der(ball.position)", "m/s", "z_m': time derivative of ball.position")
         .local()
+        .alias_of("ball.velocity")
         .depends_on(&["cylinder.velocity", "ball.velocity"])
         .derivative_of("ball.position")
         .initially_depends_on(&[IMPACT])
@@ -396,6 +400,11 @@ static TWINS: [V; 2] = [
     .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
     .get(|slave| slave.model().map_or(0.0, |model| f64::from(u8::from(model.resting().is_some())))),
 ];
+
+/// A count as an Integer.
+fn as_count(count: u64) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}
 
 /// A count as a Real: exact up to 2^53, which no run reaches.
 #[allow(clippy::cast_precision_loss)]
@@ -459,6 +468,41 @@ static DAMPING_POWER: [V; 1] = [V::output("der(energy.damping)", "W", "c z_M'^2:
     .partial_derivative(change!(damping_power))
     .get(|slave| slave.read(videg_model::Harvester::damping_power))];
 
+/// The name of the clock of impacts.
+const CLOCK: &str = "impact.clock";
+
+static IMPACT_SIDE: EnumerationType = EnumerationType {
+    name: "ImpactSide",
+    description: "Membrane that the ball hits",
+    items: &[("none", "No impact yet"), ("left", "The left one"), ("right", "The right one")],
+};
+
+/// Impacts as FMI 3.0 tells of them.
+static IMPACTS: [V; 4] = [
+    V::output_clock(CLOCK, "Ticks at each impact; under the compliant law at the begin of each contact")
+        .depends_on(&[])
+        .get(|slave| slave.has_hit),
+    V::enumeration_output("impact.side", &IMPACT_SIDE, "Membrane that the ball hits")
+        .clocked_by(&[CLOCK])
+        .depends_on(&[CLOCK])
+        .get(|slave| slave.last_impact.map_or(1, |(side, _)| if side == Side::Left { 2 } else { 3 })),
+    V::output("impact.speed", "m/s", "abs(v_m - v_M) before the impact, Eq. (10)")
+        .discrete()
+        .clocked_by(&[CLOCK])
+        .depends_on(&[CLOCK])
+        .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| speed)),
+    V::output("impact.energy", "J", "W: energy gain of the impact, Eq. (13) at the deflection of Eq. (10)")
+        .discrete()
+        .clocked_by(&[CLOCK])
+        .depends_on(&[CLOCK])
+        .nominal(1e-6)
+        .get(|slave| {
+            let bias = slave.parameters.bias_voltage;
+            let energy = |speed| slave.read(|model| model.membrane().impact_energy(bias, speed));
+            slave.last_impact.map_or(0.0, |(_, speed)| energy(speed))
+        }),
+];
+
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()
     + CHOICES.len()
@@ -487,7 +531,8 @@ const COUNT: usize = PARAMETERS.len()
     + VISCOUS_PARAMETERS.len()
     + EFFECTIVE_RESTITUTION.len()
     + VISCOUS_ENERGY.len()
-    + DAMPING_POWER.len();
+    + DAMPING_POWER.len()
+    + IMPACTS.len();
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[
@@ -519,4 +564,5 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &EFFECTIVE_RESTITUTION,
     &VISCOUS_ENERGY,
     &DAMPING_POWER,
+    &IMPACTS,
 ]);

@@ -5,14 +5,24 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::differences::natural_size;
-use fmu_export::{changed_references, model_description};
+use fmu_export::{Standard, changed_references, model_description, terminals_and_icons};
 use fmu_host::initial::{found, on_inputs, promised};
 
+/// A file of the folder `modelDescription`.
+macro_rules! kept {
+    ($file:literal) => {
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../modelDescription/", $file)
+    };
+}
+
 #[test]
-fn the_packaged_model_description_is_that_of_the_variable_table() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../modelDescription/VibroImpactHarvester.xml");
-    let made = model_description::<Harvester>().unwrap();
-    videg_golden::model_description(path, &made, |kept, made| changed_references(kept, made).unwrap());
+fn the_packaged_model_descriptions_are_those_of_the_variable_table() {
+    let check = |path, made: &str| {
+        videg_golden::model_description(path, made, |kept, made| changed_references(kept, made).unwrap());
+    };
+    check(kept!("VibroImpactHarvester.xml"), &model_description::<Harvester>(Standard::Fmi2).unwrap());
+    check(kept!("fmi3/VibroImpactHarvester.xml"), &model_description::<Harvester>(Standard::Fmi3).unwrap());
+    check(kept!("fmi3/VibroImpactHarvester.terminalsAndIcons.xml"), &terminals_and_icons::<Harvester>(true).unwrap());
 }
 
 /// Starts; enough to find each dependency on an input.

@@ -30,10 +30,10 @@ fn change<S>(row: &Variable<S>, slave: &mut S, size: f64, random: &mut Random) {
             let moved = if may_be_zero { sign * size } else { present * factor };
             spec.set.expect("a setter")(slave, moved.clamp(spec.min, spec.max));
         }
-        Kind::Integer(spec) => spec.set.expect("a setter")(slave, number(random, 1000)),
+        Kind::Integer(spec) => spec.set.expect("a setter")(slave, number(random, 1000).into()),
         Kind::Boolean(spec) => spec.set.expect("a setter")(slave, random.once_in(2)),
         Kind::Enumeration(spec) => spec.set.expect("a setter")(slave, 1 + number(random, spec.of.items.len())),
-        Kind::String(_) => {}
+        Kind::String(_) | Kind::Clock(_) => {}
     }
 }
 

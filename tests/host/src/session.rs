@@ -127,7 +127,7 @@ fn choose(random: &mut Random, instance: &Instance) -> Function {
             S::StepFailed => random.pick(&[F::Reset, F::SetFmuState, any, any, any]),
             S::Error => random.pick(&[F::Reset, F::SetFmuState, any]),
             S::Terminated => random.pick(&[F::Reset, any]),
-            S::StepInProgress | S::StepCanceled | S::Fatal => any,
+            S::StepInProgress | S::StepCanceled | S::StepMode | S::IntermediateUpdateMode | S::Fatal => any,
         },
     }
 }

@@ -17,7 +17,7 @@ macro_rules! functions {
         #[doc = concat!("`", stringify!($name), "`")]
         pub unsafe fn $name<S: Slave>(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status {
             // SAFETY: contract of this module.
-            unsafe { enter(c, Function::$function, |$i: &mut Instance<S>| $body) }
+            unsafe { enter(c, Function::$function.row(), |$i: &mut Instance<S>| $body) }
         }
     )*};
 }
@@ -54,7 +54,7 @@ functions! {
     fmi2GetString GetString(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2String)
         |i| i.get_strings(array(vr, nvr, "vr")?, array_out(value, nvr, "value")?);
     fmi2SetReal SetReal(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Real)
-        |i| i.set_reals(array(vr, nvr, "vr")?, array(value, nvr, "value")?);
+        |i| i.set_reals::<AsReal>(array(vr, nvr, "vr")?, array(value, nvr, "value")?);
     fmi2SetInteger SetInteger(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Integer)
         |i| i.set::<AsInteger, _>(array(vr, nvr, "vr")?, array(value, nvr, "value")?, |value| value);
     fmi2SetBoolean SetBoolean(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Boolean)
@@ -75,16 +75,8 @@ functions! {
     };
     fmi2SerializedFMUstateSize SerializedFmuStateSize(state: fmi2FMUstate, size: *mut usize)
         |i| give(size, "size", || Ok(i.serialize(state.addr())?.len()));
-    fmi2SerializeFMUstate SerializeFmuState(state: fmi2FMUstate, bytes: *mut fmi2Byte, size: usize) |i| {
-        let blob = i.serialize(state.addr())?;
-        if size < blob.len() {
-            let bound = format!("the state takes {} bytes", blob.len());
-            return Err(CallError::BadArgument { argument: "size", value: size.to_string(), bound });
-        }
-        let mut write = array_out(bytes.cast::<u8>(), blob.len(), "serializedState")?;
-        blob.into_iter().enumerate().for_each(|(k, byte)| write(k, byte));
-        Ok(())
-    };
+    fmi2SerializeFMUstate SerializeFmuState(state: fmi2FMUstate, bytes: *mut fmi2Byte, size: usize)
+        |i| i.serialize_into(state.addr(), size, |length| array_out(bytes.cast::<u8>(), length, "serializedState"));
     fmi2DeSerializeFMUstate DeSerializeFmuState(bytes: *const fmi2Byte, size: usize, state: *mut fmi2FMUstate) |i| {
         let blob = array(bytes.cast::<u8>(), size, "serializedState")?;
         replace(state, |token| i.deserialize(blob, token))

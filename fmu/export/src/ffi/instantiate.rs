@@ -1,11 +1,13 @@
 //! The functions without a component that is live, or without a status.
 
 use super::{Fmu, Handle, text};
-use crate::instance::Instance;
-use crate::logger::Logger;
+use crate::call_state::CallState;
+use crate::instance::{Instance, Session};
+use crate::logger::{Callback, Logger};
 use crate::panics::{guard, panic_message};
 use crate::resource::resource_folder;
 use crate::slave::Slave;
+use crate::standard::Standard;
 use core::ptr::null_mut;
 use core::sync::atomic::Ordering;
 use fmu_abi::{
@@ -45,24 +47,32 @@ pub unsafe fn fmi2Instantiate<S: Slave>(
             guid,
             resources: (!resource_location.is_null()).then_some(resources),
         };
-        let logger = Logger::new(functions, request.name, logging_on != fmi2False);
-        let created = catch_unwind(AssertUnwindSafe(|| create::<S>(fmu, &request, logger)));
-        match created.unwrap_or_else(|payload| Err(format!("the model panicked: {}", panic_message(payload)))) {
-            Ok(instance) => Box::into_raw(Box::new(Handle::new(instance))).cast(),
-            Err(reason) => {
-                let logger = Logger::new(functions, request.name, true);
-                logger.status(fmi2Error, format_args!("fmi2Instantiate: {reason}"));
-                null_mut()
-            }
-        }
+        let callback = functions.and_then(|f| f.logger).map_or(Callback::None, Callback::Fmi2);
+        let environment = functions.map_or(null_mut(), |f| f.componentEnvironment);
+        let logger = |logging_on| Logger::new(callback, environment, request.name, logging_on);
+        made("fmi2Instantiate", logger(true), || create::<S>(fmu, &request, logger(logging_on != fmi2False)))
     })
 }
 
-fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<Instance<S>, String> {
-    let own_guid = fmu.guid::<S>().map_err(|e| format!("the FMU is faulty: {e}"))?;
-    if request.name.trim().is_empty() {
-        return Err("instanceName is empty, blank, NULL or not UTF-8".to_owned());
+/// The component of an instance that `create` makes; NULL if it fails, whose reason goes to the logger.
+pub(crate) fn made<S: Slave>(
+    name: &str,
+    logger: Logger,
+    create: impl FnOnce() -> Result<Instance<S>, String>,
+) -> fmi2Component {
+    let created = catch_unwind(AssertUnwindSafe(create));
+    match created.unwrap_or_else(|payload| Err(format!("the model panicked: {}", panic_message(payload)))) {
+        Ok(instance) => Box::into_raw(Box::new(Handle::new(instance))).cast(),
+        Err(reason) => {
+            logger.status(fmi2Error, format_args!("{name}: {reason}"));
+            null_mut()
+        }
     }
+}
+
+fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<Instance<S>, String> {
+    let own_guid = fmu.guid::<S>(Standard::Fmi2).map_err(|e| format!("the FMU is faulty: {e}"))?;
+    check_name(request.name)?;
     let exchange = request.kind == fmi2ModelExchange;
     if !(exchange && S::INFO.model_exchange.is_some() || request.kind == fmi2CoSimulation) {
         let kind = request.kind;
@@ -92,7 +102,11 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     };
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();
-    Ok(Instance::new(exchange, resources, logger, own_guid))
+    Ok(Instance::new(Session::new(Standard::Fmi2, exchange), resources, logger, own_guid))
+}
+
+pub(crate) fn check_name(name: &str) -> Result<(), String> {
+    if name.trim().is_empty() { Err("instanceName is empty, blank, NULL or not UTF-8".to_owned()) } else { Ok(()) }
 }
 
 /// `fmi2FreeInstance`. NULL is ignored; so is an instance that is in a call, which leaks rather than vanish under
@@ -103,7 +117,13 @@ pub unsafe fn fmi2FreeInstance<S: Slave>(component: fmi2Component) {
         return;
     }
     // SAFETY: by contract the component points to a live handle.
-    if unsafe { &*handle }.busy.swap(true, Ordering::Acquire) {
+    let live = unsafe { &*handle };
+    if live.busy.swap(true, Ordering::Acquire) {
+        return;
+    }
+    // SAFETY: `busy` keeps others out. Within a step of FMI 3.0 the importer is called without it.
+    if unsafe { &*live.instance.get() }.state() == CallState::IntermediateUpdateMode {
+        live.busy.store(false, Ordering::Release);
         return;
     }
     // SAFETY: by contract it came from `Box::into_raw` in `instantiate` and was not freed; `busy` keeps others out.

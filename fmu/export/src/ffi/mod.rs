@@ -23,12 +23,13 @@ mod instantiate;
 pub use functions::*;
 pub use instantiate::*;
 
-use crate::call_state::Function;
+use crate::call_state::Row;
 use crate::check::{TableError, check_fmu};
 use crate::error::CallError;
 use crate::guid::Guid;
 use crate::instance::{Call, Instance};
 use crate::slave::Slave;
+use crate::standard::Standard;
 use core::cell::UnsafeCell;
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
@@ -40,20 +41,24 @@ use std::sync::OnceLock;
 /// What is worked out once per FMU and process: the GUID, once the table is known to be sound. It takes no memory that an
 /// unloaded library would leave behind.
 #[derive(Debug, Default)]
-pub struct Fmu(OnceLock<Guid>);
+pub struct Fmu {
+    fmi2: OnceLock<Guid>,
+    fmi3: OnceLock<Guid>,
+}
 
 impl Fmu {
     /// Nothing worked out yet.
     pub const fn new() -> Self {
-        Self(OnceLock::new())
+        Self { fmi2: OnceLock::new(), fmi3: OnceLock::new() }
     }
 
-    fn guid<S: Slave>(&self) -> Result<Guid, TableError> {
-        if let Some(guid) = self.0.get() {
+    pub(crate) fn guid<S: Slave>(&self, standard: Standard) -> Result<Guid, TableError> {
+        let guid = if standard == Standard::Fmi2 { &self.fmi2 } else { &self.fmi3 };
+        if let Some(guid) = guid.get() {
             return Ok(*guid);
         }
         check_fmu::<S>()?;
-        Ok(*self.0.get_or_init(Guid::of::<S>))
+        Ok(*guid.get_or_init(|| Guid::of::<S>(standard)))
     }
 }
 
@@ -66,7 +71,7 @@ pub(crate) struct Handle<S: Slave> {
 }
 
 impl<S: Slave> Handle<S> {
-    fn new(instance: Instance<S>) -> Self {
+    pub(crate) fn new(instance: Instance<S>) -> Self {
         Self { busy: AtomicBool::new(false), instance: UnsafeCell::new(instance) }
     }
 
@@ -87,10 +92,21 @@ impl<S: Slave> Handle<S> {
 }
 
 /// The way into every function that acts on an instance.
-unsafe fn enter<S: Slave>(
+#[inline]
+pub(crate) unsafe fn enter<S: Slave>(
     component: fmi2Component,
-    function: Function,
+    function: Row,
     call: impl FnOnce(&mut Instance<S>) -> Call,
+) -> fmi2Status {
+    // SAFETY: contract of this module.
+    unsafe { with(component, |i| i.run(function, call)) }
+}
+
+/// The same without the state check.
+#[inline]
+pub(crate) unsafe fn with<S: Slave>(
+    component: fmi2Component,
+    body: impl FnOnce(&mut Instance<S>) -> fmi2Status,
 ) -> fmi2Status {
     let handle = component.cast::<Handle<S>>();
     if !handle.is_aligned() {
@@ -100,11 +116,11 @@ unsafe fn enter<S: Slave>(
     let Some(handle) = (unsafe { handle.as_ref() }) else {
         return fmi2Error;
     };
-    handle.with(|i| i.run(function, call))
+    handle.with(body)
 }
 
 /// Checks a pointer that is to become a slice.
-fn check_array<T>(pointer: *const T, count: usize, argument: &'static str) -> Call {
+pub(crate) fn check_array<T>(pointer: *const T, count: usize, argument: &'static str) -> Call {
     let reason = if pointer.is_null() {
         return Err(CallError::NullArgument(argument));
     } else if !pointer.is_aligned() {
@@ -118,7 +134,7 @@ fn check_array<T>(pointer: *const T, count: usize, argument: &'static str) -> Ca
 }
 
 /// An array argument. An empty one may be NULL.
-unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &'static str) -> Call<&'a [T]> {
+pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &'static str) -> Call<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -128,7 +144,7 @@ unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &'static str) 
 }
 
 /// Writes into an array to be filled, which the importer need not have initialised: takes the position and the value.
-unsafe fn array_out<'a, T: 'a>(
+pub(crate) unsafe fn array_out<'a, T: 'a>(
     pointer: *mut T,
     count: usize,
     argument: &'static str,
@@ -146,7 +162,7 @@ unsafe fn array_out<'a, T: 'a>(
 }
 
 /// Writes a single value.
-unsafe fn give<T>(pointer: *mut T, argument: &'static str, value: impl FnOnce() -> Call<T>) -> Call {
+pub(crate) unsafe fn give<T>(pointer: *mut T, argument: &'static str, value: impl FnOnce() -> Call<T>) -> Call {
     check_array(pointer, 1, argument)?;
     let value = value()?;
     // SAFETY: checked above; by contract there is room for one value.
@@ -155,7 +171,7 @@ unsafe fn give<T>(pointer: *mut T, argument: &'static str, value: impl FnOnce() 
 }
 
 /// Replaces the token of an FMU state by what `call` makes of it; 0 is NULL.
-unsafe fn replace(state: *mut fmi2FMUstate, call: impl FnOnce(usize) -> Call<usize>) -> Call {
+pub(crate) unsafe fn replace(state: *mut fmi2FMUstate, call: impl FnOnce(usize) -> Call<usize>) -> Call {
     check_array(state, 1, "FMUstate")?;
     // SAFETY: checked above; the importer initialised it, to NULL or to a token.
     let state = unsafe { &mut *state };
@@ -164,7 +180,7 @@ unsafe fn replace(state: *mut fmi2FMUstate, call: impl FnOnce(usize) -> Call<usi
 }
 
 /// A string argument, or why it is none.
-unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, &'static str> {
+pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, &'static str> {
     if pointer.is_null() {
         return Err("it is NULL");
     }

@@ -61,7 +61,7 @@ impl<S: Slave> Instance<S> {
 
     /// A step that is as it should be, as nearly all are, is seen at a glance.
     #[inline]
-    fn check_step(&self, t: f64, h: f64) -> Call {
+    pub(super) fn check_step(&self, t: f64, h: f64) -> Call {
         let (end, stop) = (t + h, self.core.experiment.and_then(|e| e.stop_time));
         let latest = stop.map_or(f64::MAX, |stop| stop.min(f64::MAX));
         if t < end && end <= latest && (t - self.core.time).abs() <= TIME_ROUNDING * t.abs() {

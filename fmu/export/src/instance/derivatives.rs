@@ -11,6 +11,24 @@ use crate::error::{CallError, SlaveError};
 use crate::slave::Slave;
 use crate::variable::{Causality, Kind, Variability, Variable};
 
+fn check_seeds<S: Slave>(seeds: &[f64], argument: &'static str) -> Call {
+    if !S::INFO.directional_derivatives {
+        return Err(CallError::Unsupported("directional derivatives"));
+    }
+    let Some(seed) = seeds.iter().find(|seed| !seed.is_finite()) else { return Ok(()) };
+    let bound = "it must be finite".into();
+    Err(CallError::BadArgument { argument, value: seed.to_string(), bound })
+}
+
+/// The sum, unless the model knows none.
+fn known_sum<S>(sum: f64, of: &Variable<S>) -> Call<f64> {
+    if !sum.is_nan() {
+        return Ok(sum);
+    }
+    let message = format!("there is no directional derivative of {} under these parameters", of.name());
+    Err(SlaveError::error(message).into())
+}
+
 impl<S: Slave> Instance<S> {
     /// `fmi2GetDirectionalDerivative`: for each unknown the sum of its partial derivatives times the seeds.
     pub(crate) fn directional_derivative(
@@ -20,27 +38,40 @@ impl<S: Slave> Instance<S> {
         seeds: &[f64],
         mut write: impl FnMut(usize, f64),
     ) -> Call {
-        if !S::INFO.directional_derivatives {
-            return Err(CallError::Unsupported("directional derivatives"));
-        }
-        if let Some(seed) = seeds.iter().find(|seed| !seed.is_finite()) {
-            let bound = "it must be finite".into();
-            return Err(CallError::BadArgument { argument: "dvKnown", value: seed.to_string(), bound });
-        }
-        self.update()?;
-        let knowns = knowns.iter().map(|&reference| self.known(reference)).collect::<Call<Vec<_>>>()?;
-        let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;
+        check_seeds::<S>(seeds, "dvKnown")?;
+        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns)?;
         for (i, unknown) in unknowns.into_iter().enumerate() {
             let terms = knowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
             let sum: f64 = terms.map(|(known, seed)| self.partial_derivative(unknown, known) * seed).sum();
-            if sum.is_nan() {
-                let message =
-                    format!("there is no directional derivative of {} under these parameters", unknown.name());
-                return Err(SlaveError::error(message).into());
-            }
-            write(i, sum);
+            write(i, known_sum(sum, unknown)?);
         }
         Ok(())
+    }
+
+    /// `fmi3GetAdjointDerivative`: for each known the sum of the partial derivatives with respect to it times the seeds.
+    pub(crate) fn adjoint_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seeds: &[f64],
+        mut write: impl FnMut(usize, f64),
+    ) -> Call {
+        check_seeds::<S>(seeds, "seed")?;
+        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns)?;
+        for (i, known) in knowns.into_iter().enumerate() {
+            let terms = unknowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
+            let sum: f64 = terms.map(|(unknown, seed)| self.partial_derivative(unknown, known) * seed).sum();
+            write(i, known_sum(sum, known)?);
+        }
+        Ok(())
+    }
+
+    /// The rows of both, as values that are set have them.
+    fn unknowns_and_knowns(&mut self, unknowns: &[u32], knowns: &[u32]) -> Call<[Vec<&'static Variable<S>>; 2]> {
+        self.update()?;
+        let knowns = knowns.iter().map(|&reference| self.known(reference)).collect::<Call<Vec<_>>>()?;
+        let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;
+        Ok([unknowns, knowns])
     }
 
     /// Between events discrete variables are constant: their derivatives are zero. In model exchange, after initialisation, an

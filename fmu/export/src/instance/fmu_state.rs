@@ -2,7 +2,7 @@
 
 use super::co_simulation::LastStep;
 use super::lifecycle::fault;
-use super::{Call, Core, Instance};
+use super::{Call, Core, Instance, Session};
 use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::serialize::{StateError, StateReader, StateWriter, seal, unseal};
@@ -33,15 +33,29 @@ impl<S: Slave> Instance<S> {
         Ok(seal(self.guid, &out.into_bytes()))
     }
 
+    /// The same into room for `size` bytes, which `place` makes a place of.
+    pub(crate) fn serialize_into<W: FnMut(usize, u8)>(
+        &self,
+        token: usize,
+        size: usize,
+        place: impl FnOnce(usize) -> Call<W>,
+    ) -> Call {
+        let blob = self.serialize(token)?;
+        if size < blob.len() {
+            let bound = format!("the state takes {} bytes", blob.len());
+            return Err(CallError::BadArgument { argument: "size", value: size.to_string(), bound });
+        }
+        let mut write = place(blob.len())?;
+        blob.into_iter().enumerate().for_each(|(k, byte)| write(k, byte));
+        Ok(())
+    }
+
     /// `fmi2DeSerializeFMUstate`: into a new state if `token` is NULL, else into that one. Returns its token.
     pub(crate) fn deserialize(&mut self, blob: &[u8], token: usize) -> Call<usize> {
         check_serializable::<S>()?;
         let mut content = StateReader::new(unseal(self.guid, blob)?);
-        let core = Core::read(&mut content, &self.core.model)?;
+        let core = Core::read(&mut content, &self.core.model, &self.session)?;
         content.finish()?;
-        if core.exchange != self.core.exchange {
-            return Err(StateError::Invalid("it is of an instance of the other interface type".into()).into());
-        }
         self.core.add(token, core)
     }
 }
@@ -56,44 +70,41 @@ impl<S: Slave> Clone for Core<S> {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Self { ref model, state, exchange, time, experiment, dirty, last_step } = *source;
+        let Self { ref model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed } = *source;
         self.model.clone_from(model);
         (self.state, self.exchange, self.time) = (state, exchange, time);
         (self.experiment, self.dirty, self.last_step) = (experiment, dirty, last_step);
+        (self.ticking, self.states_changed) = (ticking, states_changed);
     }
 }
 
 /// What the exporter knows about a model, as it is serialised: all of [`Core`] but the model.
-type Record = (CallState, bool, f64, bool, Option<Experiment>, LastStep);
+type Record = (CallState, bool, f64, bool, Option<Experiment>, LastStep, [bool; 2]);
 
 impl<S: Slave> Core<S> {
     fn write(&self, out: &mut StateWriter) -> Result<(), StateError> {
-        let Self { ref model, state, exchange, time, experiment, dirty, last_step } = *self;
-        let record: Record = (state, exchange, time, dirty, experiment, last_step);
+        let Self { ref model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed } = *self;
+        let record: Record = (state, exchange, time, dirty, experiment, last_step, [ticking, states_changed]);
         out.write(&record)?;
         model.write_state(out)
     }
 
-    fn read(from: &mut StateReader<'_>, present: &S) -> Result<Self, StateError> {
-        let (state, exchange, time, dirty, experiment, last_step): Record = from.take()?;
+    fn read(from: &mut StateReader<'_>, present: &S, session: &Session) -> Result<Self, StateError> {
+        let (state, exchange, time, dirty, experiment, last_step, [ticking, states_changed]): Record = from.take()?;
         let model = S::read_state(from, present)?;
-        let core = Self { model, state, exchange, time, experiment, dirty, last_step };
-        core.check()?;
+        let core = Self { model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed };
+        core.check(session)?;
         Ok(core)
     }
 
     /// What no call can lead to is refused: a time that is no number compares with none, and so would switch checks of later
     /// calls off.
-    fn check(&self) -> Result<(), StateError> {
-        use CallState::{ContinuousTimeMode, EventMode, Fatal, StepCanceled, StepComplete, StepFailed, StepInProgress};
+    fn check(&self, session: &Session) -> Result<(), StateError> {
         let invalid = |text: String| Err(StateError::Invalid(text));
-        let is_possible = match self.state {
-            StepInProgress | StepCanceled | Fatal => false,
-            StepComplete | StepFailed => !self.exchange,
-            EventMode | ContinuousTimeMode => self.exchange,
-            _ => true,
-        };
-        if !is_possible {
+        if self.exchange != session.exchange {
+            return invalid("it is of an instance of the other interface type".to_owned());
+        }
+        if !session.may_be_saved_in(self.state) {
             return invalid(format!("no state that is saved is in state {}", self.state));
         }
         if !self.time.is_finite() {

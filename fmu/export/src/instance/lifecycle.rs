@@ -5,6 +5,7 @@ use crate::call_state::CallState;
 use crate::error::CallError;
 use crate::logger::LogCategory;
 use crate::slave::{Experiment, Slave};
+use crate::standard::Standard;
 
 /// What is wrong with an experiment: the argument, its value and the bound.
 pub(super) fn fault(experiment: &Experiment) -> Option<(&'static str, f64, String)> {
@@ -24,7 +25,9 @@ impl<S: Slave> Instance<S> {
     /// `fmi2SetDebugLogging`. Without names, all categories are meant. An unknown name is logged and no more:
     /// the computation can go on.
     pub(crate) fn set_debug_logging(&mut self, on: bool, names: &[&str]) {
-        if !on || names.is_empty() || names.contains(&LogCategory::ALL_NAME) {
+        // FMI 2.0 sets what is on, FMI 3.0 switches what is named.
+        let adds = self.session.standard == Standard::Fmi3;
+        if !adds && !on || names.is_empty() || names.contains(&LogCategory::ALL_NAME) {
             self.logger.enable_all(on);
             return;
         }
@@ -34,7 +37,7 @@ impl<S: Slave> Instance<S> {
             self.logger.tolerated(format_args!("there is no log category {name:?}; tolerated"));
         }
         let known = names.iter().filter_map(|name| LogCategory::from_name(name));
-        self.logger.enable_only(known);
+        if adds { known.for_each(|category| self.logger.enable(category, on)) } else { self.logger.enable_only(known) }
     }
 
     /// `fmi2SetupExperiment`
@@ -62,7 +65,8 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn exit_initialization_mode(&mut self) -> Call {
         self.update()?;
         self.core.model.initialize(&self.logger)?;
-        self.core.state = if self.core.exchange { CallState::EventMode } else { CallState::StepComplete };
+        self.core.state = self.session.first_state();
+        self.core.ticking = true; // what happens at the start is an event
         self.core.dirty = self.core.exchange; // to be placed at the start
         Ok(())
     }
@@ -78,6 +82,7 @@ impl<S: Slave> Instance<S> {
     /// `fmi2Reset`: a fresh model. Saved FMU states and log settings stay.
     pub(crate) fn reset(&mut self) {
         *self.core = Core::new(self.core.exchange, self.resources.as_deref());
+        self.under_way = None;
         self.logger.forget_given();
         self.strings.clear();
     }

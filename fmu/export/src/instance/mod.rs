@@ -4,19 +4,24 @@
 mod co_simulation;
 mod cores;
 mod derivatives;
+mod events;
 mod fmu_state;
 mod lifecycle;
 mod model_exchange;
+mod stepping;
 mod values;
 
-use crate::call_state::{CallState, Function, Interface, Legality};
+use crate::call_state::{CallState, Function, Interface, Legality, Row};
 use crate::error::CallError;
 use crate::guid::Guid;
 use crate::logger::Logger;
 use crate::panics::{guard, panic_message};
 use crate::slave::{Experiment, Slave};
+use crate::standard::Standard;
 use co_simulation::LastStep;
 use cores::Cores;
+pub(crate) use stepping::{Progress, Session, StepOutcome};
+use stepping::UnderWay;
 use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -37,11 +42,18 @@ pub(crate) struct Core<S> {
     /// Something was set since calculated values were brought up to date.
     dirty: bool,
     last_step: LastStep,
+    /// FMI 3.0: an event has happened at the present time, and output clocks may tick.
+    ticking: bool,
+    /// FMI 3.0, model exchange: that event has changed continuous states, which nobody has been told yet.
+    states_changed: bool,
 }
 
 /// An instance of a slave.
 pub(crate) struct Instance<S: Slave> {
     core: Cores<S>,
+    session: Session,
+    /// FMI 3.0: a step within which the importer is looking at intermediate values.
+    under_way: Option<UnderWay>,
     logger: Logger,
     guid: Guid,
     /// Folder `resources` of the unpacked FMU.
@@ -68,15 +80,27 @@ impl<S: Slave> Core<S> {
             experiment: None,
             dirty: true,
             last_step: LastStep::NONE,
+            ticking: false,
+            states_changed: false,
         }
     }
 }
 
 impl<S: Slave> Instance<S> {
     /// A fresh instance.
-    pub(crate) fn new(exchange: bool, resources: Option<PathBuf>, logger: Logger, guid: Guid) -> Self {
-        let core = Cores::new(Core::new(exchange, resources.as_deref()));
-        Self { core, logger, guid, resources, strings: Vec::new() }
+    pub(crate) fn new(session: Session, resources: Option<PathBuf>, logger: Logger, guid: Guid) -> Self {
+        let core = Cores::new(Core::new(session.exchange, resources.as_deref()));
+        Self { core, session, under_way: None, logger, guid, resources, strings: Vec::new() }
+    }
+
+    /// The state that it is in.
+    pub(crate) fn state(&self) -> CallState {
+        self.core.state
+    }
+
+    /// How it was made.
+    pub(crate) const fn session(&self) -> &Session {
+        &self.session
     }
 
     /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would
@@ -93,47 +117,54 @@ impl<S: Slave> Instance<S> {
 
     /// Runs one C function: state check and the call itself behind a panic guard, then status, log and new state.
     #[inline]
-    pub(crate) fn run(&mut self, function: Function, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
+    pub(crate) fn run(&mut self, function: Row, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
+        self.guarded(function.name, |i| {
+            i.check_state(function)?;
+            i.core.model.on_call(function.name);
+            call(i)
+        })
+    }
+
+    /// The same without the state check.
+    #[inline]
+    pub(crate) fn guarded(&mut self, name: &'static str, call: impl FnOnce(&mut Self) -> Call) -> fmi2Status {
         // A model that panicked may be inconsistent. That is safe: it goes to the error state, in which its
         // values are for debugging only and from which restoring a state or a reset replaces it.
         let result = catch_unwind(AssertUnwindSafe(|| {
-            let result = self.check_state(function).and_then(|()| {
-                self.core.model.on_call(function);
-                call(self)
-            });
-            result.map_err(Box::new) // so that there is little to hand on
+            call(self).map_err(Box::new) // so that there is little to hand on
         }));
         match result {
             Ok(Ok(())) if self.logger.take_warned() => fmi2Warning,
             Ok(Ok(())) => fmi2OK,
-            Ok(Err(error)) => self.fail(function, &error),
-            Err(payload) => self.fail(function, &CallError::Panic(panic_message(payload))),
+            Ok(Err(error)) => self.fail(name, &error),
+            Err(payload) => self.fail(name, &CallError::Panic(panic_message(payload))),
         }
     }
 
     #[inline]
-    fn check_state(&self, function: Function) -> Call {
+    fn check_state(&self, function: Row) -> Call {
         let state = self.core.state;
         let interface = if self.core.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
         match function.legality(interface, state) {
             Legality::Legal => Ok(()),
             Legality::Tolerated => {
-                self.logger
-                    .tolerated(format_args!("{}: FMI 2.0 forbids it in state {state}; tolerated", function.name()));
+                let (name, standard) = (function.name, self.session.standard);
+                self.logger.tolerated(format_args!("{name}: {standard} forbids it in state {state}; tolerated"));
                 Ok(())
             }
             Legality::Illegal => Err(CallError::IllegalState { state, legal: function.legal_states(interface) }),
         }
     }
 
-    /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued". Nothing
-    /// leads out of the fatal one.
+    /// Any error leaves the instance in the error state, as FMI 2.0 has it: "the simulation cannot be continued"; in FMI 3.0 it is
+    /// terminated. Nothing leads out of the fatal state.
     #[cold]
-    fn fail(&mut self, function: Function, error: &CallError) -> fmi2Status {
+    fn fail(&mut self, name: &str, error: &CallError) -> fmi2Status {
         let status = if self.core.state == CallState::Fatal { fmi2Fatal } else { error.status() };
         self.logger.take_warned();
-        guard((), || self.logger.status(status, format_args!("{}: {error}", function.name())));
+        guard((), || self.logger.status(status, format_args!("{name}: {error}")));
         let state = match status {
+            fmi2Error if self.session.standard == Standard::Fmi3 => CallState::Terminated,
             fmi2Error => CallState::Error,
             fmi2Fatal => CallState::Fatal,
             _ => return status,
@@ -153,7 +184,7 @@ impl<S: Slave> Instance<S> {
         if self.core.state.is_before_initialization() {
             self.core.model.update();
             self.core.dirty = false;
-        } else if matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
+        } else if self.core.exchange && matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
             let time = self.core.time;
             self.core.model.place(time, None)?;
             self.core.dirty = false;

@@ -4,8 +4,9 @@ use super::values::variable;
 use super::{Call, Instance};
 use crate::call_state::CallState;
 use crate::error::CallError;
-use crate::slave::{EventOutcome, Slave};
-use crate::variable::{AsReal, Kind, Variable};
+use crate::slave::Slave;
+use crate::standard::Standard;
+use crate::variable::{Kind, Transfer, Variable};
 
 /// The continuous states of a table, in the order of the derivatives in it, each with its derivative.
 pub(super) fn states_and_derivatives<M>(table: &[Variable<M>]) -> impl Iterator<Item = (&Variable<M>, &Variable<M>)> {
@@ -43,24 +44,11 @@ fn real<M>(variable: &Variable<M>, model: &M) -> f64 {
 }
 
 impl<S: Slave> Instance<S> {
-    /// `fmi2EnterEventMode`
-    pub(crate) fn enter_event_mode(&mut self) -> Call {
-        self.update()?;
-        self.core.state = CallState::EventMode;
-        Ok(())
-    }
-
     /// `fmi2EnterContinuousTimeMode`
     pub(crate) fn enter_continuous_time_mode(&mut self) -> Call {
         self.update()?;
-        self.core.state = CallState::ContinuousTimeMode;
+        self.leave_event(CallState::ContinuousTimeMode);
         Ok(())
-    }
-
-    /// `fmi2NewDiscreteStates`
-    pub(crate) fn new_discrete_states(&mut self) -> Call<EventOutcome> {
-        self.update()?;
-        Ok(self.core.model.handle_events(&self.logger)?)
     }
 
     /// `fmi2SetTime`. A time behind the stop time is taken: integrators that choose their own steps go past the end and
@@ -78,12 +66,22 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
-    /// `fmi2SetReal`: any other Set, and in continuous-time mode one of the continuous states, too.
-    pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Call {
+    /// `fmi2SetReal`, `fmi3SetFloat64`: any other Set, and in continuous-time mode one of the continuous states, too; of FMI 3.0 in
+    /// event mode, too, if it does not jump there.
+    pub(crate) fn set_reals<T>(&mut self, references: &[u32], values: &[f64]) -> Call
+    where
+        T: for<'a> Transfer<S, Given<'a> = f64>,
+    {
         let (mut states, mut others) = (Vec::new(), (Vec::new(), Vec::new()));
         let between_events = self.core.state == CallState::ContinuousTimeMode;
+        let at_event = self.core.exchange
+            && self.core.state == CallState::EventMode
+            && self.session.standard == Standard::Fmi3;
+        let may_be_placed = |reference| {
+            between_events || at_event && variable::<S>(reference).is_ok_and(|variable| !variable.reinit())
+        };
         for (&reference, &value) in references.iter().zip(values) {
-            if let Some(index) = state_index::<S>(reference).filter(|_| between_events) {
+            if let Some(index) = state_index::<S>(reference).filter(|_| may_be_placed(reference)) {
                 states.push((index, value));
             } else {
                 others.0.push(reference);
@@ -91,7 +89,7 @@ impl<S: Slave> Instance<S> {
             }
         }
         if states.is_empty() {
-            return self.set::<AsReal, _>(references, values, |value| value);
+            return self.set::<T, _>(references, values, |value| value);
         }
         let mut all = vec![0.0; states_and_derivatives(S::variables()).count()];
         self.get_continuous_states(all.len(), |k, value| all[k] = value)?;
@@ -99,7 +97,7 @@ impl<S: Slave> Instance<S> {
             all[index] = value;
         }
         check_states::<S>(&all)?;
-        self.set::<AsReal, _>(&others.0, &others.1, |value| value)?;
+        self.set::<T, _>(&others.0, &others.1, |value| value)?;
         self.set_continuous_states(&all)
     }
 
@@ -115,6 +113,11 @@ impl<S: Slave> Instance<S> {
     /// `fmi2GetContinuousStates`
     pub(crate) fn get_continuous_states(&mut self, count: usize, write: impl FnMut(usize, f64)) -> Call {
         self.write_all(count, |(state, _), model| real(state, model), write)
+    }
+
+    /// Number of the continuous states.
+    pub(crate) fn state_count(&self) -> usize {
+        states_and_derivatives(S::variables()).count()
     }
 
     /// `fmi2GetDerivatives`

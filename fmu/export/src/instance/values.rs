@@ -1,11 +1,12 @@
 //! Get and Set of variables. A Set is all or nothing: every value is checked before the first is written.
 
 use super::{Call, Instance};
-use crate::call_state::Legality;
+use crate::call_state::{CallState, Legality};
 use crate::error::CallError;
 use crate::logger::c_string;
 use crate::slave::Slave;
-use crate::variable::{AsString, Transfer, Variable};
+use crate::standard::Standard;
+use crate::variable::{Added, AsString, Transfer, Variable};
 use core::ffi::c_char;
 
 /// The variable with this value reference.
@@ -15,23 +16,54 @@ pub(super) fn variable<S: Slave>(reference: u32) -> Call<&'static Variable<S>> {
     found.ok_or(CallError::UnknownReference { reference, last: table.len().saturating_sub(1) })
 }
 
-fn wrong_type<S: Slave>(reference: u32, wanted: &'static str) -> CallError {
-    match variable::<S>(reference) {
-        Err(unknown) => unknown,
-        Ok(variable) => {
-            CallError::WrongType { name: variable.name(), reference, actual: variable.kind().type_name(), wanted }
+impl<S: Slave> Instance<S> {
+    /// A variable that is of another type than is asked for, or of none.
+    pub(crate) fn wrong_type(&self, reference: u32, wanted: &'static str) -> CallError {
+        match variable::<S>(reference) {
+            Err(unknown) => unknown,
+            Ok(variable) => {
+                let actual = match self.session.standard {
+                    Standard::Fmi2 => variable.kind().type_name(),
+                    Standard::Fmi3 => variable.kind().type_name_3(),
+                };
+                CallError::WrongType { name: variable.name(), reference, actual, wanted }
+            }
         }
     }
-}
 
-impl<S: Slave> Instance<S> {
+    /// `fmi3GetFloat64`: any other Get, and one of the variables that the exporter adds to the table.
+    pub(crate) fn get_floats<T>(&mut self, references: &[u32], mut write: impl FnMut(usize, f64)) -> Call
+    where
+        T: Transfer<S, Taken = f64>,
+    {
+        let added = |reference: u32| Added::of::<S>(reference);
+        if references.iter().all(|reference| added(*reference).is_none()) {
+            return self.get::<T>(references, write);
+        }
+        self.update()?;
+        for (k, &reference) in references.iter().enumerate() {
+            match added(reference) {
+                Some(_) if self.core.state == CallState::IntermediateUpdateMode => {
+                    return Err(CallError::NotIntermediate { name: "time or event indicator", type_name: T::NAME });
+                }
+                Some(Added::Time) => write(k, self.core.time),
+                Some(Added::Indicator(index)) => {
+                    let indicators = self.core.model.event_indicators();
+                    write(k, indicators.get(index).copied().unwrap_or(f64::NAN));
+                }
+                None => self.get::<T>(&[reference], |_, value| write(k, value))?,
+            }
+        }
+        Ok(())
+    }
+
     /// `fmi2GetReal` and its kin. `write` takes each value with its position in the call.
     pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut write: impl FnMut(usize, T::Taken)) -> Call {
         self.update()?;
         for (i, &reference) in references.iter().enumerate() {
             let variable = variable::<S>(reference)?;
-            let value = T::get(variable, &self.core.model).ok_or_else(|| wrong_type::<S>(reference, T::NAME))?;
-            if variable.may_be_read(S::variables(), self.core.state) == Legality::Tolerated {
+            let value = T::get(variable, &self.core.model).ok_or_else(|| self.wrong_type(reference, T::NAME))?;
+            if self.may_be_read(variable, reference)? == Legality::Tolerated {
                 self.tolerate(variable, "read");
             }
             write(i, value);
@@ -59,7 +91,7 @@ impl<S: Slave> Instance<S> {
     ) -> Call {
         for (&reference, &value) in references.iter().zip(values) {
             let variable = variable::<S>(reference)?;
-            T::check(variable, take(value)).ok_or_else(|| wrong_type::<S>(reference, T::NAME))??;
+            T::check(variable, take(value)).ok_or_else(|| self.wrong_type(reference, T::NAME))??;
             self.check_settable(variable)?;
         }
         for (&reference, &value) in references.iter().zip(values) {
@@ -69,8 +101,18 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
+    /// In intermediate update mode only what the importer asked for when it made the instance.
+    fn may_be_read(&self, variable: &Variable<S>, reference: u32) -> Call<Legality> {
+        let state = self.core.state;
+        if state == CallState::IntermediateUpdateMode && !self.session.is_intermediate(reference) {
+            let (name, type_name) = (variable.name(), variable.kind().type_name_3());
+            return Err(CallError::NotIntermediate { name, type_name });
+        }
+        Ok(variable.may_be_read(S::variables(), state, self.session.standard))
+    }
+
     pub(super) fn check_settable(&self, variable: &Variable<S>) -> Call {
-        match variable.may_be_set(S::variables(), self.core.state) {
+        match variable.may_be_set(S::variables(), self.core.state, self.session.standard) {
             Legality::Legal => Ok(()),
             Legality::Tolerated => {
                 self.tolerate(variable, "set");
@@ -87,8 +129,8 @@ impl<S: Slave> Instance<S> {
 
     fn tolerate(&self, variable: &Variable<S>, what: &str) {
         let (name, causality) = (variable.name(), variable.causality().as_str());
-        let state = self.core.state;
+        let (state, standard) = (self.core.state, self.session.standard);
         self.logger
-            .tolerated(format_args!("FMI 2.0 forbids that {causality} {name} be {what} in state {state}; tolerated"));
+            .tolerated(format_args!("{standard} forbids that {causality} {name} be {what} in state {state}; tolerated"));
     }
 }

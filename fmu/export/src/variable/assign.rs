@@ -1,11 +1,11 @@
 //! Checks of a value ahead of a Set, and the accessors by type. Nothing is written here that was not checked.
 
-use super::kind::{EnumerationSpec, IntegerSpec, Kind, RealSpec, StringSpec};
+use super::kind::{EnumerationSpec, IntegerSpec, IntegerWidth, Kind, RealSpec, StringSpec};
 use super::{BooleanSpec, Variable};
 use crate::error::CallError;
 use fmu_abi::fmi2Boolean;
 
-/// A type of the C interface. Enumerations travel as Integers.
+/// A type of the C interface. Enumerations travel as Integers, in FMI 3.0 as Int64.
 pub(crate) trait Transfer<M: 'static>: Copy {
     /// What is handed in by a Set.
     type Given<'a>: Copy;
@@ -27,9 +27,12 @@ pub(crate) trait Transfer<M: 'static>: Copy {
 /// Marker of `fmi2Real`.
 #[derive(Clone, Copy)]
 pub(crate) struct AsReal;
-/// Marker of `fmi2Integer`.
+/// Marker of `fmi3Float64`.
 #[derive(Clone, Copy)]
-pub(crate) struct AsInteger;
+pub(crate) struct AsFloat64;
+/// Marker of `fmi3Float32`.
+#[derive(Clone, Copy)]
+pub(crate) struct AsFloat32;
 /// Marker of `fmi2Boolean`.
 #[derive(Clone, Copy)]
 pub(crate) struct AsBoolean;
@@ -63,35 +66,147 @@ impl<M: 'static> Transfer<M> for AsReal {
     }
 }
 
-impl<M: 'static> Transfer<M> for AsInteger {
-    type Given<'a> = i32;
-    type Taken = i32;
-    const NAME: &'static str = "Integer";
+impl<M: 'static> Transfer<M> for AsFloat64 {
+    type Given<'a> = f64;
+    type Taken = f64;
+    const NAME: &'static str = "Float64";
 
-    fn get(variable: &Variable<M>, model: &M) -> Option<i32> {
-        match &variable.kind {
-            Kind::Integer(spec) => Some((spec.get)(model)),
-            Kind::Enumeration(spec) => Some((spec.get)(model)),
+    fn get(variable: &Variable<M>, model: &M) -> Option<f64> {
+        if variable.kind.is_single() { None } else { AsReal::get(variable, model) }
+    }
+
+    fn check(variable: &Variable<M>, value: f64) -> Option<Result<(), CallError>> {
+        if variable.kind.is_single() { None } else { AsReal::check(variable, value) }
+    }
+
+    fn set(variable: &Variable<M>, model: &mut M, value: f64) {
+        AsReal::set(variable, model, value);
+    }
+}
+
+impl<M: 'static> Transfer<M> for AsFloat32 {
+    type Given<'a> = f32;
+    type Taken = f32;
+    const NAME: &'static str = "Float32";
+
+    #[allow(clippy::cast_possible_truncation)] // what single precision is
+    fn get(variable: &Variable<M>, model: &M) -> Option<f32> {
+        variable.kind.is_single().then(|| AsReal::get(variable, model)).flatten().map(|value| value as f32)
+    }
+
+    fn check(variable: &Variable<M>, value: f32) -> Option<Result<(), CallError>> {
+        variable.kind.is_single().then(|| AsReal::check(variable, value.into())).flatten()
+    }
+
+    fn set(variable: &Variable<M>, model: &mut M, value: f32) {
+        AsReal::set(variable, model, value.into());
+    }
+}
+
+/// How an integer of the C interface and one of a model become the other; what does not fit, the nearest.
+trait Whole: Copy + ToString {
+    fn of(value: i64) -> Self;
+    fn widened(self) -> Option<i64>;
+}
+
+impl<M> Kind<M> {
+    fn whole(&self, model: &M) -> Option<i64> {
+        match self {
+            Self::Integer(spec) => Some((spec.get)(model)),
+            Self::Enumeration(spec) => Some((spec.get)(model).into()),
             _ => None,
         }
     }
 
-    fn check(variable: &Variable<M>, value: i32) -> Option<Result<(), CallError>> {
-        match &variable.kind {
-            Kind::Integer(spec) => Some(refuse(variable, &value, spec.complaint(value))),
-            Kind::Enumeration(spec) => Some(refuse(variable, &value, spec.complaint(value))),
+    fn complaint_of_whole(&self, value: Option<i64>) -> Option<Option<String>> {
+        match self {
+            Self::Integer(spec) => {
+                Some(value.map_or_else(|| Some(format!("above its max {}", spec.max)), |value| spec.complaint(value)))
+            }
+            Self::Enumeration(spec) => {
+                let number = value.and_then(|value| i32::try_from(value).ok());
+                Some(spec.complaint(number.unwrap_or(i32::MIN)))
+            }
             _ => None,
         }
     }
 
-    fn set(variable: &Variable<M>, model: &mut M, value: i32) {
-        if let Kind::Integer(IntegerSpec { set: Some(set), .. })
-        | Kind::Enumeration(EnumerationSpec { set: Some(set), .. }) = variable.kind
-        {
-            set(model, value);
+    fn set_whole(&self, model: &mut M, value: i64) {
+        match self {
+            Self::Integer(IntegerSpec { set: Some(set), .. }) => set(model, value),
+            Self::Enumeration(EnumerationSpec { set: Some(set), .. }) => set(model, i32::of(value)),
+            _ => {}
         }
     }
 }
+
+macro_rules! integers {
+    ($($marker:ident $integer:ident $name:literal |$kind:ident| $fits:expr;)*) => {$(
+        #[doc = concat!("Marker of ", $name, ".")]
+        #[derive(Clone, Copy)]
+        pub(crate) struct $marker;
+
+        impl<M: 'static> Transfer<M> for $marker {
+            type Given<'a> = $integer;
+            type Taken = $integer;
+            const NAME: &'static str = $name;
+
+            fn get(variable: &Variable<M>, model: &M) -> Option<$integer> {
+                let $kind = &variable.kind;
+                if $fits { $kind.whole(model).map(Whole::of) } else { None }
+            }
+
+            fn check(variable: &Variable<M>, value: $integer) -> Option<Result<(), CallError>> {
+                let $kind = &variable.kind;
+                let complaint = if $fits { $kind.complaint_of_whole(value.widened()) } else { None };
+                complaint.map(|complaint| refuse(variable, &value, complaint))
+            }
+
+            fn set(variable: &Variable<M>, model: &mut M, value: $integer) {
+                if let Some(value) = value.widened() {
+                    variable.kind.set_whole(model, value);
+                }
+            }
+        }
+    )*};
+}
+integers! {
+    AsInteger i32 "Integer" |_kind| true;
+    AsInt8 i8 "Int8" |kind| kind.is_of(IntegerWidth::Int8);
+    AsUInt8 u8 "UInt8" |kind| kind.is_of(IntegerWidth::UInt8);
+    AsInt16 i16 "Int16" |kind| kind.is_of(IntegerWidth::Int16);
+    AsUInt16 u16 "UInt16" |kind| kind.is_of(IntegerWidth::UInt16);
+    AsInt32 i32 "Int32" |kind| kind.is_of(IntegerWidth::Int32);
+    AsUInt32 u32 "UInt32" |kind| kind.is_of(IntegerWidth::UInt32);
+    AsInt64 i64 "Int64" |kind| kind.is_of(IntegerWidth::Int64) || matches!(kind, Kind::Enumeration(_));
+    AsUInt64 u64 "UInt64" |kind| kind.is_of(IntegerWidth::UInt64);
+}
+
+impl<M> Kind<M> {
+    /// Whether FMI 3.0 has it as a Float32.
+    pub(crate) const fn is_single(&self) -> bool {
+        matches!(self, Self::Real(spec) if spec.single)
+    }
+
+    fn is_of(&self, width: IntegerWidth) -> bool {
+        matches!(self, Self::Integer(spec) if spec.width == width)
+    }
+}
+
+macro_rules! whole {
+    ($($integer:ty)*) => {$(
+        impl Whole for $integer {
+            fn of(value: i64) -> Self {
+                Self::try_from(value).unwrap_or(if value < 0 { Self::MIN } else { Self::MAX })
+            }
+
+            fn widened(self) -> Option<i64> {
+                i64::try_from(self).ok()
+            }
+        }
+    )*};
+}
+whole!(i8 u8 i16 u16 i32 u32 i64 u64);
 
 impl<M: 'static> Transfer<M> for AsBoolean {
     type Given<'a> = bool;
@@ -183,7 +298,7 @@ impl<M> RealSpec<M> {
 
 impl<M> IntegerSpec<M> {
     /// Why a value is refused, if it is.
-    pub(crate) fn complaint(&self, value: i32) -> Option<String> {
+    pub(crate) fn complaint(&self, value: i64) -> Option<String> {
         if value < self.min {
             Some(format!("below its min {}", self.min))
         } else if value > self.max {

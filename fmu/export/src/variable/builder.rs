@@ -6,7 +6,8 @@
 //! output that can be written.
 
 use super::kind::{
-    BooleanSpec, EnumerationSpec, EnumerationType, IntegerSpec, Kind, PartialDerivative, RealSpec, StringSpec,
+    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, IntegerSpec, IntegerWidth, Kind,
+    PartialDerivative, RealSpec, StringSpec,
 };
 use super::{Causality, Variability, Variable};
 use core::marker::PhantomData;
@@ -30,6 +31,8 @@ pub struct Declaration<T: Copy, A> {
     dependencies: Option<&'static [&'static str]>,
     initial_dependencies: Option<&'static [&'static [&'static str]]>,
     derivative_of: Option<&'static str>,
+    alias_of: Option<&'static str>,
+    clocks: &'static [&'static str],
     reinit: bool,
     spec: T,
     access: PhantomData<fn(A)>,
@@ -55,6 +58,8 @@ const fn declare<T: Copy, A>(
         dependencies: None,
         initial_dependencies: None,
         derivative_of: None,
+        alias_of: None,
+        clocks: &[],
         reinit: false,
         spec,
         access: PhantomData,
@@ -72,6 +77,7 @@ const DISCRETE_OUTPUT: (Causality, Variability) = (Causality::Output, Variabilit
 const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
     RealSpec {
         unit,
+        single: false,
         start,
         min: f64::NEG_INFINITY,
         max: f64::INFINITY,
@@ -85,8 +91,9 @@ const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
     }
 }
 
-const fn integer<M>(start: Option<i32>) -> IntegerSpec<M> {
-    IntegerSpec { start, min: i32::MIN, max: i32::MAX, get: |_| 0, set: None }
+const fn integer<M>(start: Option<i64>) -> IntegerSpec<M> {
+    let (min, max) = IntegerWidth::Int32.bounds();
+    IntegerSpec { width: IntegerWidth::Int32, start, min, max, get: |_| 0, set: None }
 }
 
 const fn boolean<M>(start: Option<bool>) -> BooleanSpec<M> {
@@ -183,7 +190,7 @@ macro_rules! constructors {
 }
 constructors! {
     Integer(integer) integer_parameter "A fixed Integer parameter." integer_input "An Integer input."
-        integer_output "An Integer output." () start: i32;
+        integer_output "An Integer output." () start: i64;
     Boolean(boolean) boolean_parameter "A fixed Boolean parameter." boolean_input "A Boolean input."
         boolean_output "A Boolean output." () start: bool;
     Text(text) string_parameter "A fixed String parameter." string_input "A String input."
@@ -194,8 +201,34 @@ constructors! {
         enumeration_output "An output that tells an item." (of: &'static EnumerationType) start: i32;
 }
 
+/// Constructors of clocks, which FMI 3.0 alone has.
+impl<M> Variable<M> {
+    /// A clock that the model makes tick at events: [`Slave::do_step_to_event`](crate::Slave::do_step_to_event) or
+    /// [`Slave::handle_events`](crate::Slave::handle_events) tell of one, and the getter says whether this clock ticks there.
+    pub const fn output_clock(name: &'static str, description: &'static str) -> Declaration<ClockSpec<M>, ReadOnly> {
+        let spec = ClockSpec { interval: ClockInterval::Triggered, get: |_| false, set: None };
+        declare(DISCRETE_OUTPUT, name, description, spec)
+    }
+
+    /// A clock that the environment makes tick at events. The setter is told so before the inputs of the event are set, and
+    /// that it is over after [`Slave::handle_events`](crate::Slave::handle_events).
+    pub const fn input_clock(
+        name: &'static str,
+        interval: ClockInterval,
+        description: &'static str,
+    ) -> Declaration<ClockSpec<M>, Settable> {
+        declare(DISCRETE_INPUT, name, description, ClockSpec { interval, get: |_| false, set: None })
+    }
+}
+
 /// Refinements of any variable.
 impl<T: Copy, A> Declaration<T, A> {
+    /// Says that this discrete variable belongs to these clocks: FMI 3.0 has it at their ticks, FMI 2.0 not at all.
+    pub const fn clocked_by(mut self, clocks: &'static [&'static str]) -> Self {
+        self.clocks = clocks;
+        self
+    }
+
     /// Lets a parameter, or what follows from it, change between steps.
     pub const fn tunable(mut self) -> Self {
         self.variability = Variability::Tunable;
@@ -218,6 +251,8 @@ impl<T: Copy, A> Declaration<T, A> {
             dependencies: self.dependencies,
             initial_dependencies: self.initial_dependencies,
             derivative_of: self.derivative_of,
+            alias_of: self.alias_of,
+            clocks: self.clocks,
             reinit: self.reinit,
         }
     }
@@ -248,6 +283,12 @@ impl<T: Copy> Declaration<T, ReadOnly> {
 
 /// Refinements of a Real.
 impl<M, A> Declaration<RealSpec<M>, A> {
+    /// Makes it a Float32 in FMI 3.0.
+    pub const fn single(mut self) -> Self {
+        self.spec.single = true;
+        self
+    }
+
     /// Smallest value allowed.
     pub const fn min(mut self, min: f64) -> Self {
         self.spec.min = min;
@@ -301,6 +342,13 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
         self
     }
 
+    /// Says that this derivative always has the value of the variable `name`, as the velocity is that of the position: FMI 3.0
+    /// has one variable with two names then.
+    pub const fn alias_of(mut self, name: &'static str) -> Self {
+        self.alias_of = Some(name);
+        self
+    }
+
     /// Says that [`handle_events`](crate::Slave::handle_events) may change this continuous state. An integrator may take
     /// any other for continuous.
     pub const fn reinit(mut self) -> Self {
@@ -311,14 +359,21 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
 
 /// Refinements of an Integer.
 impl<M, A> Declaration<IntegerSpec<M>, A> {
+    /// Its type in FMI 3.0, with the bounds of that; without, it is an Int32.
+    pub const fn width(mut self, width: IntegerWidth) -> Self {
+        self.spec.width = width;
+        (self.spec.min, self.spec.max) = width.bounds();
+        self
+    }
+
     /// Smallest value allowed.
-    pub const fn min(mut self, min: i32) -> Self {
+    pub const fn min(mut self, min: i64) -> Self {
         self.spec.min = min;
         self
     }
 
     /// Largest value allowed.
-    pub const fn max(mut self, max: i32) -> Self {
+    pub const fn max(mut self, max: i64) -> Self {
         self.spec.max = max;
         self
     }
@@ -357,8 +412,9 @@ macro_rules! finishers {
 }
 finishers! {
     RealSpec Real f64, f64;
-    IntegerSpec Integer i32, i32;
+    IntegerSpec Integer i64, i64;
     BooleanSpec Boolean bool, bool;
     StringSpec String String, &str;
     EnumerationSpec Enumeration i32, i32;
+    ClockSpec Clock bool, bool;
 }

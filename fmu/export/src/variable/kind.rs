@@ -1,19 +1,22 @@
-//! The types of FMI 2.0 with their attributes and the accessors into the model.
+//! The types of variables with their attributes and the accessors into the model. FMI 2.0 has one Real and one Integer
+//! where FMI 3.0 has one of each size; it has no clocks, whose rows it does not see.
 
 use super::Variable;
 
 /// Type of a variable with the attributes of that type.
 pub enum Kind<M: 'static> {
-    /// `fmi2Real`
+    /// `fmi2Real`; `fmi3Float64`, or `fmi3Float32` if it is [`single`](RealSpec::single)
     Real(RealSpec<M>),
-    /// `fmi2Integer`
+    /// `fmi2Integer`; in FMI 3.0 of its [`width`](IntegerSpec::width)
     Integer(IntegerSpec<M>),
-    /// `fmi2Boolean`
+    /// `fmi2Boolean`, `fmi3Boolean`
     Boolean(BooleanSpec<M>),
-    /// `fmi2String`
+    /// `fmi2String`, `fmi3String`
     String(StringSpec<M>),
-    /// An `fmi2Integer` that counts the items of an enumeration from 1.
+    /// An `fmi2Integer` or `fmi3Int64` that counts the items of an enumeration from 1.
     Enumeration(EnumerationSpec<M>),
+    /// `fmi3Clock`
+    Clock(ClockSpec<M>),
 }
 
 /// Sets a time derivative of an input: model, order from 1, value.
@@ -29,6 +32,8 @@ pub type PartialDerivative<M> = fn(&M, known: &Variable<M>) -> f64;
 pub struct RealSpec<M: 'static> {
     /// Unit, `"1"` if it has none.
     pub unit: &'static str,
+    /// Whether FMI 3.0 has it in single precision.
+    pub single: bool,
     /// Start value in that unit; none if the model calculates it.
     pub start: Option<f64>,
     /// Lower bound; minus infinity if there is none.
@@ -62,16 +67,78 @@ pub struct RealSpec<M: 'static> {
 
 /// Attributes and accessors of an Integer.
 pub struct IntegerSpec<M: 'static> {
+    /// Its type in FMI 3.0. In FMI 2.0 it is an Integer of 32 bits, and what is too large for that shows as the nearest one.
+    pub width: IntegerWidth,
     /// Start value; none if the model calculates it.
-    pub start: Option<i32>,
-    /// Lower bound; `i32::MIN` if there is none.
-    pub min: i32,
-    /// Upper bound; `i32::MAX` if there is none.
-    pub max: i32,
+    pub start: Option<i64>,
+    /// Lower bound; that of its type if there is no other.
+    pub min: i64,
+    /// Upper bound; that of its type if there is no other.
+    pub max: i64,
     /// Reads the model.
-    pub get: fn(&M) -> i32,
+    pub get: fn(&M) -> i64,
     /// Writes the model.
-    pub set: Option<fn(&mut M, i32)>,
+    pub set: Option<fn(&mut M, i64)>,
+}
+
+macro_rules! integer_widths {
+    ($($width:ident $integer:ty;)*) => {
+        /// Type of an Integer in FMI 3.0.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum IntegerWidth {
+            $(#[doc = concat!("`fmi3", stringify!($width), "`")] $width,)*
+        }
+
+        impl IntegerWidth {
+            /// The name of the type, as the XML element of FMI 3.0.
+            pub const fn type_name(self) -> &'static str {
+                match self { $(Self::$width => stringify!($width),)* }
+            }
+
+            /// Smallest and largest value. Those of the model are of 64 bits with a sign.
+            #[allow(clippy::cast_possible_wrap, clippy::cast_lossless)] // no `From` in const; `u64::MAX` is looked at
+            pub const fn bounds(self) -> (i64, i64) {
+                match self {
+                    Self::UInt64 => (0, i64::MAX),
+                    $(#[allow(unreachable_patterns)] Self::$width => (<$integer>::MIN as i64, <$integer>::MAX as i64),)*
+                }
+            }
+        }
+    };
+}
+integer_widths! {
+    Int8 i8;
+    UInt8 u8;
+    Int16 i16;
+    UInt16 u16;
+    Int32 i32;
+    UInt32 u32;
+    Int64 i64;
+    UInt64 u64;
+}
+
+/// Attributes and accessors of a clock.
+pub struct ClockSpec<M: 'static> {
+    /// When it ticks.
+    pub interval: ClockInterval,
+    /// Whether it ticks at the present event.
+    pub get: fn(&M) -> bool,
+    /// Makes it tick, or no longer. An input has one.
+    pub set: Option<fn(&mut M, bool)>,
+}
+
+/// When a clock ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ClockInterval {
+    /// Whenever the model (an output) or the environment (an input) says.
+    Triggered,
+    /// At regular times: an input that the environment makes tick.
+    Periodic {
+        /// From one tick to the next, s.
+        interval: f64,
+        /// First tick after the start, s.
+        shift: f64,
+    },
 }
 
 /// Attributes and accessors of a Boolean.
@@ -138,10 +205,10 @@ macro_rules! copy {
         impl<M> Copy for $name<M> {}
     )*};
 }
-copy!(Kind RealSpec IntegerSpec BooleanSpec StringSpec EnumerationSpec);
+copy!(Kind RealSpec IntegerSpec BooleanSpec StringSpec EnumerationSpec ClockSpec);
 
 impl<M> Kind<M> {
-    /// The name of the type, as the XML element of `modelDescription.xml`.
+    /// The name of the type, as the XML element of the `modelDescription.xml` of FMI 2.0.
     pub const fn type_name(&self) -> &'static str {
         match self {
             Self::Real(_) => "Real",
@@ -149,6 +216,17 @@ impl<M> Kind<M> {
             Self::Boolean(_) => "Boolean",
             Self::String(_) => "String",
             Self::Enumeration(_) => "Enumeration",
+            Self::Clock(_) => "Clock",
+        }
+    }
+
+    /// The same for FMI 3.0.
+    pub const fn type_name_3(&self) -> &'static str {
+        match self {
+            Self::Real(spec) if spec.single => "Float32",
+            Self::Real(_) => "Float64",
+            Self::Integer(spec) => spec.width.type_name(),
+            _ => self.type_name(),
         }
     }
 
@@ -164,6 +242,7 @@ impl<M> Kind<M> {
                     set(model, start);
                 }
             }
+            Self::Clock(_) => {}
         }
     }
 }

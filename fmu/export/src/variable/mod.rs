@@ -8,16 +8,23 @@
 //! Write `type V = Variable<MyModel>;` and start the rows with `V::`, so that the compiler knows the model in
 //! every closure.
 
+mod added;
 mod assign;
 mod builder;
 mod kind;
 
-pub(crate) use assign::{AsBoolean, AsInteger, AsReal, AsString, Transfer};
+pub(crate) use added::{Added, has_events};
+pub(crate) use assign::{
+    AsBoolean, AsFloat32, AsFloat64, AsInt8, AsInt16, AsInt32, AsInt64, AsInteger, AsReal, AsString, AsUInt8, AsUInt16, AsUInt32,
+    AsUInt64, Transfer,
+};
 pub use builder::{Declaration, ReadOnly, Settable};
 pub use kind::{
-    BooleanSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, Kind, PartialDerivative, RealSpec,
-    SetDerivative, StringSpec,
+    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, IntegerWidth, Kind,
+    PartialDerivative, RealSpec, SetDerivative, StringSpec,
 };
+
+use crate::standard::Standard;
 
 /// What a variable is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,6 +112,8 @@ pub struct Variable<M: 'static> {
     pub(crate) dependencies: Option<&'static [&'static str]>,
     pub(crate) initial_dependencies: Option<&'static [&'static [&'static str]]>,
     pub(crate) derivative_of: Option<&'static str>,
+    pub(crate) alias_of: Option<&'static str>,
+    pub(crate) clocks: &'static [&'static str],
     pub(crate) reinit: bool,
 }
 
@@ -187,6 +196,26 @@ impl<M> Variable<M> {
     /// Name of the continuous state whose time derivative this is.
     pub const fn derivative_of(&self) -> Option<&'static str> {
         self.derivative_of
+    }
+
+    /// Name of the variable that FMI 3.0 has in its place.
+    pub const fn alias_of(&self) -> Option<&'static str> {
+        self.alias_of
+    }
+
+    /// Names of the clocks at whose ticks FMI 3.0 has it; none for one that is there always.
+    pub const fn clocks(&self) -> &'static [&'static str] {
+        self.clocks
+    }
+
+    /// Whether this is a clock.
+    pub const fn is_clock(&self) -> bool {
+        matches!(self.kind, Kind::Clock(_))
+    }
+
+    /// Whether a version of FMI has such a variable: FMI 2.0 sees no clocks and none of the variables that belong to some.
+    pub const fn is_of(&self, standard: Standard) -> bool {
+        matches!(standard, Standard::Fmi3) || !self.is_clock() && self.clocks.is_empty()
     }
 
     /// Whether this is a continuous state that jumps at events of model exchange.

@@ -6,8 +6,8 @@ pub mod toy;
 
 use core::ops::{Deref, DerefMut};
 use core::ptr::null;
-use fmu_export::Guid;
 use fmu_export::abi::*;
+use fmu_export::{Guid, Standard};
 #[allow(unused_imports)]
 pub use fmu_host::{Log, UNTOUCHED};
 use std::ffi::CString;
@@ -16,7 +16,7 @@ use toy::Toy;
 fmu_host::linked_names!();
 
 pub fn guid() -> String {
-    Guid::of::<Toy>().to_string()
+    Guid::of::<Toy>(Standard::Fmi2).to_string()
 }
 
 pub fn c(text: &str) -> CString {

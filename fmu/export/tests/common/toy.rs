@@ -1,8 +1,8 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
 use fmu_export::{
-    EnumerationType, EventOutcome, Experiment, Function, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
-    StateWriter, Variable, export_fmu,
+    ClockInterval, EnumerationType, EventOutcome, Experiment, IntegerWidth, Logger, ModelInfo, Slave, SlaveError, StateError,
+    StateReader, StateWriter, Stop, Terminal, Variable, export_fmu,
 };
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};
@@ -14,7 +14,7 @@ thread_local! {
     /// Makes `Toy::new` panic, which no variable can.
     pub static PANIC_IN_NEW: Cell<bool> = const { Cell::new(false) };
     /// Makes each call of this function on an instance panic.
-    pub static PANIC_IN_CALL: Cell<Option<Function>> = const { Cell::new(None) };
+    pub static PANIC_IN_CALL: Cell<Option<&'static str>> = const { Cell::new(None) };
     /// Makes `Toy::clone` panic.
     pub static PANIC_IN_CLONE: Cell<bool> = const { Cell::new(false) };
     /// Makes dropping a `Toy` panic.
@@ -29,16 +29,21 @@ pub struct Toy {
     input: f64,
     slope: f64,
     integral: f64,
-    count: i32,
-    seed: i32,
+    count: i64,
+    seed: i64,
     on: bool,
     label: String,
     law: i32,
     trouble: String,
-    updates: i32,
+    updates: i64,
     start_time: f64,
     time: f64,
     switched: f64,
+    wide: [i64; 8],
+    single: f64,
+    sample: bool,
+    sampled: f64,
+    samples: i64,
 }
 
 impl Clone for Toy {
@@ -73,7 +78,35 @@ pub const TIME: u32 = 15;
 pub const DERIVATIVE: u32 = 16;
 pub const SWITCHED: u32 = 17;
 pub const HELD: u32 = 18;
-pub const COUNT_OF_VARIABLES: u32 = 19;
+pub const SINGLE: u32 = 19;
+/// The first of eight integers, in the order of [`WIDTHS`].
+pub const WIDE: u32 = 20;
+pub const TICK: u32 = 28;
+pub const TICKS: u32 = 29;
+pub const SAMPLE: u32 = 30;
+pub const SAMPLED: u32 = 31;
+pub const SAMPLES: u32 = 32;
+pub const TRIGGER: u32 = 33;
+pub const COUNT_OF_VARIABLES: u32 = 34;
+
+pub const WIDTHS: [IntegerWidth; 8] = [
+    IntegerWidth::Int8,
+    IntegerWidth::UInt8,
+    IntegerWidth::Int16,
+    IntegerWidth::UInt16,
+    IntegerWidth::Int32,
+    IntegerWidth::UInt32,
+    IntegerWidth::Int64,
+    IntegerWidth::UInt64,
+];
+
+macro_rules! wide {
+    ($index:literal, $name:literal) => {
+        V::integer_input($name, 0, "An integer of its own width")
+            .width(WIDTHS[$index])
+            .access(|m| m.wide[$index], |m, v| m.wide[$index] = v)
+    };
+}
 
 type V = Variable<Toy>;
 
@@ -134,6 +167,28 @@ static VARIABLES: [V; COUNT_OF_VARIABLES as usize] = [
         .initially_depends_on(&[&["switched"]])
         .partial_derivative(|m, known| m.of(known, "switched", 1.0))
         .get(|m| m.switched),
+    V::input("single", "1", 0.5, "In single precision").single().access(|m| m.single, |m, v| m.single = v),
+    wide!(0, "wide[1]"),
+    wide!(1, "wide[2]"),
+    wide!(2, "wide[3]"),
+    wide!(3, "wide[4]"),
+    wide!(4, "wide[5]"),
+    wide!(5, "wide[6]"),
+    wide!(6, "wide[7]"),
+    wide!(7, "wide[8]"),
+    V::output_clock("tick", "Ticks at each full second").get(|m| m.time.fract() == 0.0),
+    V::integer_output("ticks", "Number of steps at the last tick")
+        .width(IntegerWidth::UInt64)
+        .clocked_by(&["tick"])
+        .get(|m| m.count),
+    V::input_clock("sample", ClockInterval::Periodic { interval: 0.5, shift: 0.0 }, "Samples `sampled`")
+        .access(|m| m.sample, |m, on| m.sample = on),
+    V::input("sampled", "1", 0.0, "What is summed up at each sample")
+        .discrete()
+        .clocked_by(&["sample"])
+        .access(|m| m.sampled, |m, v| m.sampled = v),
+    V::integer_output("samples", "Number of samples").get(|m| m.samples),
+    V::input_clock("trigger", ClockInterval::Triggered, "Does nothing").access(|_| false, |_, _| ()),
 ];
 
 impl Toy {
@@ -188,7 +243,9 @@ impl Slave for Toy {
         .default_tolerance(1e-4)
         .can_serialize()
         .directional_derivatives()
-        .model_exchange(1);
+        .model_exchange(1)
+        .stops_at_events()
+        .terminals(&[Terminal { name: "port", description: "A port", members: &[("in", "u"), ("out", "integral")] }]);
 
     fn variables() -> &'static [Variable<Self>] {
         &VARIABLES
@@ -231,6 +288,13 @@ impl Slave for Toy {
         Ok(())
     }
 
+    /// There is an event at each full second.
+    fn do_step_to_event(&mut self, t: f64, end: f64, log: &Logger) -> Result<Option<Stop>, SlaveError> {
+        let time = t.floor() + 1.0;
+        self.do_step(t, time.min(end) - t, log)?;
+        Ok((time <= end).then_some(Stop { time, is_event: true }))
+    }
+
     fn terminate(&mut self, log: &Logger) -> Result<(), SlaveError> {
         self.trouble_in("terminate", log)
     }
@@ -249,6 +313,7 @@ impl Slave for Toy {
     /// The integral falls back to zero at its limit, and there is an event each second.
     fn handle_events(&mut self, log: &Logger) -> Result<EventOutcome, SlaveError> {
         self.trouble_in("event handler", log)?;
+        self.samples += i64::from(self.sample);
         let states_changed = self.integral >= self.limit;
         if states_changed {
             self.integral = 0.0;
@@ -257,8 +322,8 @@ impl Slave for Toy {
         Ok(EventOutcome { states_changed, next_event_time: Some(self.time.floor() + 1.0) })
     }
 
-    fn on_call(&self, function: Function) {
-        assert!(PANIC_IN_CALL.get() != Some(function), "panic in {}", function.name());
+    fn on_call(&self, function: &'static str) {
+        assert!(PANIC_IN_CALL.get() != Some(function), "panic in {function}");
     }
 
     fn write_state(&self, out: &mut StateWriter) -> Result<(), StateError> {

@@ -99,7 +99,8 @@ pub(super) const fn reals(first: &str, last: &str) -> &'static [V] {
 
 /// Parameters that choose or count, in the order of the model.
 static CHOICES: [V; Parameters::CHOICES.len()] = [
-    V::integer_parameter(SEED.name, SEED.start, SEED.description).access(SEED.get, SEED.set),
+    V::integer_parameter(SEED.name, SEED.start as i64, SEED.description)
+        .access(|slave| slave.parameters.seed.into(), |slave, seed| (SEED.set)(slave, as_i32(seed))),
     enumeration(&Choice::NOISE_MODEL, &NOISE_MODEL),
     enumeration(&Choice::OUTSIDE_GAP, &OUTSIDE_GAP),
     enumeration(&Choice::CONTACT_LAW, &CONTACT_LAW),
@@ -114,6 +115,11 @@ static CHOICES: [V; Parameters::CHOICES.len()] = [
         .access(|slave| slave.parameters.file_repeat, |slave, on| slave.parameters.file_repeat = on),
     enumeration(&Choice::MEMBRANE_LAW, &MEMBRANE_LAW),
 ];
+
+/// What the bounds of the row let through fits.
+fn as_i32(value: i64) -> i32 {
+    i32::try_from(value).unwrap_or_default()
+}
 
 /// Choices from the `first` to the `last` of these names.
 pub(super) const fn choices(first: &str, last: &str) -> &'static [V] {

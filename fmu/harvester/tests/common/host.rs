@@ -4,7 +4,7 @@ use super::row;
 use VibroImpactHarvester::Harvester;
 use core::ops::Deref;
 use fmu_export::abi::{fmi2CoSimulation, fmi2FMUstate, fmi2ModelExchange, fmi2Status, fmi2Type, fmi2Warning};
-use fmu_export::{Causality, Guid, Kind, Slave, Variability, Variable, value_reference};
+use fmu_export::{Causality, Guid, Kind, Slave, Standard, Variability, Variable, value_reference};
 use fmu_host::{linked_functions, ok};
 
 /// Names of the Real variables that `is_listed`.
@@ -61,7 +61,7 @@ impl Deref for Host {
 impl Host {
     /// In initialization mode, with these Reals set.
     pub fn initializing(kind: fmi2Type, start: f64, settings: &[(&str, f64)]) -> Self {
-        let guid = Guid::of::<Harvester>().to_string();
+        let guid = Guid::of::<Harvester>(Standard::Fmi2).to_string();
         let functions = linked_functions!(model_exchange);
         let host = Self(fmu_host::Host::of(functions, &guid, kind == fmi2ModelExchange));
         for (name, value) in settings {

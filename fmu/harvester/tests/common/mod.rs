@@ -55,7 +55,7 @@ pub fn choose(slave: &mut Harvester, name: &str, item: i32) {
 pub fn get(slave: &Harvester, name: &str) -> f64 {
     match row(name).kind() {
         Kind::Real(spec) => (spec.get)(slave),
-        Kind::Integer(spec) => f64::from((spec.get)(slave)),
+        Kind::Integer(spec) => i32::try_from((spec.get)(slave)).expect("a small number").into(),
         Kind::Boolean(spec) => f64::from(u8::from((spec.get)(slave))),
         _ => unreachable!("{name} is neither number nor truth value"),
     }

@@ -1,7 +1,12 @@
-//! The writer of `modelDescription.xml`, from the variable table.
+//! The writers of `modelDescription.xml`, from the variable table: what FMI 2.0 and 3.0 have in common; `fmi2.rs` and `fmi3.rs` have
+//! what differs.
 //!
-//! Elements come in the order that the schema of FMI 2.0 prescribes. The text is the same on every run (it holds
-//! no date), so that it can be kept under version control and compared.
+//! Elements come in the order that the schema prescribes. The text is the same on every run (it holds no date), so that it can be
+//! kept under version control and compared.
+
+mod fmi2;
+mod fmi3;
+mod terminals;
 
 use crate::check::{TableError, check_fmu};
 use crate::guid::Guid;
@@ -9,10 +14,13 @@ use crate::info::ModelInfo;
 use crate::logger::LogCategory;
 use crate::slave::Slave;
 use crate::units::{BaseUnit, base_unit};
-use crate::variable::{Causality, EnumerationType, Kind, Variable, value_reference};
+use crate::standard::Standard;
+use crate::variable::{EnumerationType, Kind, Variable};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
 use std::io;
+
+pub use terminals::terminals_and_icons;
 
 /// Why there is no model description.
 #[derive(Debug, thiserror::Error)]
@@ -35,26 +43,35 @@ type Written = io::Result<()>;
 ///
 /// # Errors
 /// If the variable table has a mistake.
-pub fn model_description<S: Slave>() -> Result<String, DescriptionError> {
+pub fn model_description<S: Slave>(standard: Standard) -> Result<String, DescriptionError> {
     check_fmu::<S>()?;
+    let (table, info) = (S::variables(), &S::INFO);
+    document("fmiModelDescription", &root_attributes::<S>(standard), |xml| {
+        match standard {
+            Standard::Fmi2 => fmi2::interfaces::<S>(xml)?,
+            Standard::Fmi3 => fmi3::interfaces::<S>(xml)?,
+        }
+        let rows: Vec<_> = table.iter().filter(|row| row.is_of(standard)).collect();
+        unit_definitions(xml, &rows)?;
+        type_definitions(xml, &rows, standard)?;
+        log_categories(xml)?;
+        default_experiment(xml, info)?;
+        match standard {
+            Standard::Fmi2 => fmi2::variables(xml, table),
+            Standard::Fmi3 => fmi3::variables::<S>(xml),
+        }
+    })
+}
+
+/// A document of one element.
+fn document(
+    name: &str,
+    attributes: &[Attribute],
+    content: impl FnOnce(&mut Xml) -> Written,
+) -> Result<String, DescriptionError> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let mut root = vec![("fmiVersion", "2.0".to_owned())];
-    root.extend(root_attributes(&S::INFO, Guid::of::<S>()));
-    let structured = S::variables().iter().all(|v| is_structured(v.name()));
-    let convention = if structured { "structured" } else { "flat" };
-    root.push(("variableNamingConvention", convention.to_owned()));
-    root.push(("numberOfEventIndicators", S::INFO.model_exchange.unwrap_or(0).to_string()));
-    element(&mut xml, "fmiModelDescription", &root, |xml| {
-        model_exchange::<S>(xml)?;
-        co_simulation::<S>(xml)?;
-        unit_definitions(xml, S::variables())?;
-        type_definitions(xml, S::variables())?;
-        log_categories(xml)?;
-        default_experiment(xml, &S::INFO)?;
-        model_variables(xml, S::variables())?;
-        model_structure(xml, S::variables())
-    })?;
+    element(&mut xml, name, attributes, content)?;
     let mut text = String::from_utf8(xml.into_inner())?;
     text.push('\n');
     Ok(text)
@@ -107,64 +124,39 @@ fn is_structured(name: &str) -> bool {
     })
 }
 
-fn root_attributes(info: &ModelInfo, guid: Guid) -> Vec<Attribute> {
-    let mut attributes = vec![("modelName", info.model_name.to_owned()), ("guid", guid.to_string())];
+fn root_attributes<S: Slave>(standard: Standard) -> Vec<Attribute> {
+    let (info, guid) = (&S::INFO, Guid::of::<S>(standard));
+    let (version, token) = match standard {
+        Standard::Fmi2 => ("2.0", "guid"),
+        Standard::Fmi3 => ("3.0", "instantiationToken"),
+    };
+    let mut attributes = vec![("fmiVersion", version.to_owned())];
+    attributes.extend([("modelName", info.model_name.to_owned()), (token, guid.to_string())]);
     attributes.extend(text("description", info.description));
     attributes.extend(text("author", info.author));
     attributes.extend(text("version", info.version));
     attributes.extend(text("copyright", info.copyright));
     attributes.extend(text("license", info.license));
     attributes.extend(text("generationTool", info.generation_tool));
+    let structured = S::variables().iter().all(|v| is_structured(v.name()));
+    attributes.push(("variableNamingConvention", if structured { "structured" } else { "flat" }.to_owned()));
+    if standard == Standard::Fmi2 {
+        attributes.push(("numberOfEventIndicators", info.model_exchange.unwrap_or(0).to_string()));
+    }
     attributes
 }
 
-/// The same for model exchange, if it is offered.
-fn model_exchange<S: Slave>(xml: &mut Xml) -> Written {
-    let info = S::INFO;
-    if info.model_exchange.is_none() {
-        return Ok(());
-    }
-    let flags = [
-        ("modelIdentifier", info.model_identifier.to_owned()),
-        ("needsExecutionTool", false.to_string()),
-        ("completedIntegratorStepNotNeeded", true.to_string()),
-        ("canBeInstantiatedOnlyOncePerProcess", false.to_string()),
-        ("canNotUseMemoryManagementFunctions", true.to_string()),
-        ("canGetAndSetFMUstate", true.to_string()),
-        ("canSerializeFMUstate", info.can_serialize.to_string()),
-        ("providesDirectionalDerivative", info.directional_derivatives.to_string()),
-    ];
-    empty(xml, "ModelExchange", &flags)
-}
-
-/// The capabilities, each as it is: what this exporter never does is said to be false.
-fn co_simulation<S: Slave>(xml: &mut Xml) -> Written {
-    let info = S::INFO;
-    let real = |v: &Variable<S>| match v.kind() {
-        Kind::Real(s) => Some((s.input_derivatives.is_some(), s.output_derivatives.map_or(0, |d| d.0))),
+/// The highest order of the derivatives of outputs, and whether inputs take some.
+fn derivative_orders<M>(table: &[Variable<M>]) -> (u32, bool) {
+    let real = |v: &Variable<M>| match v.kind() {
+        Kind::Real(s) => Some((s.output_derivatives.map_or(0, |d| d.0), s.input_derivatives.is_some())),
         _ => None,
     };
-    let derivatives = || S::variables().iter().filter_map(real);
-    let interpolates = derivatives().any(|(input, _)| input);
-    let order = derivatives().map(|(_, order)| order).max().unwrap_or(0);
-    let flags = [
-        ("modelIdentifier", info.model_identifier.to_owned()),
-        ("needsExecutionTool", false.to_string()),
-        ("canHandleVariableCommunicationStepSize", info.variable_step_size.to_string()),
-        ("canInterpolateInputs", interpolates.to_string()),
-        ("maxOutputDerivativeOrder", order.to_string()),
-        ("canRunAsynchronuously", false.to_string()), // The schema spells it so.
-        ("canBeInstantiatedOnlyOncePerProcess", false.to_string()),
-        ("canNotUseMemoryManagementFunctions", true.to_string()), // Rust's allocator serves the FMU.
-        ("canGetAndSetFMUstate", true.to_string()),
-        ("canSerializeFMUstate", info.can_serialize.to_string()),
-        ("providesDirectionalDerivative", info.directional_derivatives.to_string()),
-    ];
-    empty(xml, "CoSimulation", &flags)
+    table.iter().filter_map(real).fold((0, false), |(order, takes), row| (order.max(row.0), takes || row.1))
 }
 
 /// The units in use, in the order of their first use.
-fn unit_definitions<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
+fn unit_definitions<M>(xml: &mut Xml, table: &[&Variable<M>]) -> Written {
     let mut units: Vec<&str> = Vec::new();
     for variable in table {
         if let Kind::Real(spec) = variable.kind()
@@ -198,7 +190,7 @@ fn base_attributes(base: BaseUnit) -> Vec<Attribute> {
     attributes
 }
 
-fn type_definitions<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
+fn type_definitions<M>(xml: &mut Xml, table: &[&Variable<M>], standard: Standard) -> Written {
     let mut types: Vec<&EnumerationType> = Vec::new();
     for variable in table {
         if let Kind::Enumeration(spec) = variable.kind()
@@ -210,22 +202,27 @@ fn type_definitions<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
     if types.is_empty() {
         return Ok(());
     }
-    element(xml, "TypeDefinitions", &[], |xml| types.iter().try_for_each(|t| simple_type(xml, t)))
-}
-
-fn simple_type(xml: &mut Xml, enumeration: &EnumerationType) -> Written {
-    let mut attributes = vec![("name", enumeration.name.to_owned())];
-    attributes.extend(text("description", enumeration.description));
-    element(xml, "SimpleType", &attributes, |xml| {
-        element(xml, "Enumeration", &[], |xml| {
-            for (number, (name, description)) in (1_i32..).zip(enumeration.items) {
-                let mut attributes = vec![("name", (*name).to_owned()), ("value", number.to_string())];
-                attributes.extend(text("description", description));
-                empty(xml, "Item", &attributes)?;
+    element(xml, "TypeDefinitions", &[], |xml| {
+        types.iter().try_for_each(|of| {
+            let mut attributes = vec![("name", of.name.to_owned())];
+            attributes.extend(text("description", of.description));
+            match standard {
+                Standard::Fmi2 => element(xml, "SimpleType", &attributes, |xml| {
+                    element(xml, "Enumeration", &[], |xml| items(xml, of))
+                }),
+                Standard::Fmi3 => element(xml, "EnumerationType", &attributes, |xml| items(xml, of)),
             }
-            Ok(())
         })
     })
+}
+
+fn items(xml: &mut Xml, of: &EnumerationType) -> Written {
+    for (number, (name, description)) in (1_i32..).zip(of.items) {
+        let mut attributes = vec![("name", (*name).to_owned()), ("value", number.to_string())];
+        attributes.extend(text("description", description));
+        empty(xml, "Item", &attributes)?;
+    }
+    Ok(())
 }
 
 fn log_categories(xml: &mut Xml) -> Written {
@@ -250,26 +247,7 @@ fn default_experiment(xml: &mut Xml, info: &ModelInfo) -> Written {
     empty(xml, "DefaultExperiment", &attributes)
 }
 
-fn model_variables<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
-    element(xml, "ModelVariables", &[], |xml| {
-        table.iter().enumerate().try_for_each(|(i, v)| scalar_variable(xml, table, i, v))
-    })
-}
-
-fn scalar_variable<M>(xml: &mut Xml, table: &[Variable<M>], index: usize, variable: &Variable<M>) -> Written {
-    let mut attributes = vec![("name", variable.name().to_owned()), ("valueReference", index.to_string())];
-    attributes.extend(text("description", variable.description()));
-    attributes.push(("causality", variable.causality().as_str().to_owned()));
-    attributes.push(("variability", variable.variability().as_str().to_owned()));
-    attributes.extend(variable.initial().map(|i| ("initial", i.as_str().to_owned())));
-    element(xml, "ScalarVariable", &attributes, |xml| {
-        let mut attributes = type_attributes(variable.kind());
-        attributes.extend(variable.derivative_of().map(|state| ("derivative", positions(table, &[state]))));
-        attributes.extend(variable.reinit().then(|| ("reinit", true.to_string())));
-        empty(xml, variable.kind().type_name(), &attributes)
-    })
-}
-
+/// Unit, bounds, nominal and start value.
 fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
     let mut attributes = Vec::new();
     match kind {
@@ -281,8 +259,9 @@ fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
             attributes.extend(s.start.map(|v| ("start", double(v))));
         }
         Kind::Integer(s) => {
-            attributes.extend((s.min != i32::MIN).then(|| ("min", s.min.to_string())));
-            attributes.extend((s.max != i32::MAX).then(|| ("max", s.max.to_string())));
+            let (min, max) = s.width.bounds();
+            attributes.extend((s.min != min).then(|| ("min", s.min.to_string())));
+            attributes.extend((s.max != max).then(|| ("max", s.max.to_string())));
             attributes.extend(s.start.map(|v| ("start", v.to_string())));
         }
         Kind::Boolean(s) => attributes.extend(s.start.map(|v| ("start", v.to_string()))),
@@ -291,52 +270,9 @@ fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
             attributes.push(("declaredType", s.of.name.to_owned()));
             attributes.extend(s.start.map(|v| ("start", v.to_string())));
         }
+        Kind::Clock(_) => {}
     }
     attributes
-}
-
-/// Every output, the derivatives of the continuous states, and the unknowns of the initialisation.
-fn model_structure<M>(xml: &mut Xml, table: &[Variable<M>]) -> Written {
-    let output = |v: &Variable<M>| v.causality() == Causality::Output;
-    let derivative = |v: &Variable<M>| v.derivative_of().is_some();
-    element(xml, "ModelStructure", &[], |xml| {
-        let present = |v: &Variable<M>| v.dependencies().map(<[&str]>::to_vec);
-        let initial = |v: &Variable<M>| v.initial_dependencies().map(<[&[&str]]>::concat);
-        unknowns(xml, "Outputs", table, output, present)?;
-        unknowns(xml, "Derivatives", table, derivative, present)?;
-        unknowns(xml, "InitialUnknowns", table, |v| v.is_initial_unknown(table), initial)
-    })
-}
-
-fn unknowns<M>(
-    xml: &mut Xml,
-    name: &str,
-    table: &[Variable<M>],
-    is_listed: impl Fn(&Variable<M>) -> bool,
-    dependencies: impl Fn(&Variable<M>) -> Option<Vec<&'static str>>,
-) -> Written {
-    let listed: Vec<_> = (1..).zip(table).filter(|(_, v)| is_listed(v)).collect();
-    if listed.is_empty() {
-        return Ok(());
-    }
-    element(xml, name, &[], |xml| {
-        listed.iter().try_for_each(|(position, variable)| {
-            let position: u32 = *position;
-            let mut attributes = vec![("index", position.to_string())];
-            attributes.extend(dependencies(variable).map(|names| ("dependencies", positions(table, &names))));
-            empty(xml, "Unknown", &attributes)
-        })
-    })
-}
-
-/// Positions, counted from 1 and ascending, of the variables with these names.
-fn positions<M>(table: &[Variable<M>], names: &[&str]) -> String {
-    let references = names.iter().filter_map(|name| value_reference(table, name));
-    let mut positions: Vec<u32> = references.map(|r| r + 1).collect();
-    positions.sort_unstable();
-    positions.dedup();
-    let words: Vec<_> = positions.iter().map(u32::to_string).collect();
-    words.join(" ")
 }
 
 #[cfg(test)]

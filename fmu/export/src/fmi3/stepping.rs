@@ -1,0 +1,111 @@
+//! `fmi3DoStep`, which may call the importer back while no reference to the instance is alive, so that it may read.
+
+use super::Function;
+use crate::ffi::{check_array, enter, with};
+use crate::instance::{Call, Instance, Progress, StepOutcome};
+use crate::slave::Slave;
+use fmu_abi::fmi3::{
+    fmi3Boolean, fmi3False, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment,
+    fmi3IntermediateUpdateCallback, fmi3Status, fmi3True,
+};
+
+/// Where the outcome goes.
+#[derive(Clone, Copy)]
+struct Outputs {
+    event: *mut fmi3Boolean,
+    terminate: *mut fmi3Boolean,
+    early: *mut fmi3Boolean,
+    time: *mut fmi3Float64,
+}
+
+impl Outputs {
+    fn check(self) -> Call {
+        check_array(self.event, 1, "eventHandlingNeeded")?;
+        check_array(self.terminate, 1, "terminateSimulation")?;
+        check_array(self.early, 1, "earlyReturn")?;
+        check_array(self.time, 1, "lastSuccessfulTime")
+    }
+
+    /// SAFETY: they are checked, and by contract there is room for one value each.
+    unsafe fn write(self, outcome: StepOutcome) {
+        unsafe {
+            self.event.write(outcome.event.into());
+            self.terminate.write(outcome.terminate.into());
+            self.early.write(outcome.early.into());
+            self.time.write(outcome.time);
+        }
+    }
+}
+
+/// What the importer is called with.
+struct Update {
+    time: f64,
+    callback: fmi3IntermediateUpdateCallback,
+    environment: fmi3InstanceEnvironment,
+    can_return_early: bool,
+}
+
+impl Update {
+    /// Lets the importer look. The time at which it wants the step to end, if it does.
+    unsafe fn show(self) -> Option<f64> {
+        let callback = self.callback?;
+        let (mut wants, mut time) = (fmi3False, self.time);
+        let (set, get, finished, can_return_early) = (fmi3False, fmi3True, fmi3True, self.can_return_early.into());
+        // SAFETY: the callback came from the importer with this environment.
+        unsafe {
+            callback(self.environment, self.time, set, get, finished, can_return_early, &raw mut wants, &raw mut time);
+        }
+        (wants != fmi3False).then_some(time)
+    }
+}
+
+/// `fmi3DoStep`
+#[allow(clippy::too_many_arguments)] // Those of the C function.
+pub unsafe fn fmi3DoStep<S: Slave>(
+    instance: fmi3Instance,
+    t: fmi3Float64,
+    h: fmi3Float64,
+    _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
+    event: *mut fmi3Boolean,
+    terminate: *mut fmi3Boolean,
+    early: *mut fmi3Boolean,
+    time: *mut fmi3Float64,
+) -> fmi3Status {
+    let outputs = Outputs { event, terminate, early, time };
+    let mut update = None;
+    let begin = |i: &mut Instance<S>| {
+        outputs.check()?;
+        let progress = i.begin_step(t, h)?;
+        update = follow(i, progress, outputs);
+        Ok(())
+    };
+    // SAFETY: contract of this module; so below.
+    let mut status = unsafe { enter(instance, Function::DoStep.row(), begin) };
+    while let Some(shown) = update.take() {
+        let wanted = unsafe { shown.show() };
+        let resume = |i: &mut Instance<S>| {
+            let progress = i.resume_step(wanted)?;
+            update = follow(i, progress, outputs);
+            Ok(())
+        };
+        let resumed = unsafe { with(instance, |i: &mut Instance<S>| i.guarded(Function::DoStep.name(), resume)) };
+        status = status.max(resumed); // a warning stays
+    }
+    status
+}
+
+/// Hands the outcome over, or makes what the importer is to be called with.
+fn follow<S: Slave>(i: &Instance<S>, progress: Progress, outputs: Outputs) -> Option<Update> {
+    match progress {
+        Progress::Ended(outcome) => {
+            // SAFETY: `begin` has checked them.
+            unsafe { outputs.write(outcome) };
+            None
+        }
+        Progress::Update(time) => {
+            let session = i.session();
+            let (callback, environment) = (session.intermediate_update, session.environment);
+            Some(Update { time, callback, environment, can_return_early: session.early_return })
+        }
+    }
+}

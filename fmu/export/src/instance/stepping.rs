@@ -1,0 +1,211 @@
+//! Steps of FMI 3.0: they may stop at events, and the importer may look at intermediate values.
+//!
+//! The callback for these is not called here, where the instance is borrowed: a step says that it wants one, and goes on when
+//! `ffi` calls again.
+
+use super::{Call, Instance};
+use crate::call_state::CallState;
+use crate::error::{CallError, Severity, SlaveError};
+use crate::slave::{Slave, Stop};
+use crate::standard::Standard;
+use fmu_abi::fmi3::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
+
+/// How an instance was made.
+#[derive(Debug)]
+pub(crate) struct Session {
+    pub(crate) standard: Standard,
+    /// Model exchange, not co-simulation.
+    pub(crate) exchange: bool,
+    /// The importer of co-simulation handles events.
+    pub(crate) event_mode: bool,
+    /// A step may end before its end.
+    pub(crate) early_return: bool,
+    /// What the importer may read within a step.
+    pub(crate) intermediate: Vec<u32>,
+    pub(crate) intermediate_update: fmi3IntermediateUpdateCallback,
+    pub(crate) environment: fmi3InstanceEnvironment,
+}
+
+impl Session {
+    /// One without events and intermediate values.
+    pub(crate) const fn new(standard: Standard, exchange: bool) -> Self {
+        Self {
+            standard,
+            exchange,
+            event_mode: false,
+            early_return: false,
+            intermediate: Vec::new(),
+            intermediate_update: None,
+            environment: core::ptr::null_mut(),
+        }
+    }
+
+    /// The state after initialisation.
+    pub(super) const fn first_state(&self) -> CallState {
+        match self.standard {
+            _ if self.exchange || self.event_mode => CallState::EventMode,
+            Standard::Fmi2 => CallState::StepComplete,
+            Standard::Fmi3 => CallState::StepMode,
+        }
+    }
+
+    /// Whether an instance that can be saved is ever in this state.
+    pub(super) fn may_be_saved_in(&self, state: CallState) -> bool {
+        use CallState as S;
+        let of_2 = self.standard == Standard::Fmi2;
+        match state {
+            S::StepInProgress | S::StepCanceled | S::Fatal | S::IntermediateUpdateMode => false,
+            S::StepComplete | S::StepFailed => of_2 && !self.exchange,
+            S::StepMode => !of_2 && !self.exchange,
+            S::Error => of_2,
+            S::EventMode => self.exchange || self.event_mode,
+            S::ContinuousTimeMode => self.exchange,
+            S::Instantiated | S::InitializationMode | S::Terminated => true,
+        }
+    }
+
+    pub(super) fn is_intermediate(&self, reference: u32) -> bool {
+        self.intermediate.contains(&reference)
+    }
+
+    /// Whether steps are to stop at events.
+    const fn wants_events(&self) -> bool {
+        self.event_mode || self.early_return || self.intermediate_update.is_some()
+    }
+}
+
+/// A step that is not at its end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct UnderWay {
+    start: f64,
+    /// Where it is.
+    at: f64,
+    /// Where it would end.
+    end: f64,
+    /// Where the importer wants it to end, which is not behind that.
+    wanted: f64,
+    had_event: bool,
+    /// The last point is one where it may stop.
+    may_stop: bool,
+}
+
+/// What a step has come to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Progress {
+    /// The importer may look, at this time, s.
+    Update(f64),
+    Ended(StepOutcome),
+}
+
+/// How a step ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StepOutcome {
+    pub(crate) event: bool,
+    pub(crate) terminate: bool,
+    pub(crate) early: bool,
+    /// Time that was reached, s.
+    pub(crate) time: f64,
+}
+
+impl<S: Slave> Instance<S> {
+    /// `fmi3DoStep`, up to its end or to the first point where the importer may look.
+    #[inline]
+    pub(crate) fn begin_step(&mut self, t: f64, h: f64) -> Call<Progress> {
+        self.check_step(t, h)?;
+        let end = t + h;
+        let step = UnderWay { start: t, at: t, end, wanted: end, had_event: false, may_stop: false };
+        if self.core.ticking {
+            self.core.ticking = false;
+        }
+        if self.session.wants_events() {
+            self.under_way = Some(step);
+            return self.go_on();
+        }
+        match self.core.model.do_step(t, h, &self.logger) {
+            Ok(()) => self.core.time = end,
+            Err(error) => return self.stopped(&error, step).map(Progress::Ended),
+        }
+        Ok(Progress::Ended(StepOutcome { event: false, terminate: false, early: false, time: end }))
+    }
+
+    /// Goes on with the step that is under way, after the importer has looked; `wanted` is the time, s, where it wants it to end.
+    pub(crate) fn resume_step(&mut self, wanted: Option<f64>) -> Call<Progress> {
+        if self.core.state != CallState::IntermediateUpdateMode {
+            return Err(CallError::Unsupported("a step whose instance failed within intermediateUpdate"));
+        }
+        self.core.state = CallState::StepMode;
+        let Some(step) = &mut self.under_way else {
+            return Err(CallError::Unsupported("an intermediate update without a step"));
+        };
+        if let Some(wanted) = wanted.filter(|_| self.session.early_return) {
+            if wanted.is_nan() {
+                let bound = "it must be a time of the step".to_owned();
+                return Err(CallError::BadArgument { argument: "earlyReturnTime", value: wanted.to_string(), bound });
+            }
+            step.wanted = step.wanted.min(wanted.max(step.at));
+        }
+        let step = *step;
+        if step.at >= step.wanted || step.may_stop && self.session.early_return {
+            return Ok(Progress::Ended(self.end_step(step)));
+        }
+        self.go_on()
+    }
+
+    /// From point to point.
+    fn go_on(&mut self) -> Call<Progress> {
+        loop {
+            let Some(mut step) = self.under_way else {
+                return Err(CallError::Unsupported("a step that is not under way"));
+            };
+            let stop = match self.core.model.do_step_to_event(step.at, step.wanted, &self.logger) {
+                Ok(stop) => stop,
+                Err(error) => {
+                    self.under_way = None;
+                    return self.stopped(&error, step).map(Progress::Ended);
+                }
+            };
+            step.at = stop.map_or(step.wanted, |stop: Stop| stop.time.min(step.wanted));
+            step.had_event |= stop.is_some_and(|stop| stop.is_event);
+            step.may_stop = stop.is_some();
+            (self.core.time, self.core.ticking) = (step.at, step.had_event);
+            self.under_way = Some(step);
+            if self.session.intermediate_update.is_some() {
+                self.core.state = CallState::IntermediateUpdateMode;
+                return Ok(Progress::Update(step.at));
+            }
+            if step.at >= step.wanted || step.may_stop && self.session.early_return {
+                return Ok(Progress::Ended(self.end_step(step)));
+            }
+        }
+    }
+
+    fn end_step(&mut self, step: UnderWay) -> StepOutcome {
+        self.under_way = None;
+        let time = step.at;
+        StepOutcome { event: step.had_event && self.session.event_mode, terminate: false, early: time < step.end, time }
+    }
+
+    /// A step that its model ended. It may ask for the end of the simulation, and it may have gone a part of the way; a step that is
+    /// discarded as a whole leaves all as it was.
+    #[cold]
+    fn stopped(&mut self, error: &SlaveError, step: UnderWay) -> Call<StepOutcome> {
+        let UnderWay { start, at, end, had_event, .. } = step;
+        let time = error.last_successful_time().unwrap_or(at).max(at).min(end);
+        if error.wants_to_terminate() {
+            self.logger.event(error);
+            self.core.time = time;
+            let early = time < end && self.session.early_return;
+            return Ok(StepOutcome { event: false, terminate: true, early, time });
+        }
+        if error.severity() != Severity::Discard || time == start {
+            return Err(CallError::Slave(error.clone()));
+        }
+        if !self.session.early_return {
+            let message = format!("{error}; the step was done up to {time} s, and this importer takes no part of a step");
+            return Err(SlaveError::error(message).into());
+        }
+        self.logger.event(error);
+        self.core.time = time;
+        Ok(StepOutcome { event: had_event && self.session.event_mode, terminate: false, early: time < end, time })
+    }
+}
