@@ -86,7 +86,7 @@ enum Number {
     Real(f64),
     /// Numbers that JSON does not have.
     Text(String),
-    Integer(i32),
+    Integer(i64),
     Switch(bool),
 }
 
@@ -158,15 +158,14 @@ fn parameter<'a>(description: &'a ModelDescription, variable: &'a Variable, part
     let enumeration = description.enumeration(variable);
     let items = enumeration.map_or(&[][..], |enumeration| &enumeration.items).iter();
     let item = |value: i32| items.clone().find(|item| item.value == value).map(|item| Number::Text(item.name.clone()));
-    let (kind, start, min, max) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => ("real", start.map(real), *min, *max),
-        Kind::Integer { start, min, max } => {
-            ("integer", start.map(Number::Integer), min.map(f64::from), max.map(f64::from))
-        }
-        Kind::Boolean { start } => ("boolean", start.map(Number::Switch), None, None),
-        Kind::String { .. } => ("string", None, None, None),
-        Kind::Enumeration { start } => ("enumeration", start.and_then(item), None, None),
+    let (kind, start) = match &variable.kind {
+        Kind::Real { start, .. } => ("real", start.map(real)),
+        Kind::Integer { start, .. } => ("integer", start.map(Number::Integer)),
+        Kind::Boolean { start } => ("boolean", start.map(Number::Switch)),
+        Kind::String { .. } | Kind::Other => ("string", None),
+        Kind::Enumeration { start } => ("enumeration", start.and_then(item)),
     };
+    let [min, max] = variable.kind.bounds();
     Parameter {
         name: &variable.name,
         part,
@@ -210,7 +209,7 @@ fn number(description: &ModelDescription, setting: &Setting) -> Result<Number, E
     let variable = description.variable(&setting.name).map_err(|error| failed(error.to_string()))?;
     Ok(match Value::parse(description, variable, &setting.value).map_err(|error| failed(error.to_string()))? {
         Value::Real(value) => real(value),
-        Value::Integer(value) => Number::Integer(value),
+        Value::Integer(value) => Number::Integer(value.into()),
         Value::Boolean(on) => Number::Switch(on),
         Value::Enumeration { name, .. } => Number::Text(name),
         Value::String(text) => Number::Text(text),

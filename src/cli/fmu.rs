@@ -11,7 +11,7 @@ use super::format::Sheet;
 use super::isolation::IsolationOptions;
 use super::progress::Spinner;
 use super::{Exit, fmu_check, output};
-use crate::package::{self, AddedBinary, Options};
+use crate::package::{self, AddedBinary, FmiVersion, Options};
 use fmu_import::{Archive, EnumerationItem, Kind, ModelDescription, Variable};
 
 /// Columns of a terminal within which descriptions of variables are wrapped.
@@ -28,6 +28,10 @@ pub struct Arguments {
 enum Task {
     /// Build the FMUs of this project into target/fmu
     Build {
+        /// Version of FMI: 2, which most tools import, or 3, with event mode, early return and a clock of the impacts; in
+        /// target/fmu/fmi3
+        #[arg(long, value_enum, default_value = "2")]
+        fmi: Fmi,
         /// Build for these platforms, all into the same FMUs, instead of this machine: linux64 (runs with glibc 2.17 and
         /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
         #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
@@ -67,11 +71,30 @@ enum Task {
     },
 }
 
+/// A version of FMI.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Fmi {
+    #[value(name = "2")]
+    Two,
+    #[value(name = "3")]
+    Three,
+}
+
+impl From<Fmi> for FmiVersion {
+    fn from(fmi: Fmi) -> Self {
+        match fmi {
+            Fmi::Two => Self::Fmi2,
+            Fmi::Three => Self::Fmi3,
+        }
+    }
+}
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match &arguments.task {
-        Task::Build { targets, added, resources, output, json } => {
-            let options = Options { output: output.clone(), resources: resources.clone(), ..Options::default() };
+        Task::Build { fmi, targets, added, resources, output, json } => {
+            let fmi = (*fmi).into();
+            let options = Options { fmi, output: output.clone(), resources: resources.clone(), ..Options::default() };
             build(targets, added, options, *json)?;
         }
         Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
@@ -116,7 +139,7 @@ struct Info<'a> {
     model_name: &'a str,
     model_identifier: &'a str,
     guid: &'a str,
-    fmi_version: &'static str,
+    fmi_version: &'a str,
     description: Option<&'a str>,
     platforms: Vec<String>,
     variables: Vec<Row<'a>>,
@@ -132,7 +155,7 @@ fn info(file: &Path, json: bool) -> anyhow::Result<()> {
         model_name: &description.model_name,
         model_identifier: &description.co_simulation.model_identifier,
         guid: &description.guid,
-        fmi_version: "2.0",
+        fmi_version: &description.fmi_version,
         description: description.description.as_deref(),
         platforms: archive.platforms(),
         variables,
@@ -158,19 +181,19 @@ impl<'a> Items<'a> {
 }
 
 fn row<'a>(items: &Items<'a>, variable: &'a Variable) -> Row<'a> {
-    let (kind, start, min, max) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => ("Real", start.map(|value| format!("{value:?}").into()), *min, *max),
-        Kind::Integer { start, min, max } => {
-            ("Integer", start.map(|value| value.to_string().into()), min.map(f64::from), max.map(f64::from))
-        }
-        Kind::Boolean { start } => ("Boolean", start.map(|value| value.to_string().into()), None, None),
-        Kind::String { start } => ("String", start.as_deref().map(Cow::from), None, None),
-        Kind::Enumeration { start } => ("Enumeration", start.map(|value| items.name(variable, value)), None, None),
+    let start = match &variable.kind {
+        Kind::Real { start, .. } => start.map(|value| format!("{value:?}").into()),
+        Kind::Integer { start, .. } => start.map(|value| value.to_string().into()),
+        Kind::Boolean { start } => start.map(|value| value.to_string().into()),
+        Kind::String { start } => start.as_deref().map(Cow::from),
+        Kind::Enumeration { start } => start.map(|value| items.name(variable, value)),
+        Kind::Other => None,
     };
+    let [min, max] = variable.kind.bounds();
     Row {
         name: &variable.name,
         value_reference: variable.value_reference,
-        r#type: kind,
+        r#type: variable.type_name,
         causality: variable.causality.as_str(),
         variability: variable.variability.as_str(),
         unit: variable.unit(),
@@ -192,11 +215,12 @@ fn text(info: &Info) -> String {
     let table = Sheet::new(headings, &[4], info.variables.iter().map(row).collect()).within(WIDTH);
     let platforms = if info.platforms.is_empty() { "none".to_owned() } else { info.platforms.join(", ") };
     format!(
-        "{} (model identifier {}, FMI {})\n{}\nGUID {}, platforms: {platforms}\n\n{table}",
+        "{} (model identifier {}, FMI {})\n{}\n{} {}, platforms: {platforms}\n\n{table}",
         info.model_name,
         info.model_identifier,
         info.fmi_version,
         info.description.unwrap_or_default(),
+        if info.fmi_version == "2.0" { "GUID" } else { "instantiation token" },
         info.guid,
     )
 }

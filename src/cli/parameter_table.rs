@@ -111,9 +111,11 @@ fn last<'a>(settings: &'a [Setting], name: &str) -> Option<&'a Setting> {
 fn start(variable: &Variable) -> String {
     match &variable.kind {
         Kind::Real { start, .. } => start.map(shown),
-        Kind::Integer { start, .. } | Kind::Enumeration { start } => start.map(|number| number.to_string()),
+        Kind::Integer { start, .. } => start.map(|number| number.to_string()),
+        Kind::Enumeration { start } => start.map(|number| number.to_string()),
         Kind::Boolean { start } => start.map(|on| on.to_string()),
         Kind::String { start } => start.clone(),
+        Kind::Other => None,
     }
     .unwrap_or_default()
 }

@@ -46,6 +46,7 @@ struct Page {
     description: String,
     identifier: String,
     guid: String,
+    version: String,
     tool: String,
     groups: Vec<Group>,
 }
@@ -70,7 +71,7 @@ struct Row {
 pub(super) fn add(description: &ModelDescription, entries: &mut Entries) -> Result<()> {
     if let Some((page, picture)) = page_and_picture(description)? {
         entries.add("documentation/index.html", page);
-        entries.add("model.png", picture);
+        entries.add(if description.is_fmi_3() { "terminalsAndIcons/icon.png" } else { "model.png" }, picture);
     }
     for (name, text) in LICENSES {
         entries.add(&format!("documentation/licenses/{name}"), text);
@@ -86,6 +87,7 @@ fn page_and_picture(description: &ModelDescription) -> Result<Option<(String, Ve
         description: description.description.clone().unwrap_or_default(),
         identifier: identifier.clone(),
         guid: description.guid.clone(),
+        version: description.fmi_version.clone(),
         tool: description.generation_tool.clone().unwrap_or_default(),
         groups: GROUPS.iter().filter_map(|(causality, heading)| group(description, *causality, heading)).collect(),
     };
@@ -128,6 +130,7 @@ fn row(description: &ModelDescription, variable: &Variable) -> Row {
             let chosen = items.iter().find(|item| Some(item.value) == *start);
             ("enumeration", chosen.map(|item| item.name.clone()), String::new())
         }
+        Kind::Other => ("clock", None, String::new()),
     };
     Row { name: variable.name.clone(), unit: unit.to_owned(), start: start.unwrap_or_default(), range, meaning }
 }

@@ -24,6 +24,7 @@ mod embedded;
 mod entries;
 mod error;
 mod explorer;
+mod fmi3;
 mod fresh;
 mod locate;
 mod platform;
@@ -64,13 +65,25 @@ pub const FMUS: [FmuPackage; 2] = [
     FmuPackage { identifier: "HarvestingCircuit", package: "videg-fmu-circuit", folder: "fmu/circuit" },
 ];
 
+/// A version of FMI.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FmiVersion {
+    /// FMI 2.0
+    #[default]
+    Fmi2,
+    /// FMI 3.0
+    Fmi3,
+}
+
 /// Environment variable that keeps the packager from running Cargo, unless it is empty.
 pub const NO_BUILD: &str = "VIDEG_NO_BUILD";
 
-/// How to package. The default is for this machine, into `target/fmu` of the source tree (without one: of the working
-/// folder), and builds unless [`NO_BUILD`] is set.
+/// How to package. The default is FMI 2.0 for this machine, into `target/fmu` of the source tree (without one: of the working
+/// folder; FMI 3.0 into `target/fmu/fmi3`), and builds unless [`NO_BUILD`] is set.
 #[derive(Debug, Clone)]
 pub struct Options {
+    /// Version of FMI.
+    pub fmi: FmiVersion,
     /// Folder of the archives.
     pub output: Option<PathBuf>,
     /// Whether Cargo may be run.
@@ -93,6 +106,7 @@ impl Default for Options {
     fn default() -> Self {
         let build = std::env::var_os(NO_BUILD).is_none_or(|value| value.is_empty());
         Self {
+            fmi: FmiVersion::default(),
             output: None,
             build,
             as_is: false,
@@ -139,6 +153,16 @@ pub fn build_for_use(options: &Options) -> Result<Placed> {
 
 /// The archives, in the order of [`FMUS`], and the folder for them.
 fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
+    let (archives, output) = pack_2(options)?;
+    Ok(match options.fmi {
+        FmiVersion::Fmi2 => (archives, output),
+        FmiVersion::Fmi3 if options.output.is_some() => (fmi3::converted(&archives)?, output),
+        FmiVersion::Fmi3 => (fmi3::converted(&archives)?, output.join("fmi3")),
+    })
+}
+
+/// Those of FMI 2.0.
+fn pack_2(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     let output = |workspace| options.output.clone().unwrap_or_else(|| default_output(workspace));
     if let Some(archives) = embedded::archives(options) {
         return Ok((embedded::with_added(archives, options)?, output(None)));

@@ -207,8 +207,8 @@ impl Part<'_> {
 fn is_start(variable: &Variable, value: &Value) -> bool {
     match (&variable.kind, value) {
         (Kind::Real { start, .. }, Value::Real(value)) => *start == Some(*value),
-        (Kind::Integer { start, .. }, Value::Integer(value))
-        | (Kind::Enumeration { start }, Value::Enumeration { value, .. }) => *start == Some(*value),
+        (Kind::Integer { start, .. }, Value::Integer(value)) => *start == Some((*value).into()),
+        (Kind::Enumeration { start }, Value::Enumeration { value, .. }) => *start == Some(*value),
         (Kind::Boolean { start }, Value::Boolean(value)) => *start == Some(*value),
         (Kind::String { start }, Value::String(value)) => start.as_ref() == Some(value),
         _ => false,

@@ -47,8 +47,10 @@ fn start_value(
 fn start(variable: &Variable) -> String {
     match &variable.kind {
         Kind::Real { start, .. } => format!("{:?}", start.unwrap_or_default()),
-        Kind::Integer { start, .. } | Kind::Enumeration { start } => start.unwrap_or_default().to_string(),
+        Kind::Integer { start, .. } => start.unwrap_or_default().to_string(),
+        Kind::Enumeration { start } => start.unwrap_or_default().to_string(),
         Kind::Boolean { start } => start.unwrap_or_default().to_string(),
         Kind::String { start } => start.clone().unwrap_or_default(),
+        Kind::Other => String::new(),
     }
 }

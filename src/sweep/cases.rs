@@ -83,6 +83,7 @@ impl Cases {
             initial: None,
             declared_type: None,
             kind: Kind::String { start: None },
+            type_name: "String",
         };
         Axis::of_list(variable, self.0.keys().cloned().map(Value::String).collect(), seed)
     }

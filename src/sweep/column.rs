@@ -49,7 +49,7 @@ impl Type {
             Kind::Real { .. } => Self::Real,
             Kind::Integer { .. } => Self::Integer,
             Kind::Boolean { .. } => Self::Boolean,
-            Kind::String { .. } | Kind::Enumeration { .. } => Self::Text,
+            Kind::String { .. } | Kind::Enumeration { .. } | Kind::Other => Self::Text,
         }
     }
 }

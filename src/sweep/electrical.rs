@@ -33,6 +33,7 @@ fn output(name: &str, unit: &str, description: &str) -> Variable {
         initial: None,
         declared_type: None,
         kind: Kind::Real { unit: Some(unit.into()), start: None, min: None, max: None },
+        type_name: "Real",
     }
 }
 

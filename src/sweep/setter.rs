@@ -19,7 +19,7 @@ impl Setter {
             Kind::Integer { .. } | Kind::Boolean { .. } | Kind::Enumeration { .. } => {
                 Parameters::CHOICES.iter().find(|it| named(it.name)).map(|it| Self::Choice(it.set))
             }
-            Kind::String { .. } => None,
+            Kind::String { .. } | Kind::Other => None,
         }
     }
 

@@ -78,11 +78,14 @@ fn the_page_of_variables_is_that_of_the_model_descriptions() {
 
 fn row(page: &mut String, description: &ModelDescription, variable: &Variable) {
     let number = |value: Option<f64>| value.map_or_else(String::new, scientific);
+    let own_bounds = variable.kind.bounds().map(number);
     let (start, bounds) = match &variable.kind {
-        Kind::Real { start, min, max, .. } => (number(*start), [number(*min), number(*max)]),
-        Kind::Integer { start, min, max } => {
-            (number(start.map(f64::from)), [number(min.map(f64::from)), number(max.map(f64::from))])
+        Kind::Real { start, .. } => (number(*start), own_bounds),
+        Kind::Integer { start, .. } => {
+            let start = start.and_then(|start| i32::try_from(start).ok());
+            (number(start.map(f64::from)), own_bounds)
         }
+        Kind::Other => Default::default(),
         Kind::Boolean { start } => (start.map_or_else(String::new, |start| start.to_string()), Default::default()),
         Kind::String { start } => (start.clone().unwrap_or_default(), Default::default()),
         Kind::Enumeration { start } => {

@@ -176,6 +176,7 @@ impl Instance {
                 Value::Boolean(value[0])
             }
             Kind::String { .. } => Value::String(self.get_string(&reference)?.pop().unwrap_or_default()),
+            Kind::Other => return Err(FmiError::Version { found: self.description().fmi_version.clone() }),
         })
     }
 

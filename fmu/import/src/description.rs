@@ -7,14 +7,15 @@ use std::sync::Arc;
 use super::error::{FmiError, Result};
 use super::suggest;
 
-/// The model description of a co-simulation FMU.
+/// The model description of a co-simulation FMU, of FMI 2.0 or 3.0. One of 3.0 can be read, not run; what has another name there
+/// stands under that of 2.0.
 #[derive(Debug, Clone)]
 pub struct ModelDescription {
-    /// Version of FMI, always "2.0".
+    /// Version of FMI: "2.0", or "3.0" with what may follow.
     pub fmi_version: String,
     /// Name of the model.
     pub model_name: String,
-    /// Identifier that ties the description to its library.
+    /// Identifier that ties the description to its library; in FMI 3.0 the instantiation token.
     pub guid: String,
     /// One sentence about the model.
     pub description: Option<String>,
@@ -138,6 +139,8 @@ pub struct Variable {
     pub declared_type: Option<String>,
     /// Base type with its attributes, those of the type definition included.
     pub kind: Kind,
+    /// Its XML element: the name of its type in its version of FMI.
+    pub type_name: &'static str,
 }
 
 /// Base type of a variable.
@@ -146,14 +149,16 @@ pub struct Variable {
 pub enum Kind {
     /// 64-bit floating-point number.
     Real { unit: Option<Arc<str>>, start: Option<f64>, min: Option<f64>, max: Option<f64> },
-    /// 32-bit integer.
-    Integer { start: Option<i32>, min: Option<i32>, max: Option<i32> },
+    /// Integer: of 32 bits in FMI 2.0.
+    Integer { start: Option<i64>, min: Option<i64>, max: Option<i64> },
     /// Truth value.
     Boolean { start: Option<bool> },
     /// Text.
     String { start: Option<String> },
     /// Item of the enumeration type named in [`Variable::declared_type`].
     Enumeration { start: Option<i32> },
+    /// A type that FMI 2.0 does not have: clock or bytes.
+    Other,
 }
 
 impl Kind {
@@ -165,6 +170,19 @@ impl Kind {
             Self::Boolean { .. } => "Boolean",
             Self::String { .. } => "String",
             Self::Enumeration { .. } => "Enumeration",
+            Self::Other => "Other",
+        }
+    }
+}
+
+impl Kind {
+    /// Least and largest number allowed, of an integer as the nearest double.
+    #[allow(clippy::cast_precision_loss)] // a bound beyond 2^53 is one to look at
+    pub fn bounds(&self) -> [Option<f64>; 2] {
+        match *self {
+            Self::Real { min, max, .. } => [min, max],
+            Self::Integer { min, max, .. } => [min, max].map(|bound| bound.map(|bound| bound as f64)),
+            _ => [None; 2],
         }
     }
 }
@@ -263,6 +281,11 @@ impl Variable {
 }
 
 impl ModelDescription {
+    /// Whether it is of FMI 3.0.
+    pub fn is_fmi_3(&self) -> bool {
+        self.fmi_version.starts_with("3.")
+    }
+
     /// Whether there is an input of this name.
     pub fn is_input(&self, name: &str) -> bool {
         self.variable(name).is_ok_and(Variable::is_input)

@@ -37,6 +37,9 @@ pub enum FmiError {
     /// There is no binary for this machine.
     #[error("{}: no binary for this platform (wanted {wanted}, the FMU has: {})", path.display(), list(found))]
     NoBinary { path: PathBuf, wanted: String, found: Vec<String> },
+    /// An FMU of FMI 3.0, which is described but not run.
+    #[error("it is of FMI {found}; FMUs of FMI 2.0 are run, those of 3.0 can only be described (videg fmu info)")]
+    Version { found: String },
     /// The dynamic linker refused the library.
     #[error("cannot load {}: {cause}", path.display())]
     Load { path: PathBuf, cause: libloading::Error },

@@ -58,6 +58,9 @@ impl Fmu {
     fn load(path: &Path, decide: impl FnOnce(&str, &Path) -> Option<Isolation>) -> Result<Self> {
         let mut archive = Archive::open(path)?;
         let description = archive.description()?;
+        if description.is_fmi_3() {
+            return Err(FmiError::Version { found: description.fmi_version });
+        }
         let identifier = &description.co_simulation.model_identifier;
         let entry = library::entry_name(HOST_PLATFORM, identifier);
         if !archive.contains(&entry) {

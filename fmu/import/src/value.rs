@@ -86,6 +86,7 @@ impl Value {
             Kind::String { .. } if text.contains('\0') => Err(unreadable(variable, text, "text without zero bytes")),
             Kind::String { .. } => Ok(Self::String(text.to_owned())),
             Kind::Enumeration { .. } => item(description.enumeration(variable), variable, trimmed),
+            Kind::Other => Err(unreadable(variable, text, "nothing: FMI 2.0 has no such type")),
         }
     }
 
@@ -98,7 +99,9 @@ impl Value {
             (Self::Real(value), Kind::Real { min, max, unit, .. }) => {
                 in_range(variable, *value, *min, *max, unit.as_deref())
             }
-            (Self::Integer(value), Kind::Integer { min, max, .. }) => in_range(variable, *value, *min, *max, None),
+            (Self::Integer(value), Kind::Integer { min, max, .. }) => {
+                in_range(variable, i64::from(*value), *min, *max, None)
+            }
             _ => Ok(()),
         }
     }

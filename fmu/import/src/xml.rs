@@ -47,8 +47,9 @@ fn read(document: &[u8]) -> Result<ModelDescription> {
         return Err(format!("the root element is <{}>, allowed is <{root}>", element.name()));
     }
     let fmi_version = element.required(root, "fmiVersion")?;
-    if fmi_version != "2.0" {
-        return Err(format!("fmiVersion is \"{fmi_version}\", allowed is \"2.0\""));
+    let is_3 = fmi_version.starts_with("3.");
+    if fmi_version != "2.0" && !is_3 {
+        return Err(format!("fmiVersion is \"{fmi_version}\", allowed is \"2.0\" or \"3.0\""));
     }
     let enumerations = types::enumerations(&element)?;
     let variables = variables(&element)?;
@@ -57,7 +58,7 @@ fn read(document: &[u8]) -> Result<ModelDescription> {
     Ok(ModelDescription {
         fmi_version,
         model_name: element.required(root, "modelName")?,
-        guid: element.required(root, "guid")?,
+        guid: element.required(root, if is_3 { "instantiationToken" } else { "guid" })?,
         description: element.attribute("description")?,
         generation_tool: element.attribute("generationTool")?,
         co_simulation: capabilities(co_simulation)?,
@@ -67,7 +68,7 @@ fn read(document: &[u8]) -> Result<ModelDescription> {
         log_categories: log_categories(&element)?,
         default_experiment: experiment(&element)?,
         positions: positions(&variables)?,
-        outputs: outputs(&element, variables.len())?,
+        outputs: if is_3 { outputs_3(&element, &variables)? } else { outputs(&element, variables.len())? },
         variables,
     })
 }
@@ -89,7 +90,8 @@ fn decode(document: &[u8]) -> Result<Cow<'_, str>> {
 fn variables(root: &Element<'_>) -> Result<Vec<Variable>> {
     let types = types::Types::read(root)?;
     let list = root.child("ModelVariables")?.ok_or_else(|| missing("fmiModelDescription", "ModelVariables"))?;
-    let variables = list.children("ScalarVariable").enumerate();
+    let is_variable = |it: &&Element<'_>| it.name() == "ScalarVariable" || variable::TYPES_3.contains(&&*it.name());
+    let variables = list.all_children().filter(is_variable).enumerate();
     variables.map(|(position, element)| variable::variable(element, position, &types)).collect()
 }
 
@@ -101,6 +103,8 @@ fn capabilities(element: &Element<'_>) -> Result<CoSimulation> {
         return Err(not_allowed(place, "modelIdentifier", &model_identifier, allowed));
     }
     let flag = |name| element.boolean(place, name).map(Option::unwrap_or_default);
+    // FMI 3.0 spells three of them in another way.
+    let either = |name, name_3| Ok::<_, String>(flag(name)? || flag(name_3)?);
     Ok(CoSimulation {
         model_identifier,
         needs_execution_tool: flag("needsExecutionTool")?,
@@ -111,9 +115,9 @@ fn capabilities(element: &Element<'_>) -> Result<CoSimulation> {
         can_run_asynchronously: flag("canRunAsynchronuously")?,
         can_be_instantiated_only_once_per_process: flag("canBeInstantiatedOnlyOncePerProcess")?,
         can_not_use_memory_management_functions: flag("canNotUseMemoryManagementFunctions")?,
-        can_get_and_set_fmu_state: flag("canGetAndSetFMUstate")?,
-        can_serialize_fmu_state: flag("canSerializeFMUstate")?,
-        provides_directional_derivative: flag("providesDirectionalDerivative")?,
+        can_get_and_set_fmu_state: either("canGetAndSetFMUstate", "canGetAndSetFMUState")?,
+        can_serialize_fmu_state: either("canSerializeFMUstate", "canSerializeFMUState")?,
+        provides_directional_derivative: either("providesDirectionalDerivative", "providesDirectionalDerivatives")?,
     })
 }
 
@@ -171,4 +175,16 @@ fn outputs(root: &Element<'_>, count: usize) -> Result<Vec<usize>> {
         position.ok_or_else(|| not_allowed(place, "index", &index.to_string(), &format!("1 .. {count}")))
     };
     structure.list("Outputs", "Unknown")?.map(position).collect()
+}
+
+/// The same of FMI 3.0, whose structure names value references.
+fn outputs_3(root: &Element<'_>, variables: &[Variable]) -> Result<Vec<usize>> {
+    let place = "ModelStructure/Output";
+    let positions: HashMap<u32, usize> = variables.iter().enumerate().map(|(k, it)| (it.value_reference, k)).collect();
+    let position = |output: &Element<'_>| {
+        let reference: u32 = output.integer(place, "valueReference")?.ok_or_else(|| missing(place, "valueReference"))?;
+        let allowed = || not_allowed(place, "valueReference", &reference.to_string(), "that of a variable");
+        positions.get(&reference).copied().ok_or_else(allowed)
+    };
+    root.list("ModelStructure", "Output")?.map(position).collect()
 }

@@ -65,9 +65,9 @@ fn variable<S: Slave>(xml: &mut Xml, reference: u32, row: &Variable<S>) -> Writt
     attributes.extend(row.initial().filter(|_| !row.is_clock()).map(|i| ("initial", i.as_str().to_owned())));
     attributes.extend((!row.clocks().is_empty()).then(|| ("clocks", references(table, row.clocks()))));
     attributes.extend(is_intermediate::<S>(reference).then(|| ("intermediateUpdate", true.to_string())));
-    // A variable may have further names.
-    let aliases: Vec<_> = table.iter().filter(|other| other.alias_of() == Some(row.name())).collect();
-    let derived = aliases.iter().find_map(|alias| alias.derivative_of()).or_else(|| row.derivative_of());
+    // A row that is an alias is not written: what it says stands here.
+    let alias = table.iter().find(|other| other.alias_of() == Some(row.name()));
+    let derived = alias.unwrap_or(row).derivative_of();
     attributes.extend(derived.map(|state| ("derivative", references(table, &[state]))));
     attributes.extend(row.reinit().then(|| ("reinit", true.to_string())));
     let mut own = type_attributes(row.kind());
@@ -89,19 +89,12 @@ fn variable<S: Slave>(xml: &mut Xml, reference: u32, row: &Variable<S>) -> Writt
     }
     attributes.extend(own);
     let name = row.kind().type_name_3();
-    if start.is_none() && aliases.is_empty() {
-        return empty(xml, name, &attributes);
-    }
-    element(xml, name, &attributes, |xml| {
-        if let Some(value) = start {
-            empty(xml, "Start", &[("value", value.to_owned())])?;
+    match start {
+        None => empty(xml, name, &attributes),
+        Some(value) => {
+            element(xml, name, &attributes, |xml| empty(xml, "Start", &[("value", value.to_owned())]))
         }
-        aliases.iter().try_for_each(|alias| {
-            let mut attributes = vec![("name", alias.name().to_owned())];
-            attributes.extend(text("description", alias.description()));
-            empty(xml, "Alias", &attributes)
-        })
-    })
+    }
 }
 
 /// Every output, the derivatives of the continuous states, the unknowns of the initialisation, and the event indicators.
@@ -122,9 +115,11 @@ fn structure<S: Slave>(xml: &mut Xml) -> Written {
             list("ContinuousStateDerivative", references(table, &[row.name()]), present(row))?;
         }
         let mut listed = Vec::new();
-        for row in table.iter().filter(|row| row.is_initial_unknown(table)) {
+        // The standard gives clocks no initial value, but validators miss those that are outputs.
+        let is_clock = |row: &Variable<S>| row.is_clock() && row.causality() == Causality::Output;
+        for row in table.iter().filter(|row| row.is_initial_unknown(table) || is_clock(row)) {
             let reference = references(table, &[row.name()]);
-            // One with two names is in the list once.
+            // An alias is in the list once.
             if !listed.contains(&reference) {
                 list("InitialUnknown", reference.clone(), initial(row))?;
                 listed.push(reference);

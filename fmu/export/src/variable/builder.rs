@@ -342,8 +342,8 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
         self
     }
 
-    /// Says that this derivative always has the value of the variable `name`, as the velocity is that of the position: FMI 3.0
-    /// has one variable with two names then.
+    /// Says that this derivative always has the value of the variable `name`, as the velocity is that of the position: in FMI 3.0
+    /// that variable is the derivative, and this one is not there.
     pub const fn alias_of(mut self, name: &'static str) -> Self {
         self.alias_of = Some(name);
         self

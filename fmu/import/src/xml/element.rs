@@ -104,6 +104,11 @@ impl<'a> Element<'a> {
         self.children.iter().filter(move |child| child.start.name().as_ref() == name)
     }
 
+    /// All child elements.
+    pub fn all_children(&self) -> impl Iterator<Item = &Self> {
+        self.children.iter()
+    }
+
     /// The child element of this name, of which there may be one.
     pub fn child(&self, name: &str) -> Result<Option<&Self>> {
         let mut children = self.children(name);
@@ -148,6 +153,11 @@ impl<'a> Element<'a> {
 
     pub fn integer<T: FromStr>(&self, place: &str, name: &str) -> Result<Option<T>> {
         self.read(place, name, |text| text.trim().parse().ok(), "an integer of the attribute's range")
+    }
+
+    /// An integer of FMI 2.0, which has 32 bits.
+    pub fn whole(&self, place: &str, name: &str) -> Result<Option<i64>> {
+        Ok(self.integer::<i32>(place, name)?.map(i64::from))
     }
 
     pub fn boolean(&self, place: &str, name: &str) -> Result<Option<bool>> {

@@ -13,7 +13,7 @@ pub(super) struct SimpleType {
     /// Bounds of a Real.
     pub real: [Option<f64>; 2],
     /// Bounds of an Integer.
-    pub integer: [Option<i32>; 2],
+    pub integer: [Option<i64>; 2],
     pub is_enumeration: bool,
 }
 
@@ -37,11 +37,32 @@ impl Types {
                     it.attribute("unit")?.map(|unit| shared(&place, "unit", unit)).transpose()?.map(Arc::from);
             }
             if let Some(it) = element.child("Integer")? {
+                simple.integer = [it.whole(&place, "min")?, it.whole(&place, "max")?];
+            }
+            all.insert(name, simple);
+        }
+        Self::read_3(root, &mut all)?;
+        Ok(Self(all))
+    }
+
+    /// Those of FMI 3.0, whose element is the type itself.
+    fn read_3(root: &Element<'_>, all: &mut HashMap<String, SimpleType>) -> Result<()> {
+        let Some(list) = root.child("TypeDefinitions")? else { return Ok(()) };
+        let elements = list.all_children().filter_map(|it| Some((it.name().strip_suffix("Type")?.to_owned(), it)));
+        for (type_name, it) in elements.filter(|(type_name, _)| type_name != "Simple") {
+            let Some(name) = it.attribute("name")?.filter(|name| !all.contains_key(name)) else { continue };
+            let place = format!("type \"{name}\"");
+            let mut simple = SimpleType { is_enumeration: type_name == "Enumeration", ..SimpleType::default() };
+            if type_name.starts_with("Float") {
+                simple.real = [it.real(&place, "min")?, it.real(&place, "max")?];
+                simple.unit =
+                    it.attribute("unit")?.map(|unit| shared(&place, "unit", unit)).transpose()?.map(Arc::from);
+            } else if type_name.contains("Int") {
                 simple.integer = [it.integer(&place, "min")?, it.integer(&place, "max")?];
             }
             all.insert(name, simple);
         }
-        Ok(Self(all))
+        Ok(())
     }
 
     pub fn get(&self, name: Option<&str>) -> Option<&SimpleType> {
@@ -60,9 +81,11 @@ impl Types {
 /// The enumeration types, in file order.
 pub(super) fn enumerations(root: &Element<'_>) -> Result<Vec<EnumerationType>> {
     let mut all = Vec::new();
-    for element in root.list("TypeDefinitions", "SimpleType")? {
-        let Some(enumeration) = element.child("Enumeration")? else { continue };
-        let name = element.required("SimpleType", "name")?;
+    let types = root.list("TypeDefinitions", "SimpleType")?;
+    for element in types.chain(root.list("TypeDefinitions", "EnumerationType")?) {
+        let is_3 = element.name() == "EnumerationType";
+        let Some(enumeration) = (if is_3 { Some(element) } else { element.child("Enumeration")? }) else { continue };
+        let name = element.required(&element.name(), "name")?;
         let place = format!("enumeration \"{name}\"");
         let items = enumeration.children("Item").map(|item| enumeration_item(item, &place)).collect::<Result<_>>()?;
         all.push(EnumerationType { name, items });

@@ -1,4 +1,5 @@
-//! One `ScalarVariable`: defaults of the standard, attributes of its type definition, base type.
+//! One variable: defaults of the standard, attributes of its type definition, base type. In FMI 2.0 the type is an element in
+//! `ScalarVariable`, in FMI 3.0 the element is the type.
 
 use std::str::FromStr;
 use std::sync::Arc;
@@ -7,15 +8,26 @@ use super::element::{Element, missing, not_allowed};
 use super::types::Types;
 use super::{Causality, Initial, Kind, Result, Variability, Variable};
 
+/// The types of FMI 3.0.
+pub(super) const TYPES_3: [&str; 15] = [
+    "Float64", "Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean", "String",
+    "Enumeration", "Clock", "Binary",
+];
+
 /// Reads the variable at `position` (from 0).
 pub(super) fn variable(element: &Element<'_>, position: usize, types: &Types) -> Result<Variable> {
-    let name = element.required(&format!("ScalarVariable {}", position + 1), "name")?;
+    let name = element.required(&format!("{} {}", element.name(), position + 1), "name")?;
     let place = format!("variable \"{name}\"");
     let value_reference = element.integer(&place, "valueReference")?;
     let causality = keyword(element, &place, "causality", Causality::ALLOWED)?.unwrap_or(Causality::Local);
     let variability = keyword(element, &place, "variability", Variability::ALLOWED)?;
     let initial = keyword(element, &place, "initial", Initial::ALLOWED)?;
-    let (kind, declared_type) = kind(element, &place, types)?;
+    let type_name = TYPES_3.into_iter().find(|type_name| *type_name == element.name());
+    let (kind, declared_type) = match type_name {
+        Some(type_name) => kind_3(type_name, element, &place, types)?,
+        None => kind(element, &place, types)?,
+    };
+    let type_name = type_name.unwrap_or(kind.name());
     let is_real = matches!(kind, Kind::Real { .. });
     let variability = variability.unwrap_or(if is_real { Variability::Continuous } else { Variability::Discrete });
     Ok(Variable {
@@ -27,6 +39,7 @@ pub(super) fn variable(element: &Element<'_>, position: usize, types: &Types) ->
         initial: initial.or_else(|| default_initial(causality, variability)),
         declared_type,
         kind,
+        type_name,
     })
 }
 
@@ -57,8 +70,8 @@ fn kind(element: &Element<'_>, place: &str, types: &Types) -> Result<(Kind, Opti
     } else if let Some(own) = element.child("Integer")? {
         let declared = declared(own)?;
         let [least, most] = types.get(declared.as_deref()).map_or([None; 2], |it| it.integer);
-        let (min, max) = (own.integer(place, "min")?.or(least), own.integer(place, "max")?.or(most));
-        Ok((Kind::Integer { start: own.integer(place, "start")?, min, max }, declared))
+        let (min, max) = (own.whole(place, "min")?.or(least), own.whole(place, "max")?.or(most));
+        Ok((Kind::Integer { start: own.whole(place, "start")?, min, max }, declared))
     } else if let Some(own) = element.child("Boolean")? {
         Ok((Kind::Boolean { start: own.boolean(place, "start")? }, declared(own)?))
     } else if let Some(own) = element.child("String")? {
@@ -73,4 +86,52 @@ fn kind(element: &Element<'_>, place: &str, types: &Types) -> Result<(Kind, Opti
     } else {
         Err(missing(place, "type element (Real, Integer, Boolean, String or Enumeration)"))
     }
+}
+
+/// The same of FMI 3.0. Of an array the first value is shown.
+fn kind_3(type_name: &str, own: &Element<'_>, place: &str, types: &Types) -> Result<(Kind, Option<String>)> {
+    let declared = own.attribute("declaredType")?;
+    let inherited = types.get(declared.as_deref());
+    let kind = match type_name {
+        "Float64" | "Float32" => {
+            let [least, most] = inherited.map_or([None; 2], |it| it.real);
+            let unit = own.attribute("unit")?.map(Arc::from).or_else(|| inherited.and_then(|it| it.unit.clone()));
+            let (min, max) = (own.real(place, "min")?.or(least), own.real(place, "max")?.or(most));
+            Kind::Real { unit, start: first(own, place, "a number", |text| text.parse().ok())?, min, max }
+        }
+        "Boolean" => {
+            let read = |text: &str| match text {
+                "true" | "1" => Some(true),
+                "false" | "0" => Some(false),
+                _ => None,
+            };
+            Kind::Boolean { start: first(own, place, "true or false", read)? }
+        }
+        "String" => {
+            let start = own.children("Start").next();
+            Kind::String { start: start.map(|start| start.required(place, "value")).transpose()? }
+        }
+        "Enumeration" => {
+            let name = declared.as_deref().unwrap_or_default();
+            if !types.get(Some(name)).is_some_and(|simple| simple.is_enumeration) {
+                let allowed = format!("an enumeration of TypeDefinitions ({})", types.enumerations().join(", "));
+                return Err(not_allowed(place, "declaredType", name, &allowed));
+            }
+            Kind::Enumeration { start: first(own, place, "an integer of 32 bits", |text| text.parse().ok())? }
+        }
+        "Clock" | "Binary" => Kind::Other,
+        _ => {
+            let [least, most] = inherited.map_or([None; 2], |it| it.integer);
+            let (min, max) = (own.integer(place, "min")?.or(least), own.integer(place, "max")?.or(most));
+            // Of 64 bits without a sign, what is beyond those with one shows as the largest.
+            let read = |text: &str| text.parse().ok().or_else(|| text.parse::<u64>().ok().map(|_| i64::MAX));
+            Kind::Integer { start: first(own, place, "an integer", read)?, min, max }
+        }
+    };
+    Ok((kind, declared))
+}
+
+/// The first value of `start`.
+fn first<T>(own: &Element<'_>, place: &str, allowed: &str, read: impl Fn(&str) -> Option<T>) -> Result<Option<T>> {
+    own.read(place, "start", |text| text.split_whitespace().next().and_then(&read), allowed)
 }
