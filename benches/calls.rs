@@ -7,6 +7,8 @@
 //!
 //! Steps are timed over a stretch in which no impact comes, from the same saved state again and again; pulses of the impact
 //! before are under way. The 100 s of Fig. 14 have all their impacts.
+//!
+//! The same of FMI 3.0, where the importer lets steps go to their end, and where it handles events and takes steps that end early.
 
 mod baseline;
 #[path = "baseline/c.rs"]
@@ -20,9 +22,9 @@ use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
 use criterion::Criterion;
-use fmu_import::{Archive, HOST_PLATFORM, LIBRARY_EXTENSION, ModelDescription};
+use fmu_import::{Archive, LIBRARY_EXTENSION, ModelDescription};
 use libloading::Library;
-use videg::package::{Options, build_all};
+use videg::package::{FmiVersion, Options, build_all};
 use videg_model::{Case, Parameters};
 
 /// Communication step of the loop in C, s.
@@ -147,13 +149,15 @@ fn duration(nanoseconds: i64) -> Duration {
 fn harvester<'a>(
     calls: &'a Loop,
     folder: &Path,
+    fmi: FmiVersion,
     parameters: &Parameters,
 ) -> anyhow::Result<(Driven<'a>, ModelDescription)> {
-    let paths = build_all(&Options { output: Some(folder.to_owned()), ..Options::default() })?;
+    let paths = build_all(&Options { fmi, output: Some(folder.to_owned()), ..Options::default() })?;
     let mut archive = Archive::open(paths.first().context("no FMU")?)?;
     let description = archive.description()?;
-    let library =
-        format!("binaries/{HOST_PLATFORM}/{}.{LIBRARY_EXTENSION}", description.co_simulation.model_identifier);
+    let platforms = archive.platforms();
+    let platform = platforms.first().context("no library")?;
+    let library = format!("binaries/{platform}/{}.{LIBRARY_EXTENSION}", description.co_simulation.model_identifier);
     let settings = Parameters::TABLE
         .iter()
         .map(|quantity| Ok((description.variable(quantity.name)?.value_reference, (quantity.get)(parameters))))
@@ -176,7 +180,7 @@ fn find_stretch(driven: &Driven<'_>, next_impact: u32) -> anyhow::Result<()> {
     driven.mark()
 }
 
-fn time_calls(criterion: &mut Criterion, instances: &[(&str, &Driven<'_>)]) {
+fn time_calls(criterion: &mut Criterion, version: &str, instances: &[(&str, &Driven<'_>)]) {
     type Timed = fn(&Driven<'_>, u64) -> Duration;
     let kinds: [(&str, Timed); 3] = [
         ("doStep without impact", |driven, count| driven.steps(count)),
@@ -184,7 +188,7 @@ fn time_calls(criterion: &mut Criterion, instances: &[(&str, &Driven<'_>)]) {
         ("get FMU state, doStep, set, free", |driven, count| driven.rollbacks(count)),
     ];
     for (kind, timed) in kinds {
-        let mut group = criterion.benchmark_group(kind);
+        let mut group = criterion.benchmark_group(format!("{kind}{version}"));
         for (name, driven) in instances {
             group.bench_function(*name, |b| b.iter_custom(|count| timed(driven, count)));
         }
@@ -199,13 +203,27 @@ fn main() -> anyhow::Result<()> {
     let ball = c::compile("bouncing_ball.c", folder.path(), &["-fvisibility=hidden"])?;
     let ball = calls.open(&ball, "bouncing ball", &[])?;
     ball.mark()?;
-    let (between, description) = harvester(&calls, folder.path(), &fig14)?;
+    let (between, description) = harvester(&calls, folder.path(), FmiVersion::Fmi2, &fig14)?;
     find_stretch(&between, description.variable("impact.nextTime")?.value_reference)?;
-    let (whole, _) = harvester(&calls, folder.path(), &fig14)?;
+    let (whole, _) = harvester(&calls, folder.path(), FmiVersion::Fmi2, &fig14)?;
     whole.mark()?;
 
     let mut criterion = Criterion::default().configure_from_args();
-    time_calls(&mut criterion, &[("harvester", &between), ("bouncing ball in C", &ball)]);
+    time_calls(&mut criterion, "", &[("harvester", &between), ("bouncing ball in C", &ball)]);
+    for (version, options) in [(", FMI 3.0", &["-DFMI3"][..]), (", FMI 3.0 with events", &["-DFMI3", "-DEVENTS"])] {
+        let folder = folder.path().join(version.trim_start_matches(", "));
+        let of_ball = folder.join("ball");
+        std::fs::create_dir_all(&of_ball)?;
+        let calls = Loop::load(&c::compile("loop.c", &folder, options)?)?;
+        let (between, description) = harvester(&calls, &folder, FmiVersion::Fmi3, &fig14)?;
+        find_stretch(&between, description.variable("impact.nextTime")?.value_reference)?;
+        // The ball has no event mode: its steps go to their end.
+        let plain = Loop::load(&c::compile("loop.c", &of_ball, &["-DFMI3"])?)?;
+        let library = c::compile("bouncing_ball.c", &of_ball, &["-fvisibility=hidden"])?;
+        let ball = plain.open(&library, "bouncing ball", &[])?;
+        ball.mark()?;
+        time_calls(&mut criterion, version, &[("harvester", &between), ("bouncing ball in C", &ball)]);
+    }
     let mut group = criterion.benchmark_group("100 s of fig14 in calls");
     group.sample_size(10);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number of steps

@@ -1,4 +1,4 @@
-/* A bouncing ball as a plain FMU in C: what a call of FMI 2.0 costs at least.
+/* A bouncing ball as a plain FMU in C, for FMI 2.0 and 3.0: what a call costs at least.
  *
  * It does what BouncingBall of the Modelica Association's Reference-FMUs does in a call: the state is checked against
  * the function, communication point, step size and stop time against what is expected, and the solver goes in fixed
@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "fmi2.h"
+#include "fmi3.h"
 
 #define EXPORT __attribute__((visibility("default")))
 #define SOLVER_STEP 1e-3
@@ -57,6 +58,12 @@ static void report(const Ball *ball, fmi2Status status, const char *category, co
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
     ball->callbacks.logger(ball->callbacks.environment, ball->name, status, category, "%s", message);
+}
+
+static void ignore(void *environment, fmi2String instance, fmi2Status status, fmi2String category, fmi2String message,
+                   ...)
+{
+    (void)environment, (void)instance, (void)status, (void)category, (void)message;
 }
 
 /* Ends a call that cannot succeed. */
@@ -143,25 +150,25 @@ static int solver_step(Ball *ball)
     return event || (ball->has_next_event && ball->time >= ball->next_event);
 }
 
-EXPORT fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real size, fmi2Boolean no_set_state)
+static inline fmi2Status do_step(Ball *ball, const char *function, double time, double size, int *event)
 {
-    Ball *ball = component;
     double end = time + size;
-    (void)no_set_state;
-    if (!is_allowed(ball, STEP_COMPLETE, "fmi2DoStep"))
+    if (!is_allowed(ball, STEP_COMPLETE, function))
         return fmi2Error;
     if (!is_close(time, ball->next_point))
-        return refuse(ball, "fmi2DoStep", "currentCommunicationPoint", time);
+        return refuse(ball, function, "currentCommunicationPoint", time);
     if (!(size > 0.0))
-        return refuse(ball, "fmi2DoStep", "communicationStepSize", size);
+        return refuse(ball, function, "communicationStepSize", size);
     if (end > ball->stop && !is_close(end, ball->stop))
-        return refuse(ball, "fmi2DoStep", "communicationStepSize", size);
+        return refuse(ball, function, "communicationStepSize", size);
     for (;;) {
         double next = ball->time + SOLVER_STEP;
         if (next > end && !is_close(next, end))
             break;
-        if (solver_step(ball))
+        if (solver_step(ball)) {
             handle_event(ball);
+            *event = 1;
+        }
         if (ball->terminate) {
             ball->state = STEP_FAILED;
             return fmi2Discard;
@@ -169,6 +176,13 @@ EXPORT fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real si
     }
     ball->next_point = end;
     return fmi2OK;
+}
+
+EXPORT fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real size, fmi2Boolean no_set_state)
+{
+    int event = 0;
+    (void)no_set_state;
+    return do_step(component, "fmi2DoStep", time, size, &event);
 }
 
 /* ---- FMU states ---- */
@@ -291,4 +305,73 @@ EXPORT fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference 
         values[i] = references[i] == 0 ? ball->model.height : ball->model.velocity;
     }
     return fmi2OK;
+}
+
+/* ---- FMI 3.0: the same functions under other names; no step ends early. The statuses have the same numbers. ---- */
+
+EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 size, fmi3Boolean no_set_state,
+                             fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
+                             fmi3Float64 *last_time)
+{
+    Ball *ball = instance;
+    int event = 0;
+    (void)no_set_state;
+    if (!event_needed || !terminate || !early_return || !last_time)
+        return (fmi3Status)refuse(ball, "fmi3DoStep", "a pointer", 0.0);
+    fmi2Status status = do_step(ball, "fmi3DoStep", time, size, &event);
+    *event_needed = *early_return = false;
+    *terminate = ball->terminate != 0;
+    *last_time = ball->time;
+    return (fmi3Status)status;
+}
+
+EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state)
+{
+    return (fmi3Status)fmi2GetFMUstate(instance, state);
+}
+
+EXPORT fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state)
+{
+    return (fmi3Status)fmi2SetFMUstate(instance, state);
+}
+
+EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state)
+{
+    return (fmi3Status)fmi2FreeFMUstate(instance, state);
+}
+
+EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                                                fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean event_mode_used,
+                                                fmi3Boolean early_return_allowed, const fmi3ValueReference required[],
+                                                size_t required_count, void *environment, fmi3LogMessageCallback log,
+                                                fmi3IntermediateUpdateCallback update)
+{
+    const fmi2CallbackFunctions callbacks = {ignore, NULL, NULL, NULL, environment};
+    (void)event_mode_used, (void)early_return_allowed, (void)required, (void)required_count, (void)log, (void)update;
+    return fmi2Instantiate(name, fmi2CoSimulation, token, resources, &callbacks, visible, logging);
+}
+
+EXPORT void fmi3FreeInstance(fmi3Instance instance)
+{
+    fmi2FreeInstance(instance);
+}
+
+EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined,
+                                              fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean stop_defined,
+                                              fmi3Float64 stop)
+{
+    fmi2Status status = fmi2SetupExperiment(instance, tolerance_defined, tolerance, start, stop_defined, stop);
+    return (fmi3Status)(status == fmi2OK ? fmi2EnterInitializationMode(instance) : status);
+}
+
+EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
+{
+    return (fmi3Status)fmi2ExitInitializationMode(instance);
+}
+
+EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                                 fmi3Float64 values[], size_t value_count)
+{
+    (void)value_count;
+    return (fmi3Status)fmi2GetReal(instance, references, count, values);
 }

@@ -195,6 +195,11 @@ impl Harvester {
     /// # Errors
     /// As [`Harvester::advance`].
     pub fn advance_to_knot(&mut self, time: f64, mut show: impl FnMut(&Event)) -> Result<bool, ModelError> {
+        let is_calm = self.time <= time && time < self.calm_until;
+        if is_calm && self.pulses.next_knots(self.time).all(|knot| knot.time > time) {
+            self.time = time;
+            return Ok(false);
+        }
         loop {
             let (now, impacts) = (self.time, self.totals().impacts);
             let knot = self.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);

@@ -28,7 +28,7 @@ impl Harvester {
 
     /// A step of `h`, s, from `t` to `end`, s, as `advance` takes it, which says whether it stopped before. Force and voltages run on at
     /// their rates over the step and stay where those took them, unless they are set again.
-    #[inline]
+    #[inline(always)]
     fn step(
         &mut self,
         t: f64,
@@ -64,9 +64,11 @@ impl Harvester {
             .and_then(|()| model.set_voltages(self.voltages, self.voltage_rates))
             .and_then(|()| advance(model, end, &mut show));
         let stopped = advanced.map_err(|error| SlaveError::error(error.to_string()))?;
-        self.has_hit = last_impact.is_some();
-        if self.has_hit {
+        if last_impact.is_some() {
             self.last_impact = last_impact;
+        }
+        if self.has_hit != last_impact.is_some() {
+            self.has_hit = last_impact.is_some();
         }
         if self.external_force_rate != 0.0 || self.voltage_rates[0] != 0.0 || self.voltage_rates[1] != 0.0 {
             self.follow_rates(h);

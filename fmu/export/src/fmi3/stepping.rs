@@ -19,7 +19,15 @@ struct Outputs {
 }
 
 impl Outputs {
+    #[inline]
     fn check(self) -> Call {
+        let Self { event, terminate, early, time } = self;
+        let there = [event, terminate, early].iter().all(|flag| !flag.is_null()) && !time.is_null();
+        if there && time.is_aligned() { Ok(()) } else { self.complain() }
+    }
+
+    #[cold]
+    fn complain(self) -> Call {
         check_array(self.event, 1, "eventHandlingNeeded")?;
         check_array(self.terminate, 1, "terminateSimulation")?;
         check_array(self.early, 1, "earlyReturn")?;
@@ -72,15 +80,33 @@ pub unsafe fn fmi3DoStep<S: Slave>(
     time: *mut fmi3Float64,
 ) -> fmi3Status {
     let outputs = Outputs { event, terminate, early, time };
+    let mut in_parts = false;
+    let step = |i: &mut Instance<S>| {
+        outputs.check()?;
+        if i.session().wants_events() {
+            in_parts = true;
+            return Ok(());
+        }
+        // SAFETY: checked above.
+        i.step_through(t, h, |outcome| unsafe { outputs.write(outcome) })
+    };
+    // SAFETY: contract of this module; so below.
+    let status = unsafe { enter(instance, Function::DoStep.row(), step) };
+    if in_parts { unsafe { step_in_parts::<S>(instance, t, h, outputs) } } else { status }
+}
+
+/// A step from one point where the importer may look to the next.
+#[inline(never)]
+unsafe fn step_in_parts<S: Slave>(instance: fmi3Instance, t: f64, h: f64, outputs: Outputs) -> fmi3Status {
     let mut update = None;
     let begin = |i: &mut Instance<S>| {
-        outputs.check()?;
         let progress = i.begin_step(t, h)?;
         update = follow(i, progress, outputs);
         Ok(())
     };
+    let name = Function::DoStep.name();
     // SAFETY: contract of this module; so below.
-    let mut status = unsafe { enter(instance, Function::DoStep.row(), begin) };
+    let mut status = unsafe { with(instance, |i: &mut Instance<S>| i.guarded(name, begin)) };
     while let Some(shown) = update.take() {
         let wanted = unsafe { shown.show() };
         let resume = |i: &mut Instance<S>| {
@@ -88,7 +114,7 @@ pub unsafe fn fmi3DoStep<S: Slave>(
             update = follow(i, progress, outputs);
             Ok(())
         };
-        let resumed = unsafe { with(instance, |i: &mut Instance<S>| i.guarded(Function::DoStep.name(), resume)) };
+        let resumed = unsafe { with(instance, |i: &mut Instance<S>| i.guarded(name, resume)) };
         status = status.max(resumed); // a warning stays
     }
     status
@@ -98,7 +124,7 @@ pub unsafe fn fmi3DoStep<S: Slave>(
 fn follow<S: Slave>(i: &Instance<S>, progress: Progress, outputs: Outputs) -> Option<Update> {
     match progress {
         Progress::Ended(outcome) => {
-            // SAFETY: `begin` has checked them.
+            // SAFETY: `fmi3DoStep` has checked them.
             unsafe { outputs.write(outcome) };
             None
         }

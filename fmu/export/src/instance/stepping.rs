@@ -69,7 +69,7 @@ impl Session {
     }
 
     /// Whether steps are to stop at events.
-    const fn wants_events(&self) -> bool {
+    pub(crate) const fn wants_events(&self) -> bool {
         self.event_mode || self.early_return || self.intermediate_update.is_some()
     }
 }
@@ -87,6 +87,12 @@ pub(super) struct UnderWay {
     had_event: bool,
     /// The last point is one where it may stop.
     may_stop: bool,
+}
+
+impl UnderWay {
+    const fn new(start: f64, end: f64) -> Self {
+        Self { start, at: start, end, wanted: end, had_event: false, may_stop: false }
+    }
 }
 
 /// What a step has come to.
@@ -108,24 +114,29 @@ pub(crate) struct StepOutcome {
 }
 
 impl<S: Slave> Instance<S> {
-    /// `fmi3DoStep`, up to its end or to the first point where the importer may look.
+    /// `fmi3DoStep` of an importer that wants no events; `show` takes the outcome.
     #[inline]
+    pub(crate) fn step_through(&mut self, t: f64, h: f64, show: impl FnOnce(StepOutcome)) -> Call {
+        self.check_step(t, h)?;
+        let core = &mut *self.core;
+        let outcome = match core.model.do_step(t, h, &self.logger) {
+            Ok(()) => {
+                core.time = t + h;
+                StepOutcome { event: false, terminate: false, early: false, time: t + h }
+            }
+            Err(error) => self.stopped(&error, UnderWay::new(t, t + h))?,
+        };
+        show(outcome);
+        Ok(())
+    }
+
+    /// `fmi3DoStep` of others, up to its end or to the first point where the importer may look.
+    #[inline(never)]
     pub(crate) fn begin_step(&mut self, t: f64, h: f64) -> Call<Progress> {
         self.check_step(t, h)?;
-        let end = t + h;
-        let step = UnderWay { start: t, at: t, end, wanted: end, had_event: false, may_stop: false };
-        if self.core.ticking {
-            self.core.ticking = false;
-        }
-        if self.session.wants_events() {
-            self.under_way = Some(step);
-            return self.go_on();
-        }
-        match self.core.model.do_step(t, h, &self.logger) {
-            Ok(()) => self.core.time = end,
-            Err(error) => return self.stopped(&error, step).map(Progress::Ended),
-        }
-        Ok(Progress::Ended(StepOutcome { event: false, terminate: false, early: false, time: end }))
+        self.core.ticking = false;
+        self.under_way = Some(UnderWay::new(t, t + h));
+        self.go_on()
     }
 
     /// Goes on with the step that is under way, after the importer has looked; `wanted` is the time, s, where it wants it to end.
