@@ -30,11 +30,10 @@ impl<M> Variable<M> {
     pub fn may_be_set(&self, table: &[Self], state: CallState, standard: Standard) -> Legality {
         use CallState::{ContinuousTimeMode, EventMode, InitializationMode, Instantiated, StepComplete, StepMode};
         let legal = match (self.causality(), state) {
-            (Causality::Parameter, Instantiated | InitializationMode)
-            | (Causality::Input, InitializationMode | StepComplete | EventMode) => true,
-            (Causality::Input, StepMode) => self.clocks().is_empty(),
             (Causality::Input, Instantiated) if standard == Standard::Fmi2 => return Legality::Tolerated,
-            (Causality::Input, Instantiated) => true,
+            (Causality::Parameter, Instantiated | InitializationMode)
+            | (Causality::Input, Instantiated | InitializationMode | StepComplete | EventMode) => true,
+            (Causality::Input, StepMode) => self.clocks().is_empty(),
             (Causality::Parameter, StepComplete | StepMode | EventMode) => self.variability() == Variability::Tunable,
             (Causality::Input, ContinuousTimeMode) => self.variability() == Variability::Continuous,
             (_, ContinuousTimeMode) => self.is_continuous_state(table),

@@ -3,7 +3,9 @@
 
 use crate::info::{ModelInfo, Terminal};
 use crate::slave::Slave;
-use crate::variable::{Causality, ClockInterval, ClockSpec, EnumerationType, Initial, Kind, RealSpec, Variability, Variable};
+use crate::variable::{
+    Causality, ClockInterval, ClockSpec, EnumerationType, Initial, Kind, RealSpec, Variability, Variable,
+};
 use std::collections::{HashMap, HashSet};
 
 /// A mistake in a variable table or in the facts about the FMU.

@@ -5,6 +5,7 @@
 /// from the derivatives in the table, `canGetAndSetFMUstate` always true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[allow(clippy::struct_excessive_bools)] // each a capability of its own
 pub struct ModelInfo {
     /// Stem of the shared library; a C identifier.
     pub model_identifier: &'static str,

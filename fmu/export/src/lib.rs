@@ -83,8 +83,8 @@ mod call_state;
 mod check;
 mod error;
 pub mod ffi;
-pub mod fmi3;
 mod fingerprint;
+pub mod fmi3;
 mod fnv;
 mod guid;
 mod info;
@@ -120,7 +120,7 @@ pub use serialize::{StateError, StateReader, StateWriter};
 pub use slave::{EventOutcome, Experiment, Slave, Stop};
 pub use standard::Standard;
 pub use variable::{
-    BooleanSpec, Causality, ClockInterval, ClockSpec, Declaration, EnumerationSpec, EnumerationType, GetDerivative, Initial,
-    IntegerSpec, IntegerWidth, Kind, PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable, StringSpec, Variability, Variable, concat,
-    value_reference,
+    BooleanSpec, Causality, ClockInterval, ClockSpec, Declaration, EnumerationSpec, EnumerationType, GetDerivative,
+    Initial, IntegerSpec, IntegerWidth, Kind, PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable,
+    StringSpec, Variability, Variable, concat, value_reference,
 };

@@ -5,8 +5,7 @@ use core::ffi::CStr;
 use core::fmt::Display;
 use fmu_abi::fmi3::{fmi3InstanceEnvironment, fmi3Status, fmi3String};
 use fmu_abi::{
-    fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
-    fmi2Status, fmi2Warning,
+    fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning,
 };
 use std::ffi::CString;
 

@@ -164,7 +164,12 @@ fn initialization_mode_gives_outputs_and_initial_unknowns_and_the_rest_is_tolera
         for state in CallState::ALL {
             let restricted = state == CallState::InitializationMode && !unknown.contains(&variable.name());
             let expected = if restricted { Legality::Tolerated } else { Legality::Legal };
-            assert_eq!(variable.may_be_read(Toy::variables(), state, Standard::Fmi2), expected, "{} in {state}", variable.name());
+            assert_eq!(
+                variable.may_be_read(Toy::variables(), state, Standard::Fmi2),
+                expected,
+                "{} in {state}",
+                variable.name()
+            );
         }
     }
     let host = Host::initializing();

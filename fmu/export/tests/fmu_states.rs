@@ -251,7 +251,8 @@ fn call_states_that_are_never_saved_are_refused() {
         let good = host.serialize(host.save());
         for state in CallState::ALL {
             let bytes = changed(&good, |record| record.0 = state);
-            let refused = wrong.contains(&state) || matches!(state, StepInProgress | StepCanceled | Fatal | StepMode | IntermediateUpdateMode);
+            let refused = wrong.contains(&state)
+                || matches!(state, StepInProgress | StepCanceled | Fatal | StepMode | IntermediateUpdateMode);
             let status = host.deserialize(&bytes, &mut null_mut());
             assert_eq!(status, if refused { fmi2Error } else { fmi2OK }, "{state}");
             assert!(!refused || host.error().contains(&format!("no state that is saved is in state {state}")));

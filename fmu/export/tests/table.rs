@@ -65,12 +65,15 @@ fn reals() -> Vec<V> {
 }
 
 fn narrow(value: i64) -> i32 {
-    i32::try_from(value).unwrap()
+    i32::try_from(value).unwrap_or(i32::MAX)
 }
 
 fn others() -> Vec<V> {
     vec![
-        V::integer_parameter("i", 3, "").min(1).max(9).access(|it| it.integer.into(), |it, value| it.integer = narrow(value)),
+        V::integer_parameter("i", 3, "")
+            .min(1)
+            .max(9)
+            .access(|it| it.integer.into(), |it, value| it.integer = narrow(value)),
         V::integer_input("j", 3, "").access(|it| it.integer.into(), |it, value| it.integer = narrow(value)),
         V::integer_output("k", "").get(|it| it.integer.into()),
         V::boolean_parameter("l", true, "").access(|it| it.on, |it, value| it.on = value),

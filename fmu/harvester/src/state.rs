@@ -32,7 +32,8 @@ impl Harvester {
     pub(crate) fn read_from(from: &mut StateReader<'_>, present: &Self) -> Result<Self, StateError> {
         let mut slave = Self { files: Arc::new(present.files.unnamed()), ..Self::new() };
         from.read_parameters(&mut slave)?;
-        let (inputs, placed, hit, snapshot, origin): (Inputs, bool, Hit, Option<Snapshot>, Option<Snapshot>) = from.take()?;
+        let (inputs, placed, hit, snapshot, origin): (Inputs, bool, Hit, Option<Snapshot>, Option<Snapshot>) =
+            from.take()?;
         let (force, voltages, voltage_rates, start_time) = inputs;
         // No Set lets these become infinite or NaN.
         let mut values = [force, voltages, voltage_rates].into_iter().flatten().chain([start_time]);

@@ -182,7 +182,8 @@ fn outputs_3(root: &Element<'_>, variables: &[Variable]) -> Result<Vec<usize>> {
     let place = "ModelStructure/Output";
     let positions: HashMap<u32, usize> = variables.iter().enumerate().map(|(k, it)| (it.value_reference, k)).collect();
     let position = |output: &Element<'_>| {
-        let reference: u32 = output.integer(place, "valueReference")?.ok_or_else(|| missing(place, "valueReference"))?;
+        let reference: u32 =
+            output.integer(place, "valueReference")?.ok_or_else(|| missing(place, "valueReference"))?;
         let allowed = || not_allowed(place, "valueReference", &reference.to_string(), "that of a variable");
         positions.get(&reference).copied().ok_or_else(allowed)
     };

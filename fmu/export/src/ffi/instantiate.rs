@@ -50,14 +50,14 @@ pub unsafe fn fmi2Instantiate<S: Slave>(
         let callback = functions.and_then(|f| f.logger).map_or(Callback::None, Callback::Fmi2);
         let environment = functions.map_or(null_mut(), |f| f.componentEnvironment);
         let logger = |logging_on| Logger::new(callback, environment, request.name, logging_on);
-        made("fmi2Instantiate", logger(true), || create::<S>(fmu, &request, logger(logging_on != fmi2False)))
+        made("fmi2Instantiate", &logger(true), || create::<S>(fmu, &request, logger(logging_on != fmi2False)))
     })
 }
 
 /// The component of an instance that `create` makes; NULL if it fails, whose reason goes to the logger.
 pub(crate) fn made<S: Slave>(
     name: &str,
-    logger: Logger,
+    logger: &Logger,
     create: impl FnOnce() -> Result<Instance<S>, String>,
 ) -> fmi2Component {
     let created = catch_unwind(AssertUnwindSafe(create));

@@ -5,7 +5,8 @@
 //! only read. An error leads to state `terminated`. Where the standard contradicts itself, the list of the state counts.
 
 use crate::call_state::{
-    BOTH, CONT, CS, CallState, EVENT, FATAL, INIT, INST, INTER, Interface, Legality, ME, NONE, Row, STEP, TERM, call_table,
+    BOTH, CONT, CS, CallState, EVENT, FATAL, INIT, INST, INTER, Interface, Legality, ME, NONE, Row, STEP, TERM,
+    call_table,
 };
 
 // Sets of states that several rows share.

@@ -10,9 +10,9 @@ use crate::variable::{
     AsBoolean, AsFloat32, AsFloat64, AsInt8, AsInt16, AsInt32, AsInt64, AsString, AsUInt8, AsUInt16, AsUInt32, AsUInt64,
 };
 use fmu_abi::fmi3::{
-    fmi3Binary, fmi3Boolean, fmi3Byte, fmi3Clock, fmi3DependencyKind, fmi3FMUState, fmi3False, fmi3Float32, fmi3Float64,
-    fmi3Instance, fmi3Int8, fmi3Int16, fmi3Int32, fmi3Int64, fmi3IntervalQualifier, fmi3Status, fmi3String, fmi3UInt8,
-    fmi3UInt16, fmi3UInt32, fmi3UInt64, fmi3ValueReference,
+    fmi3Binary, fmi3Boolean, fmi3Byte, fmi3Clock, fmi3DependencyKind, fmi3FMUState, fmi3False, fmi3Float32,
+    fmi3Float64, fmi3Instance, fmi3Int8, fmi3Int16, fmi3Int32, fmi3Int64, fmi3IntervalQualifier, fmi3Status,
+    fmi3String, fmi3UInt8, fmi3UInt16, fmi3UInt32, fmi3UInt64, fmi3ValueReference,
 };
 
 type References = *const fmi3ValueReference;
@@ -157,17 +157,17 @@ functions! {
     };
     fmi3GetIntervalDecimal GetIntervalDecimal(
         vr: References, nvr: usize, intervals: *mut fmi3Float64, qualifiers: *mut fmi3IntervalQualifier
-    ) |i| {
+    ) |_i| {
         let mut write = array_out(intervals, nvr, "intervals")?;
         let mut qualify = array_out(qualifiers, nvr, "qualifiers")?;
-        i.get_intervals(array(vr, nvr, "valueReferences")?, |k, [interval, _]| {
+        Instance::<S>::get_intervals(array(vr, nvr, "valueReferences")?, |k, [interval, _]| {
             write(k, interval);
             qualify(k, fmu_abi::fmi3::fmi3IntervalUnchanged);
         })
     };
-    fmi3GetShiftDecimal GetShiftDecimal(vr: References, nvr: usize, shifts: *mut fmi3Float64) |i| {
+    fmi3GetShiftDecimal GetShiftDecimal(vr: References, nvr: usize, shifts: *mut fmi3Float64) |_i| {
         let mut write = array_out(shifts, nvr, "shifts")?;
-        i.get_intervals(array(vr, nvr, "valueReferences")?, |k, [_, shift]| write(k, shift))
+        Instance::<S>::get_intervals(array(vr, nvr, "valueReferences")?, |k, [_, shift]| write(k, shift))
     };
     fmi3GetIntervalFraction GetIntervalFraction(
         _vr: References, _nvr: usize, _counters: *mut fmi3UInt64, _resolutions: *mut fmi3UInt64,
@@ -284,7 +284,7 @@ functions! {
     fmi3GetNumberOfEventIndicators GetNumberOfEventIndicators(count: *mut usize)
         |_i| give(count, "nEventIndicators", || Ok(S::INFO.model_exchange.unwrap_or(0)));
     fmi3GetNumberOfContinuousStates GetNumberOfContinuousStates(count: *mut usize)
-        |i| give(count, "nContinuousStates", || Ok(i.state_count()));
+        |_i| give(count, "nContinuousStates", || Ok(Instance::<S>::state_count()));
 }
 
 // Co-simulation; `fmi3DoStep` is in `stepping.rs`.

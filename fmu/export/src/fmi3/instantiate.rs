@@ -38,7 +38,7 @@ unsafe fn instantiate<S: Slave>(
         let name = name.unwrap_or_default();
         let callback = request.log.map_or(Callback::None, Callback::Fmi3);
         let logger = |logging_on| Logger::new(callback, request.environment, name, logging_on);
-        made(request.function, logger(true), || {
+        made(request.function, &logger(true), || {
             let own = fmu.guid::<S>(Standard::Fmi3).map_err(|e| format!("the FMU is faulty: {e}"))?;
             check_name(name)?;
             let given = token.map_err(|reason| format!("instantiationToken: {reason}"))?;

@@ -5,8 +5,8 @@ use crate::ffi::{check_array, enter, with};
 use crate::instance::{Call, Instance, Progress, StepOutcome};
 use crate::slave::Slave;
 use fmu_abi::fmi3::{
-    fmi3Boolean, fmi3False, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment,
-    fmi3IntermediateUpdateCallback, fmi3Status, fmi3True,
+    fmi3Boolean, fmi3False, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback,
+    fmi3Status, fmi3True,
 };
 
 /// Where the outcome goes.

@@ -13,7 +13,9 @@ impl<S: Slave> Instance<S> {
     /// event, the clocks among it; FMI 2.0 has that from `fmi2NewDiscreteStates` on.
     pub(crate) fn enter_event_mode(&mut self) -> Call {
         if !self.core.exchange && !self.session.event_mode {
-            return Err(CallError::Unsupported("event mode in an instance that was made with eventModeUsed = fmi3False"));
+            return Err(CallError::Unsupported(
+                "event mode in an instance that was made with eventModeUsed = fmi3False",
+            ));
         }
         self.update()?;
         self.core.state = CallState::EventMode;
@@ -90,7 +92,7 @@ impl<S: Slave> Instance<S> {
     }
 
     /// `fmi3GetIntervalDecimal` and `fmi3GetShiftDecimal`: interval and shift of a periodic clock, s.
-    pub(crate) fn get_intervals(&self, references: &[u32], mut write: impl FnMut(usize, [f64; 2])) -> Call {
+    pub(crate) fn get_intervals(references: &[u32], mut write: impl FnMut(usize, [f64; 2])) -> Call {
         for (k, &reference) in references.iter().enumerate() {
             let (variable, clock) = clock::<S>(reference)?;
             let ClockInterval::Periodic { interval, shift } = clock.interval else {
@@ -110,6 +112,8 @@ fn clock<S: Slave>(reference: u32) -> Call<(&'static Variable<S>, &'static Clock
     let variable = variable::<S>(reference)?;
     match variable.kind() {
         Kind::Clock(spec) => Ok((variable, spec)),
-        other => Err(CallError::WrongType { name: variable.name(), reference, actual: other.type_name_3(), wanted: "Clock" }),
+        other => {
+            Err(CallError::WrongType { name: variable.name(), reference, actual: other.type_name_3(), wanted: "Clock" })
+        }
     }
 }

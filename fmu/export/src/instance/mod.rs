@@ -20,17 +20,18 @@ use crate::slave::{Experiment, Slave};
 use crate::standard::Standard;
 use co_simulation::LastStep;
 use cores::Cores;
-pub(crate) use stepping::{Progress, Session, StepOutcome};
-use stepping::UnderWay;
 use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use stepping::UnderWay;
+pub(crate) use stepping::{Progress, Session, StepOutcome};
 
 /// Outcome of a call.
 pub(crate) type Call<T = ()> = Result<T, CallError>;
 
 /// All that an FMU state holds: the model and what the exporter knows about it.
+#[allow(clippy::struct_excessive_bools)] // each a fact of its own
 pub(crate) struct Core<S> {
     model: S,
     state: CallState,
@@ -184,7 +185,8 @@ impl<S: Slave> Instance<S> {
         if self.core.state.is_before_initialization() {
             self.core.model.update();
             self.core.dirty = false;
-        } else if self.core.exchange && matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode) {
+        } else if self.core.exchange && matches!(self.core.state, CallState::EventMode | CallState::ContinuousTimeMode)
+        {
             let time = self.core.time;
             self.core.model.place(time, None)?;
             self.core.dirty = false;

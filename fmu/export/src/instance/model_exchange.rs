@@ -74,12 +74,10 @@ impl<S: Slave> Instance<S> {
     {
         let (mut states, mut others) = (Vec::new(), (Vec::new(), Vec::new()));
         let between_events = self.core.state == CallState::ContinuousTimeMode;
-        let at_event = self.core.exchange
-            && self.core.state == CallState::EventMode
-            && self.session.standard == Standard::Fmi3;
-        let may_be_placed = |reference| {
-            between_events || at_event && variable::<S>(reference).is_ok_and(|variable| !variable.reinit())
-        };
+        let at_event =
+            self.core.exchange && self.core.state == CallState::EventMode && self.session.standard == Standard::Fmi3;
+        let may_be_placed =
+            |reference| between_events || at_event && variable::<S>(reference).is_ok_and(|variable| !variable.reinit());
         for (&reference, &value) in references.iter().zip(values) {
             if let Some(index) = state_index::<S>(reference).filter(|_| may_be_placed(reference)) {
                 states.push((index, value));
@@ -116,7 +114,7 @@ impl<S: Slave> Instance<S> {
     }
 
     /// Number of the continuous states.
-    pub(crate) fn state_count(&self) -> usize {
+    pub(crate) fn state_count() -> usize {
         states_and_derivatives(S::variables()).count()
     }
 

@@ -212,7 +212,8 @@ impl<S: Slave> Instance<S> {
             return Err(CallError::Slave(error.clone()));
         }
         if !self.session.early_return {
-            let message = format!("{error}; the step was done up to {time} s, and this importer takes no part of a step");
+            let message =
+                format!("{error}; the step was done up to {time} s, and this importer takes no part of a step");
             return Err(SlaveError::error(message).into());
         }
         self.logger.event(error);

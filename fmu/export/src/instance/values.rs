@@ -130,7 +130,8 @@ impl<S: Slave> Instance<S> {
     fn tolerate(&self, variable: &Variable<S>, what: &str) {
         let (name, causality) = (variable.name(), variable.causality().as_str());
         let (state, standard) = (self.core.state, self.session.standard);
-        self.logger
-            .tolerated(format_args!("{standard} forbids that {causality} {name} be {what} in state {state}; tolerated"));
+        self.logger.tolerated(format_args!(
+            "{standard} forbids that {causality} {name} be {what} in state {state}; tolerated"
+        ));
     }
 }

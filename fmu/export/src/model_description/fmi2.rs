@@ -79,7 +79,8 @@ fn unknowns<M>(
     is_listed: impl Fn(&Variable<M>) -> bool,
     dependencies: impl Fn(&Variable<M>) -> Option<Vec<&'static str>>,
 ) -> Written {
-    let listed: Vec<_> = (1..).zip(table.iter().filter(|row| row.is_of(Standard::Fmi2))).filter(|(_, v)| is_listed(v)).collect();
+    let listed: Vec<_> =
+        (1..).zip(table.iter().filter(|row| row.is_of(Standard::Fmi2))).filter(|(_, v)| is_listed(v)).collect();
     if listed.is_empty() {
         return Ok(());
     }

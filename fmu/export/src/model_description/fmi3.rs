@@ -43,9 +43,11 @@ pub(super) fn variables<S: Slave>(xml: &mut Xml) -> Written {
 fn added_attributes(reference: u32, added: Added) -> Vec<Attribute> {
     let (name, description, causality) = match added {
         Added::Time => ("time".to_owned(), "Time, s", Causality::Independent),
-        Added::Indicator(k) => {
-            (format!("eventIndicator[{}]", k + 1), "A change of its sign is an event of model exchange", Causality::Local)
-        }
+        Added::Indicator(k) => (
+            format!("eventIndicator[{}]", k + 1),
+            "A change of its sign is an event of model exchange",
+            Causality::Local,
+        ),
     };
     vec![
         ("name", name),
@@ -91,9 +93,7 @@ fn variable<S: Slave>(xml: &mut Xml, reference: u32, row: &Variable<S>) -> Writt
     let name = row.kind().type_name_3();
     match start {
         None => empty(xml, name, &attributes),
-        Some(value) => {
-            element(xml, name, &attributes, |xml| empty(xml, "Start", &[("value", value.to_owned())]))
-        }
+        Some(value) => element(xml, name, &attributes, |xml| empty(xml, "Start", &[("value", value.to_owned())])),
     }
 }
 

@@ -11,7 +11,8 @@ use crate::slave::Slave;
 /// If the variable table has a mistake.
 pub fn terminals_and_icons<S: Slave>(icon: bool) -> Result<String, DescriptionError> {
     check_fmu::<S>()?;
-    let corners = [("x1", "-100"), ("y1", "-100"), ("x2", "100"), ("y2", "100")].map(|(name, at)| (name, at.to_owned()));
+    let corners =
+        [("x1", "-100"), ("y1", "-100"), ("x2", "100"), ("y2", "100")].map(|(name, at)| (name, at.to_owned()));
     document("fmiTerminalsAndIcons", &[("fmiVersion", "3.0".to_owned())], |xml| {
         if icon {
             element(xml, "GraphicalRepresentation", &[], |xml| empty(xml, "Icon", &corners))?;

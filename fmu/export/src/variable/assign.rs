@@ -118,17 +118,19 @@ impl<M> Kind<M> {
         }
     }
 
-    fn complaint_of_whole(&self, value: Option<i64>) -> Option<Option<String>> {
-        match self {
+    /// What is wrong with a value, too large for 64 bits if none; none if it is of another type.
+    fn check_whole(&self, value: Option<i64>) -> Option<Result<(), String>> {
+        let complaint = match self {
             Self::Integer(spec) => {
-                Some(value.map_or_else(|| Some(format!("above its max {}", spec.max)), |value| spec.complaint(value)))
+                value.map_or_else(|| Some(format!("above its max {}", spec.max)), |value| spec.complaint(value))
             }
             Self::Enumeration(spec) => {
                 let number = value.and_then(|value| i32::try_from(value).ok());
-                Some(spec.complaint(number.unwrap_or(i32::MIN)))
+                spec.complaint(number.unwrap_or(i32::MIN))
             }
-            _ => None,
-        }
+            _ => return None,
+        };
+        Some(complaint.map_or(Ok(()), Err))
     }
 
     fn set_whole(&self, model: &mut M, value: i64) {
@@ -158,8 +160,8 @@ macro_rules! integers {
 
             fn check(variable: &Variable<M>, value: $integer) -> Option<Result<(), CallError>> {
                 let $kind = &variable.kind;
-                let complaint = if $fits { $kind.complaint_of_whole(value.widened()) } else { None };
-                complaint.map(|complaint| refuse(variable, &value, complaint))
+                let checked = if $fits { $kind.check_whole(value.widened()) } else { None };
+                checked.map(|checked| refuse(variable, &value, checked.err()))
             }
 
             fn set(variable: &Variable<M>, model: &mut M, value: $integer) {

@@ -15,13 +15,13 @@ mod kind;
 
 pub(crate) use added::{Added, has_events};
 pub(crate) use assign::{
-    AsBoolean, AsFloat32, AsFloat64, AsInt8, AsInt16, AsInt32, AsInt64, AsInteger, AsReal, AsString, AsUInt8, AsUInt16, AsUInt32,
-    AsUInt64, Transfer,
+    AsBoolean, AsFloat32, AsFloat64, AsInt8, AsInt16, AsInt32, AsInt64, AsInteger, AsReal, AsString, AsUInt8, AsUInt16,
+    AsUInt32, AsUInt64, Transfer,
 };
 pub use builder::{Declaration, ReadOnly, Settable};
 pub use kind::{
-    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, IntegerWidth, Kind,
-    PartialDerivative, RealSpec, SetDerivative, StringSpec,
+    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, IntegerWidth,
+    Kind, PartialDerivative, RealSpec, SetDerivative, StringSpec,
 };
 
 use crate::standard::Standard;

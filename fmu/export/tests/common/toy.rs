@@ -1,8 +1,8 @@
 //! The slave that the tests export: one variable of every sort, and a switch that makes any hook fail.
 
 use fmu_export::{
-    ClockInterval, EnumerationType, EventOutcome, Experiment, IntegerWidth, Logger, ModelInfo, Slave, SlaveError, StateError,
-    StateReader, StateWriter, Stop, Terminal, Variable, export_fmu,
+    ClockInterval, EnumerationType, EventOutcome, Experiment, IntegerWidth, Logger, ModelInfo, Slave, SlaveError,
+    StateError, StateReader, StateWriter, Stop, Terminal, Variable, export_fmu,
 };
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};

@@ -10,8 +10,21 @@ use super::{Causality, Initial, Kind, Result, Variability, Variable};
 
 /// The types of FMI 3.0.
 pub(super) const TYPES_3: [&str; 15] = [
-    "Float64", "Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean", "String",
-    "Enumeration", "Clock", "Binary",
+    "Float64",
+    "Float32",
+    "Int8",
+    "UInt8",
+    "Int16",
+    "UInt16",
+    "Int32",
+    "UInt32",
+    "Int64",
+    "UInt64",
+    "Boolean",
+    "String",
+    "Enumeration",
+    "Clock",
+    "Binary",
 ];
 
 /// Reads the variable at `position` (from 0).
