@@ -1,7 +1,7 @@
 //! `modelDescription.xml`: a golden file, and the rules that exporters get wrong.
 //!
-//! Golden file `data/Toy.xml`: written by this test with `UPDATE_GOLDEN=1`, validated against the schema of FMI 2.0
-//! with FMPy 0.3.32 by hand.
+//! Golden files `data/Toy.xml`, `data/Toy3.xml` and `data/Toy.terminalsAndIcons.xml`: written by this test with
+//! `UPDATE_GOLDEN=1`, validated against the schemas of FMI 2.0 and 3.0 with FMPy 0.3.32 by hand.
 #![cfg(feature = "model-description")]
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
@@ -9,7 +9,8 @@ mod common;
 
 use common::toy::Toy;
 use fmu_export::{
-    Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Standard, Variable, model_description,
+    Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Standard, Variable,
+    model_description, terminals_and_icons,
 };
 use videg_golden::Golden;
 
@@ -17,11 +18,20 @@ fn text() -> String {
     model_description::<Toy>(Standard::Fmi2).expect("a sound table")
 }
 
+/// A golden file of this test.
+macro_rules! golden {
+    ($file:literal, $text:expr) => {
+        let command = "cargo test -p fmu-export --features model-description --test model_description";
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/", $file);
+        Golden::new("UPDATE_GOLDEN", command).file(path, $text);
+    };
+}
+
 #[test]
-fn the_text_is_as_in_the_golden_file() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/Toy.xml");
-    let command = "cargo test -p fmu-export --features model-description --test model_description";
-    Golden::new("UPDATE_GOLDEN", command).file(path, &text());
+fn the_texts_are_as_in_the_golden_files() {
+    golden!("Toy.xml", &text());
+    golden!("Toy3.xml", &model_description::<Toy>(Standard::Fmi3).expect("a sound table"));
+    golden!("Toy.terminalsAndIcons.xml", &terminals_and_icons::<Toy>(false).expect("a sound table"));
 }
 
 #[test]

@@ -63,7 +63,7 @@ call_table! {
     DeserializeFmuState            "fmi3DeserializeFMUState"              BOTH, SETTABLE,             NONE;
     GetDirectionalDerivative       "fmi3GetDirectionalDerivative"         BOTH, DIFFERENTIABLE,       NONE;
     GetAdjointDerivative           "fmi3GetAdjointDerivative"             BOTH, DIFFERENTIABLE,       NONE;
-    EnterConfigurationMode         "fmi3EnterConfigurationMode"           BOTH, INST | EVENT | STEP,  NONE;
+    EnterConfigurationMode         "fmi3EnterConfigurationMode"           BOTH, INST,                 NONE;
     ExitConfigurationMode          "fmi3ExitConfigurationMode"            BOTH, NONE,                 NONE;
     GetIntervalDecimal             "fmi3GetIntervalDecimal"               BOTH, INIT | EVENT,         NONE;
     GetIntervalFraction            "fmi3GetIntervalFraction"              BOTH, INIT | EVENT,         NONE;

@@ -2,6 +2,8 @@
 #![allow(dead_code, non_upper_case_globals)] // Each test binary uses a part; constants as in the standard.
 
 pub mod calls;
+pub mod calls3;
+pub mod fmi3;
 pub mod toy;
 
 use core::ops::{Deref, DerefMut};

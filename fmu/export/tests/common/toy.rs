@@ -209,6 +209,7 @@ impl Toy {
         match self.trouble.strip_suffix(hook).map(str::trim_end) {
             Some("error") => Err(SlaveError::error("asked for an error, 100 %s")),
             Some("fatal") => Err(SlaveError::fatal("asked for a fatal error")),
+            Some("refuse") => Err(SlaveError::discard(self.time, "asked to refuse")),
             Some("discard") => Err(SlaveError::discard(self.time + 0.25, "asked for a discard")),
             Some("terminate") => Err(SlaveError::terminate(self.time + 0.125, "asked to terminate")),
             Some("warning") => {

@@ -1,0 +1,283 @@
+//! Which call of FMI 3.0 is legal in which state: the table cell by cell, and the C functions driven through every cell.
+#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
+
+mod common;
+
+use common::calls3::{call, host_in, status_of};
+use common::fmi3::*;
+use core::cell::RefCell;
+use core::ptr::null_mut;
+use fmu_export::abi::fmi3::*;
+use fmu_export::fmi3::Function;
+use fmu_export::{CallState, Interface, Legality};
+use std::rc::Rc;
+
+/// What FMI 3.0 says of the states of model exchange (sections 2.3 and 3.2), with the functions of equal rows together. A column is
+/// a state: i instantiated, g configuration mode, I initialization mode, v event mode, m continuous-time mode, u reconfiguration
+/// mode, t terminated, e after an error, which is terminated, F after a fatal one. `x` legal, a digit legal under a condition.
+const MODEL_EXCHANGE: &[(&str, &str)] = &[
+    // igIvmuteF
+    ("x.xxx.xx.", "SetDebugLogging Reset FreeInstance"),
+    (
+        "8.888.88.",
+        "GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState \
+         GetNumberOfVariableDependencies GetVariableDependencies",
+    ),
+    ("x........", "EnterInitializationMode"),
+    ("..x......", "ExitInitializationMode"),
+    ("8..8.....", "EnterConfigurationMode"),
+    (".x...x...", "ExitConfigurationMode"),
+    ("...xx....", "Terminate"),
+    (
+        "6.x66.66.",
+        "GetFloat32 GetFloat64 GetInt8 GetUInt8 GetInt16 GetUInt16 GetInt32 GetUInt32 GetInt64 GetUInt64 \
+         GetBoolean GetString GetBinary",
+    ),
+    ("9.9x9.99.", "GetClock"),
+    ("132453...", "SetFloat32 SetFloat64"),
+    (
+        "132473...",
+        "SetInt8 SetUInt8 SetInt16 SetUInt16 SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean SetString \
+         SetBinary",
+    ),
+    ("..888.88.", "GetDirectionalDerivative GetAdjointDerivative"),
+    ("..88.....", "GetIntervalDecimal GetIntervalFraction"),
+    (
+        "..8......",
+        "GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal \
+         SetShiftFraction",
+    ),
+    ("...8.....", "SetClock EvaluateDiscreteStates EnterContinuousTimeMode"),
+    ("...x.....", "UpdateDiscreteStates"),
+    ("....x....", "EnterEventMode CompletedIntegratorStep SetTime SetContinuousStates"),
+    ("..xxx.xx.", "GetContinuousStates GetContinuousStateDerivatives GetEventIndicators GetNominalsOfContinuousStates"),
+    ("x..x.....", "GetNumberOfContinuousStates GetNumberOfEventIndicators"),
+    (".........", "EnterStepMode DoStep GetOutputDerivatives ActivateModelPartition"),
+];
+
+/// The same of co-simulation (section 4.2): s step mode, n intermediate update mode.
+const CO_SIMULATION: &[(&str, &str)] = &[
+    // igIvsnuteF
+    ("x.xxx..xx.", "SetDebugLogging Reset FreeInstance"),
+    ("8.888..88.", "GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState"),
+    ("8.8888.88.", "GetNumberOfVariableDependencies GetVariableDependencies"),
+    ("x.........", "EnterInitializationMode"),
+    ("..x.......", "ExitInitializationMode"),
+    ("8...8.....", "EnterConfigurationMode"),
+    (".x....x...", "ExitConfigurationMode"),
+    ("...xx.....", "Terminate"),
+    ("6.x660.66.", "GetFloat32 GetFloat64"),
+    (
+        "6.x667.66.",
+        "GetInt8 GetUInt8 GetInt16 GetUInt16 GetInt32 GetUInt32 GetInt64 GetUInt64 GetBoolean GetString \
+         GetBinary",
+    ),
+    ("9.9x9..99.", "GetClock"),
+    ("1324503...", "SetFloat32 SetFloat64"),
+    (
+        "1324573...",
+        "SetInt8 SetUInt8 SetInt16 SetUInt16 SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean SetString \
+         SetBinary",
+    ),
+    ("..888..88.", "GetDirectionalDerivative GetAdjointDerivative"),
+    ("..88......", "GetIntervalDecimal GetIntervalFraction"),
+    (
+        "..8.......",
+        "GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal \
+         SetShiftFraction",
+    ),
+    ("...8......", "SetClock EvaluateDiscreteStates EnterStepMode"),
+    ("...x......", "UpdateDiscreteStates"),
+    ("....8.....", "EnterEventMode"),
+    ("....x.....", "DoStep"),
+    ("....80.88.", "GetOutputDerivatives"),
+    (
+        "..........",
+        "EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates GetContinuousStates \
+         GetContinuousStateDerivatives GetEventIndicators GetNominalsOfContinuousStates \
+         GetNumberOfContinuousStates GetNumberOfEventIndicators ActivateModelPartition",
+    ),
+];
+
+/// Cells in which the standard lets an FMU choose, or contradicts itself, and what is chosen here.
+const CHOSEN: &[(&str, &str, Legality, &str)] = &[
+    ("EnterConfigurationMode", "vs", Legality::Illegal, "there are no tunable structural parameters"),
+    ("GetClock", "iImste", Legality::Illegal, "clocks tick in event mode only"),
+    (
+        "SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean SetString SetBinary SetFloat64",
+        "n",
+        Legality::Illegal,
+        "intermediate values are only read",
+    ),
+    ("FreeInstance FreeFMUState", "F", Legality::Tolerated, "memory would be lost"),
+];
+
+/// States that no instance is in: there are no structural parameters.
+const NEVER: &str = "gu";
+
+fn letters(interface: Interface) -> &'static str {
+    match interface {
+        Interface::ModelExchange => "igIvmuteF",
+        Interface::CoSimulation => "igIvsnuteF",
+    }
+}
+
+fn state(letter: char) -> Option<CallState> {
+    Some(match letter {
+        'i' => CallState::Instantiated,
+        'I' => CallState::InitializationMode,
+        'v' => CallState::EventMode,
+        'm' => CallState::ContinuousTimeMode,
+        's' => CallState::StepMode,
+        'n' => CallState::IntermediateUpdateMode,
+        't' | 'e' => CallState::Terminated,
+        'F' => CallState::Fatal,
+        _ => return None,
+    })
+}
+
+/// Whether a function is among these, which lack their "fmi3".
+fn names(list: &str, function: Function) -> bool {
+    list.split(' ').any(|name| function.name().strip_prefix("fmi3") == Some(name))
+}
+
+fn expected(function: Function, interface: Interface, letter: char) -> Legality {
+    let chosen = CHOSEN.iter().find(|row| names(row.0, function) && row.1.contains(letter));
+    if let Some((.., legality, _)) = chosen {
+        return *legality;
+    }
+    let table = if interface == Interface::ModelExchange { MODEL_EXCHANGE } else { CO_SIMULATION };
+    let cells = table.iter().find(|row| names(row.1, function)).expect("a row").0;
+    let column = letters(interface).find(letter).expect("a column");
+    if cells.as_bytes()[column] == b'.' { Legality::Illegal } else { Legality::Legal }
+}
+
+#[test]
+fn every_cell_of_the_table_is_as_in_the_standard() {
+    assert_eq!(Function::ALL.len(), 71);
+    let mut cells = 0;
+    for &function in Function::ALL {
+        for interface in [Interface::ModelExchange, Interface::CoSimulation] {
+            for letter in letters(interface).chars() {
+                let Some(state) = state(letter) else {
+                    assert!(NEVER.contains(letter));
+                    continue;
+                };
+                let found = function.legality(interface, state);
+                assert_eq!(found, expected(function, interface, letter), "{function:?}, {interface} in {state}");
+                cells += 1;
+            }
+        }
+    }
+    assert_eq!(cells, 71 * (7 + 8));
+}
+
+/// Whether the log says that a call is illegal, or forbidden and tolerated.
+fn judged(lines: &[Line], state: CallState) -> Legality {
+    let says = |words: &str| lines.iter().any(|line| line.message.contains(&format!("{words} in state {state}")));
+    match (says("illegal"), says("forbids it")) {
+        (true, _) => Legality::Illegal,
+        (_, true) => Legality::Tolerated,
+        _ => Legality::Legal,
+    }
+}
+
+fn check(function: Function, status: fmi3Status, lines: &[Line], legality: Legality, state: CallState) {
+    assert_eq!(judged(lines, state), legality, "{function:?} in {state}: {lines:?}");
+    let wanted = match legality {
+        Legality::Illegal if state == CallState::Fatal => fmi3Fatal,
+        Legality::Illegal => fmi3Error,
+        _ => status_of(function),
+    };
+    assert_eq!(status, wanted, "{function:?} in {state}: {lines:?}");
+    assert!(status == fmi3OK || lines.iter().any(|line| line.status == status), "each failure has its reason");
+}
+
+fn functions() -> impl Iterator<Item = Function> {
+    Function::ALL.iter().copied().filter(|function| *function != Function::FreeInstance)
+}
+
+#[test]
+fn the_c_functions_follow_the_table_in_every_state() {
+    let mut cells = 0;
+    for session in [Session::EXCHANGE, Session::PLAIN, Session::EVENTS] {
+        let interface = if session.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
+        for function in functions() {
+            for letter in letters(interface).chars().filter(|letter| !"gune".contains(*letter)) {
+                let state = state(letter).expect("a state");
+                let Some(host) = host_in(session, state) else { continue };
+                let saved = if state == CallState::Fatal { null_mut() } else { host.save() };
+                let status = call(host.instance, function, saved);
+                let legality = expected(function, interface, letter);
+                if function == Function::EnterEventMode && session == Session::PLAIN && legality == Legality::Legal {
+                    assert!(host.error().contains("eventModeUsed = fmi3False"));
+                    continue;
+                }
+                check(function, status, &host.lines(), legality, state);
+                cells += 1;
+            }
+        }
+    }
+    // Without event mode there is one state less, and one call that is refused.
+    assert_eq!(cells, 70 * (6 + 6 + 5) - 1);
+}
+
+#[test]
+fn within_a_step_the_c_functions_follow_the_table() {
+    for function in functions() {
+        let host = Host::started(Session::LOOKS);
+        let (instance, saved) = (host.instance, host.save());
+        host.lines();
+        let seen = Rc::new(RefCell::new(None));
+        let status = seen.clone();
+        host.on_look(move |_, _| {
+            *status.borrow_mut() = Some(call(instance, function, saved));
+            None
+        });
+        let stepped = host.step(0.0, 0.5);
+        let (status, mut lines) = (seen.borrow().expect("a look"), host.lines());
+        let legality = expected(function, Interface::CoSimulation, 'n');
+        if status == fmi3Error {
+            assert_eq!(stepped.status, fmi3Error, "an instance that fails within a step does not end it");
+            assert!(lines.pop().expect("a line").message.contains("fmi3DoStep: "), "{function:?}");
+        } else {
+            assert_eq!(stepped.status, fmi3OK);
+        }
+        check(function, status, &lines, legality, CallState::IntermediateUpdateMode);
+    }
+}
+
+#[test]
+fn within_a_step_no_instance_is_freed() {
+    let host = Host::started(Session::LOOKS);
+    let instance = host.instance;
+    host.on_look(move |_, _| {
+        unsafe { fmi3FreeInstance(instance) };
+        None
+    });
+    assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
+    assert_eq!(host.float(common::toy::INTEGRAL), 1.0);
+}
+
+#[test]
+fn after_an_error_the_instance_is_terminated_and_a_reset_or_a_saved_state_leads_back() {
+    let host = Host::started(Session::EVENTS);
+    let saved = host.save();
+    assert_eq!(host.step(7.0, 1.0).status, fmi3Error);
+    assert!(host.error().starts_with("fmi3DoStep: currentCommunicationPoint = 7 s"));
+    assert_eq!(host.step(0.0, 1.0).status, fmi3Error);
+    assert_eq!(host.error(), "fmi3DoStep: illegal in state terminated; legal in: stepMode");
+    assert_eq!(host.float(common::toy::GAIN), 2.0, "values may still be read, for debugging");
+    assert_eq!(host.restore(saved), fmi3OK);
+    assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
+    assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK);
+    assert_eq!(host.enter_initialization(None), fmi3OK);
+}
+
+#[test]
+fn every_function_takes_a_null_instance_for_an_error() {
+    for function in functions() {
+        assert_eq!(call(null_mut(), function, null_mut()), fmi3Error, "{function:?}");
+    }
+    unsafe { fmi3FreeInstance(null_mut()) };
+}
