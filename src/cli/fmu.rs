@@ -51,9 +51,9 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
-    /// Load an FMU, run some steps, and check it against its model description
+    /// Load an FMU, run some steps, and check it against its model description; one of FMI 3.0 is looked at, not run
     Check {
-        /// The FMU; its code is run
+        /// The FMU; its code is run, unless it is of FMI 3.0
         file: PathBuf,
         /// Print one JSON object on stdout instead of the list
         #[arg(long)]

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::isolation::IsolationOptions;
 use super::message::one_line;
-use super::{Exit, output};
-use fmu_import::{FmiError, Fmu, Instance, Kind, Logging};
+use super::{Exit, fmu_check3, output};
+use fmu_import::{Archive, FmiError, Fmu, Instance, Kind, Logging};
 
 /// Step of the trial run if the FMU proposes none, s.
 const STEP: f64 = 1e-3;
@@ -33,11 +33,11 @@ impl From<FmiError> for Trouble {
 
 /// One check and its result.
 #[derive(Serialize)]
-struct CheckResult {
-    name: &'static str,
-    passed: bool,
+pub(super) struct CheckResult {
+    pub(super) name: &'static str,
+    pub(super) passed: bool,
     /// Why it failed, or what was left out.
-    detail: String,
+    pub(super) detail: String,
 }
 
 #[derive(Serialize)]
@@ -52,8 +52,13 @@ struct Output<'a> {
 /// # Errors
 /// An FMU that cannot be opened, or that took its process down.
 pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Result<Exit> {
-    let fmu = isolation.open(file)?;
-    let (checks, end) = checks(&fmu);
+    let mut archive = Archive::open(file)?;
+    let description = archive.description()?;
+    let (checks, end) = if description.is_fmi_3() {
+        (fmu_check3::checks(&mut archive, &description), None)
+    } else {
+        checks(&isolation.open(file)?)
+    };
     let passed = checks.iter().all(|check| check.passed);
     let line = |CheckResult { name, passed, detail }: &CheckResult| {
         let mark = if *passed { "ok    " } else { "FAILED" };

@@ -22,6 +22,7 @@ mod explore;
 mod export;
 mod fmu;
 mod fmu_check;
+mod fmu_check3;
 mod format;
 mod interruption;
 mod isolation;

@@ -1,6 +1,9 @@
 """The FMUs of FMI 3.0: FMPy takes them, their results are those of FMI 2.0, and every impact is seen at its time."""
 
+import _ctypes
+import ctypes
 import re
+import resource
 import shutil
 from pathlib import Path
 
@@ -216,3 +219,37 @@ def test_the_circuit_gives_the_same_bits(fmus, fmus3):
     )
     assert (expected == found).all()
     assert expected["load.energy"][-1] > 0.0
+
+
+def test_ten_thousand_loads_leave_no_memory_behind(fmus3):
+    folder = Path(fmpy.extract(fmus3[HARVESTER]))
+    [library] = (folder / "binaries").glob(f"*/{HARVESTER}.*")
+    token = fmpy.read_model_description(folder).instantiationToken.encode()
+    double, true = ctypes.c_double, ctypes.c_bool(True)
+    flags = [ctypes.byref(ctypes.c_bool()) for _ in range(3)]
+
+    def cycle() -> None:
+        fmu = ctypes.CDLL(str(library))
+        fmu.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
+        instance = ctypes.c_void_p(
+            fmu.fmi3InstantiateCoSimulation(b"it", token, None, *[ctypes.c_bool()] * 4, None, ctypes.c_size_t(), None, None, None)
+        )
+        assert instance
+        assert fmu.fmi3EnterInitializationMode(instance, ctypes.c_bool(), double(), double(), ctypes.c_bool(), double()) == 0
+        assert fmu.fmi3ExitInitializationMode(instance) == 0
+        reached = double()
+        assert fmu.fmi3DoStep(instance, double(), double(1.0), true, *flags, ctypes.byref(reached)) == 0
+        assert reached.value == 1.0
+        fmu.fmi3FreeInstance(instance)
+        _ctypes.dlclose(fmu._handle)
+
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+    for _ in range(1000):
+        cycle()
+    before = resident()
+    for _ in range(10_000):
+        cycle()
+    shutil.rmtree(folder)
+    assert resident() - before < 2 << 20, "of ten thousand loads"

@@ -1,4 +1,4 @@
-"""FMPy simulates both FMUs under valgrind: an error with a frame in a library of ours is one, whatever Python does is not.
+"""FMPy simulates both FMUs of both versions of FMI under valgrind: an error with a frame in a library of ours is one, whatever Python does is not.
 
 Errors are told apart by the object that a frame lies in, so that no list of suppressions has to follow Python and NumPy.
 Shows then that a fault would have been seen, by reading an array beyond its end.
@@ -29,8 +29,11 @@ VALGRIND += ["--keep-debuginfo=yes", "--num-callers=40"]
 
 def simulate() -> None:
     for name in NAMES:
-        result = fmpy.simulate_fmu(str(FMUS / f"{name}.fmu"), stop_time=2.0, output_interval=0.1, fmi_type="CoSimulation")
-        print(f"{name}: {len(result)} rows")
+        options = {"stop_time": 2.0, "output_interval": 0.1, "fmi_type": "CoSimulation"}
+        result = fmpy.simulate_fmu(str(FMUS / f"{name}.fmu"), **options)
+        events = {"use_event_mode": True, "early_return_allowed": True} if name == NAMES[0] else {}
+        result3 = fmpy.simulate_fmu(str(FMUS / "fmi3" / f"{name}.fmu"), **options, **events)
+        print(f"{name}: {len(result)} rows, of FMI 3.0 {len(result3)}")
 
 
 def overrun() -> None:

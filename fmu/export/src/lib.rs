@@ -1,4 +1,5 @@
-//! Exports a Rust model through the C functions of FMI 2.0 for co-simulation and, if it offers that, model exchange.
+//! Exports a Rust model through the C functions of FMI 2.0 and 3.0 for co-simulation and, if it offers that, model exchange. One
+//! library serves the FMUs of both versions.
 //!
 //! A model implements [`Slave`], describes its variables in one table of [`Variable`]s, and names itself in
 //! [`export_fmu!`]. The table is the only place where a variable is described: Get and Set, the checks of
@@ -47,17 +48,25 @@
 //!
 //! export_fmu!(Lag);
 //! ```
-//! With the feature `model-description`, `model_description::<Lag>()` gives the text of `modelDescription.xml`. The
-//! shared library itself never needs the feature.
+//! With the feature `model-description`, `model_description::<Lag>(Standard::Fmi2)` gives the text of `modelDescription.xml`, and
+//! `Standard::Fmi3` that of FMI 3.0. The shared library itself never needs the feature.
+//!
+//! # What FMI 3.0 adds
+//! - [`Slave::do_step_to_event`] stops a step at the events of the model ([`ModelInfo::stops_at_events`]): co-simulation has event
+//!   mode and early return then. Importers may read continuous outputs within any step (`intermediateUpdate`).
+//! - Clocks ([`Variable::output_clock`], [`Variable::input_clock`]) and variables that belong to them
+//!   ([`Declaration::clocked_by`]); FMI 2.0 sees neither.
+//! - Types: [`IntegerWidth`], single precision. Adjoint derivatives, from the same rows as directional ones. Terminals
+//!   ([`ModelInfo::terminals`]).
 //!
 //! # What the exporter sees to
 //! - Call order: one table says which [`Function`] is legal in which [`CallState`].
-//! - Calls that FMI 2.0 forbids, but importers make and no harm comes of, work and return `fmi2OK`; the category
+//! - Calls that the standard forbids, but importers make and no harm comes of, work and return `fmi2OK`; the category
 //!   `logTolerated` tells of them. `fmi2Warning` is the model's, for what a host should stop and look at.
 //! - A Set is all or nothing: type, causality, variability, bounds and finiteness of every value are checked before
 //!   the first is written. A refused value is an error that names variable, value and bound.
 //! - Any `fmi2Error` leaves the instance in the error state, from which only restoring an FMU state or
-//!   `fmi2Reset` leads back, as the standard has it.
+//!   `fmi2Reset` leads back, as the standard has it. `fmi3Error` terminates it.
 //! - FMU states are clones of the model, together with call state and time; the state saved or restored last is cloned
 //!   when the instance is about to change or another state is saved. The importer holds tokens, not pointers; a token
 //!   that is foreign, stale or freed twice is refused. A state belongs to the instance that gave it; serialise it to
@@ -70,7 +79,8 @@
 //!
 //! # Not offered
 //! Asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
-//! `fmi2GetDirectionalDerivative` unless the model offers it.
+//! `fmi2GetDirectionalDerivative` unless the model offers it. Of FMI 3.0: arrays and structural parameters, binary variables, clocks
+//! whose interval changes, setting values within a step, dependencies of single elements, scheduled execution.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
 
 /// The chapter of the book about this crate: what it shows compiles and runs.

@@ -67,7 +67,7 @@ pub use error::{FmiError, Result, ValueError};
 pub use fmu::Fmu;
 pub use instance::Instance;
 pub use isolated::{Bounds, Isolation};
-pub use library::{HOST_PLATFORM, LIBRARY_EXTENSION, library_extension};
+pub use library::{FUNCTIONS_3, HOST_PLATFORM, LIBRARY_EXTENSION, library_extension};
 pub use logging::{LogRecord, LogSink, Logging, Status};
 pub use state::FmuState;
 pub use suggest::nearest as nearest_name;

@@ -103,6 +103,20 @@ functions! {
     get_boolean_status: fmi2GetBooleanStatusTYPE = "fmi2GetBooleanStatus",
     get_string_status: fmi2GetStringStatusTYPE = "fmi2GetStringStatus",
 }
+
+macro_rules! names {
+    (;
+        create { $($create:ident $create_type:ident $parts:tt -> $component:ty;)* }
+        other { $($other:ident $other_type:ident $others:tt $(-> $ret:ty)?;)* }
+        status { $($name:ident $signature:ident $arguments:tt;)* }
+    ) => {
+        &[$(stringify!($create),)* $(stringify!($other),)* $(stringify!($name),)*]
+    };
+}
+
+/// Names of all functions of FMI 3.0, which each of its libraries must have since 3.0.1.
+pub const FUNCTIONS_3: &[&str] = fmu_abi::functions3!([names]);
+
 #[cfg(test)]
 #[allow(clippy::single_component_path_imports, reason = "makes the macro visible to other modules")]
 pub(crate) use functions_in_scope;
