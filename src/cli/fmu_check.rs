@@ -33,11 +33,11 @@ impl From<FmiError> for Trouble {
 
 /// One check and its result.
 #[derive(Serialize)]
-pub(super) struct CheckResult {
-    pub(super) name: &'static str,
-    pub(super) passed: bool,
+struct CheckResult {
+    name: &'static str,
+    passed: bool,
     /// Why it failed, or what was left out.
-    pub(super) detail: String,
+    detail: String,
 }
 
 #[derive(Serialize)]
@@ -55,7 +55,13 @@ pub fn run(file: &Path, isolation: &IsolationOptions, json: bool) -> anyhow::Res
     let mut archive = Archive::open(file)?;
     let description = archive.description()?;
     let (checks, end) = if description.is_fmi_3() {
-        (fmu_check3::checks(&mut archive, &description), None)
+        let checks = fmu_check3::checks(&mut archive, &description).into_iter();
+        let result = |(name, found): (_, Result<String, String>)| CheckResult {
+            name,
+            passed: found.is_ok(),
+            detail: found.unwrap_or_else(|reason| reason),
+        };
+        (checks.map(result).collect(), None)
     } else {
         checks(&isolation.open(file)?)
     };

@@ -24,6 +24,9 @@ REFERENCE = "videg"
 IMPORTERS = (REFERENCE, "fmi_crate", "fmpy_master", "libcosim", "ecos", "container2", "container3")
 """The first is what the others are compared with."""
 
+FMI_3 = ", FMI 3.0"
+"""What the page says of an FMU of FMI 3.0."""
+
 COMPLAINT = re.compile(r"warn|error|fatal|critical|fail|exception|assert", re.IGNORECASE)
 PAGE = harness.ROOT / "docs" / "conformance.md"
 
@@ -69,24 +72,29 @@ def break_fmu(fmu: str, folder: Path) -> str:
         for entry in source.infolist():
             content = source.read(entry)
             if entry.filename == "modelDescription.xml":
-                content = re.sub(rb' guid="[^"]*"', b"", content, count=1)
+                content = re.sub(rb' (guid|instantiationToken)="[^"]*"', b"", content, count=1)
                 content = re.sub(rb'(causality="input".*?) start="[^"]*"', rb"\1", content, count=1, flags=re.DOTALL)
             target.writestr(entry, content)
     return str(broken)
 
 
-def check(tool: str, fmus: dict[str, str], folder: Path) -> list[record.Record]:
-    """What a checker finds. One that has nothing to say about a broken FMU is of no use."""
+def takes_fmi_3(tool: str) -> bool:
+    return getattr(importlib.import_module(f"tools.{tool}"), "FMI_3", False)
+
+
+def check(tool: str, fmus: dict[str, str], folder: Path, version: str = "") -> list[record.Record]:
+    """What a checker finds. One that has nothing to say about a broken FMU is of no use. The calls of FMI 3.0 are not counted."""
     records = []
     for name, fmu in fmus.items():
         if not takes(tool, name):
             continue
-        calls = folder / f"calls of {tool}, {name}"
+        calls = None if version else folder / f"calls of {tool}, {name}"
         complaints, known, seconds = run(tool, folder, fmu, calls=calls)
         if not run(tool, folder, break_fmu(fmu, folder))[0]:
             complaints.append("does not notice that the GUID and the start value of an input are missing")
-        found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=complaints, known=known)
-        records.append(judge_calls(found, calls, name) if loads(tool) else found)
+        label = name + version
+        found = record.Record(**describe(tool), fmu=label, seconds=seconds, complaints=complaints, known=known)
+        records.append(judge_calls(found, calls, name) if loads(tool) and calls else found)
     return records
 
 
@@ -103,21 +111,24 @@ def judge_calls(found: record.Record, folder: Path, fmu: str) -> record.Record:
     return found
 
 
-def simulate(tool: str, fmus: dict[str, str], folder: Path, expected: dict[str, job.Series]) -> list[record.Record]:
+def simulate(
+    tool: str, fmus: dict[str, str], folder: Path, expected: dict[str, job.Series], version: str = ""
+) -> list[record.Record]:
     """What an importer makes of both FMUs, compared with the series expected of each, if any."""
-    calls = folder / "calls"
+    calls = None if version else folder / "calls"
     complaints, known, seconds = run(tool, folder, *fmus.values(), calls=calls)
     records = []
     for name in fmus:
-        found = record.Record(**describe(tool), fmu=name, seconds=seconds, complaints=list(complaints), known=known)
+        label = name + version
+        found = record.Record(**describe(tool), fmu=label, seconds=seconds, complaints=list(complaints), known=known)
         if name in expected and not complaints:
             found.worst = job.worst_difference(np.load(folder / f"{name}.npz"), expected[name])
-        records.append(judge_calls(found, calls, name))
+        records.append(judge_calls(found, calls, name) if calls else found)
     return records
 
 
-def importers(fmus: dict[str, str], folder: Path) -> list[record.Record]:
-    """The first runs on its own, the others are compared with it."""
+def importers(fmus: dict[str, str], fmus3: dict[str, str], folder: Path) -> list[record.Record]:
+    """The first runs on its own, the others are compared with it, those of FMI 3.0, too."""
     expected, records = {}, []
     for tool in IMPORTERS:
         own = folder / tool
@@ -125,11 +136,15 @@ def importers(fmus: dict[str, str], folder: Path) -> list[record.Record]:
         records += simulate(tool, fmus, own, expected)
         if tool == REFERENCE and all(found.passed for found in records):
             expected = {name: dict(np.load(own / f"{name}.npz")) for name in fmus}
+    for tool in filter(takes_fmi_3, IMPORTERS):
+        own = folder / f"{tool} of FMI 3.0"
+        own.mkdir()
+        records += simulate(tool, fmus3, own, expected, FMI_3)
     return records
 
 
 def main() -> int:
-    fmus = harness.build_fmus()
+    fmus, fmus3 = harness.build_fmus(), harness.build_fmus("--fmi", "3")
     records = []
     with tempfile.TemporaryDirectory() as folder:
         recorder = recorded.build(Path(folder))
@@ -140,7 +155,9 @@ def main() -> int:
                 records += check(tool, wrapped if loads(tool) else fmus, Path(folder))
             else:
                 print(f"skipped: {describe(tool)['tool']}, which is not at hand")
-        records += importers(wrapped, Path(folder))
+        for tool in filter(takes_fmi_3, filter(is_available, CHECKERS)):
+            records += check(tool, fmus3, Path(folder), FMI_3)
+        records += importers(wrapped, fmus3, Path(folder))
     for found in records:
         print(found.line())
         for line in found.complaints:

@@ -34,7 +34,12 @@ Series = dict[str, np.ndarray]
 def outputs(fmu: str) -> list[str]:
     """What is compared, at the end of each step: every Real output."""
     variables = fmpy.read_model_description(fmu).modelVariables
-    return [variable.name for variable in variables if (variable.causality, variable.type) == ("output", "Real")]
+    reals = (it for it in variables if it.causality == "output" and it.type in ("Real", "Float64") and not it.clocks)
+    return [variable.name for variable in reals]
+
+
+def is_fmi_3(fmu: str) -> bool:
+    return fmpy.read_model_description(fmu).fmiVersion == "3.0"
 
 
 def build_program(name: str, *arguments: str) -> Path:

@@ -45,7 +45,7 @@ detect a broken FMU. Importers run the paper's Fig. 14 for {seconds:g} s in step
 of the harvester connected to the circuit. At every communication point each of the {outputs} outputs must agree with
 videg's own importer within {bound:.0e} of its largest value. One column has the largest difference.
 
-A library between tool and FMU counts the return values of all calls; any value except `fmi2OK` fails the tool. The
+A library between tool and FMU of FMI 2.0 counts the return values of all calls; any value except `fmi2OK` fails the tool. The
 last column has these values and the number of different functions.
 
 `tests/fmpy/test_recording.py` sets the String parameter `excitation.file` in FMPy, libcosim and Ecos and compares their runs.

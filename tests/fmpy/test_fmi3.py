@@ -25,7 +25,7 @@ SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3"
 @pytest.fixture(scope="module")
 def fmus3() -> dict[str, str]:
     """The FMUs of FMI 3.0 by model identifier, freshly packaged."""
-    return {Path(file).stem: file for file in harness.videg("fmu", "build", "--fmi", "3")["fmus"]}
+    return harness.build_fmus("--fmi", "3")
 
 
 def machine(seed: int) -> dict[str, float | int]:

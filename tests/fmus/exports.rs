@@ -1,5 +1,5 @@
-//! The functions that the libraries of the FMUs export are those of FMI 2.0, each of which has its row in the table of
-//! legal calls: the tests of the exporter go by that table, so that they miss none.
+//! The functions that the libraries of the FMUs export are those of FMI 2.0 and 3.0. Each of them that acts on an instance has its
+//! row in the table of legal calls: the tests of the exporter go by these tables, so that they miss none.
 
 #![cfg(target_os = "linux")]
 
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use fmu_host::{Function, Functions, Interface};
-use fmu_import::Archive;
+use fmu_import::{Archive, FUNCTIONS_3};
 use object::{Object, ObjectSymbol};
 
 /// Functions that act on no instance.
@@ -26,7 +26,12 @@ fn exports(fmu: &Path) -> BTreeSet<String> {
 #[test]
 fn the_libraries_export_the_functions_of_the_table_and_nothing_else() {
     let fmus = super::archives();
-    let [harvester, circuit] = [0, 1].map(|k| exports(&fmus[k]));
+    let exported = [0, 1].map(|k| exports(&fmus[k]));
+    let of_3: BTreeSet<_> = FUNCTIONS_3.iter().map(|name| (*name).to_owned()).collect();
+    for exported in &exported {
+        assert_eq!(exported.iter().filter(|name| name.starts_with("fmi3")).cloned().collect::<BTreeSet<_>>(), of_3);
+    }
+    let [harvester, circuit] = exported.map(|exported| exported.difference(&of_3).cloned().collect::<BTreeSet<_>>());
     let names = |of: &dyn Fn(&Function) -> bool| -> BTreeSet<String> {
         let functions = Function::ALL.iter().filter(|f| of(f)).map(|f| f.name());
         functions.chain(WITHOUT_INSTANCE).map(str::to_owned).collect()

@@ -19,9 +19,9 @@ def videg(*arguments: str) -> dict:
     return json.loads(run.stdout)
 
 
-def build_fmus() -> dict[str, str]:
+def build_fmus(*options: str) -> dict[str, str]:
     """Package the FMUs; return their files by model identifier."""
-    files = videg("fmu", "build")["fmus"]
+    files = videg("fmu", "build", *options)["fmus"]
     return {Path(file).stem: file for file in files}
 
 

@@ -89,6 +89,7 @@
 mod book {}
 
 mod access;
+mod added;
 mod call_state;
 mod check;
 mod error;

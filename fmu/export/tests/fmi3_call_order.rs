@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::calls3::{call, host_in, status_of};
+use common::calls3::{call, failed_host, host_in, status_of};
 use common::fmi3::*;
 use core::cell::RefCell;
 use core::ptr::null_mut;
@@ -104,7 +104,8 @@ const CHOSEN: &[(&str, &str, Legality, &str)] = &[
     ("EnterConfigurationMode", "vs", Legality::Illegal, "there are no tunable structural parameters"),
     ("GetClock", "iImste", Legality::Illegal, "clocks tick in event mode only"),
     (
-        "SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean SetString SetBinary SetFloat64",
+        "SetFloat32 SetFloat64 SetInt8 SetUInt8 SetInt16 SetUInt16 SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean \
+         SetString SetBinary",
         "n",
         Legality::Illegal,
         "intermediate values are only read",
@@ -172,10 +173,13 @@ fn every_cell_of_the_table_is_as_in_the_standard() {
     assert_eq!(cells, 71 * (7 + 8));
 }
 
-/// Whether the log says that a call is illegal, or forbidden and tolerated.
-fn judged(lines: &[Line], state: CallState) -> Legality {
-    let says = |words: &str| lines.iter().any(|line| line.message.contains(&format!("{words} in state {state}")));
-    match (says("illegal"), says("forbids it")) {
+/// Whether the log says that a call of this function is illegal, or forbidden and tolerated.
+fn judged(function: Function, lines: &[Line], state: CallState) -> Legality {
+    let says = |words: &str| {
+        let beginning = format!("{}: {words} in state {state}", function.name());
+        lines.iter().any(|line| line.message.starts_with(&beginning))
+    };
+    match (says("illegal"), says("FMI 3.0 forbids it")) {
         (true, _) => Legality::Illegal,
         (_, true) => Legality::Tolerated,
         _ => Legality::Legal,
@@ -183,7 +187,7 @@ fn judged(lines: &[Line], state: CallState) -> Legality {
 }
 
 fn check(function: Function, status: fmi3Status, lines: &[Line], legality: Legality, state: CallState) {
-    assert_eq!(judged(lines, state), legality, "{function:?} in {state}: {lines:?}");
+    assert_eq!(judged(function, lines, state), legality, "{function:?} in {state}: {lines:?}");
     let wanted = match legality {
         Legality::Illegal if state == CallState::Fatal => fmi3Fatal,
         Legality::Illegal => fmi3Error,
@@ -203,9 +207,10 @@ fn the_c_functions_follow_the_table_in_every_state() {
     for session in [Session::EXCHANGE, Session::PLAIN, Session::EVENTS] {
         let interface = if session.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
         for function in functions() {
-            for letter in letters(interface).chars().filter(|letter| !"gune".contains(*letter)) {
+            for letter in letters(interface).chars().filter(|letter| !"gun".contains(*letter)) {
                 let state = state(letter).expect("a state");
-                let Some(host) = host_in(session, state) else { continue };
+                let host = if letter == 'e' { Some(failed_host(session)) } else { host_in(session, state) };
+                let Some(host) = host else { continue };
                 let saved = if state == CallState::Fatal { null_mut() } else { host.save() };
                 let status = call(host.instance, function, saved);
                 let legality = expected(function, interface, letter);
@@ -219,7 +224,7 @@ fn the_c_functions_follow_the_table_in_every_state() {
         }
     }
     // Without event mode there is one state less, and one call that is refused.
-    assert_eq!(cells, 70 * (6 + 6 + 5) - 1);
+    assert_eq!(cells, 70 * (7 + 7 + 6) - 1);
 }
 
 #[test]
@@ -227,6 +232,8 @@ fn within_a_step_the_c_functions_follow_the_table() {
     for function in functions() {
         let host = Host::started(Session::LOOKS);
         let (instance, saved) = (host.instance, host.save());
+        // Its bytes cannot be made there.
+        let saved = if function == Function::DeserializeFmuState { null_mut() } else { saved };
         host.lines();
         let seen = Rc::new(RefCell::new(None));
         let status = seen.clone();
@@ -272,6 +279,56 @@ fn after_an_error_the_instance_is_terminated_and_a_reset_or_a_saved_state_leads_
     assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
     assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK);
     assert_eq!(host.enter_initialization(None), fmi3OK);
+}
+
+#[test]
+fn in_every_session_reset_and_a_saved_state_lead_out_of_an_error() {
+    for session in [Session::EXCHANGE, Session::PLAIN, Session::EVENTS, Session::LOOKS] {
+        let host = Host::started(session);
+        let saved = host.save();
+        assert_eq!(host.try_float(u32::MAX).0, fmi3Error);
+        assert_eq!(unsafe { fmi3Terminate(host.instance) }, fmi3Error, "{session:?}");
+        assert_eq!(host.restore(saved), fmi3OK, "{session:?}");
+        assert_eq!(unsafe { fmi3Terminate(host.instance) }, fmi3OK, "{session:?}");
+        assert_eq!(host.try_float(u32::MAX).0, fmi3Error);
+        assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK, "{session:?}");
+        host.start();
+    }
+}
+
+#[test]
+fn a_reset_within_a_step_that_has_failed_does_not_bring_the_step_back() {
+    let host = Host::started(Session::LOOKS);
+    let instance = host.instance;
+    let seen = Rc::new(RefCell::new(None));
+    let statuses = seen.clone();
+    host.on_look(move |_, _| {
+        let first = unsafe { fmi3Reset(instance) }; // illegal there, so that the instance is terminated
+        *statuses.borrow_mut() = Some((first, unsafe { fmi3Reset(instance) }));
+        None
+    });
+    assert_eq!(host.step(0.0, 0.5).status, fmi3Error);
+    assert_eq!(*seen.borrow(), Some((fmi3Error, fmi3OK)));
+    assert!(host.lines().pop().expect("a line").message.starts_with("fmi3DoStep: "));
+    assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK);
+    host.on_look(|_, _| None);
+    host.start();
+    assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
+}
+
+/// Free the instance under the feet of the step: what follows in `fmi3DoStep` would read freed memory.
+#[test]
+#[ignore = "use after free: fmi3FreeInstance looks at the state, which an error within the step has changed"]
+fn within_a_step_that_has_failed_no_instance_is_freed() {
+    let host = Host::started(Session::LOOKS);
+    let instance = host.instance;
+    host.on_look(move |_, _| {
+        assert_eq!(unsafe { fmi3Reset(instance) }, fmi3Error);
+        unsafe { fmi3FreeInstance(instance) };
+        None
+    });
+    assert_eq!(host.step(0.0, 0.5).status, fmi3Error);
+    assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK);
 }
 
 #[test]

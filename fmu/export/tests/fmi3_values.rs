@@ -9,7 +9,9 @@ use core::ffi::CStr;
 use core::fmt::Debug;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::fmi3::*;
-use fmu_export::{Causality, Slave, Standard};
+use fmu_export::ffi::Fmu;
+use fmu_export::fmi3 as of;
+use fmu_export::{Causality, Guid, Logger, ModelInfo, Slave, SlaveError, Standard, Variable};
 
 type Get<T> = unsafe extern "C" fn(fmi3Instance, *const u32, usize, *mut T, usize) -> fmi3Status;
 type Set<T> = unsafe extern "C" fn(fmi3Instance, *const u32, usize, *const T, usize) -> fmi3Status;
@@ -83,6 +85,11 @@ fn a_float_in_single_precision_has_its_own_functions() {
         assert_eq!(fmi3GetFloat32(host.instance, &toy::SINGLE, 1, &raw mut found, 1), fmi3OK);
     }
     assert_eq!(found, value);
+    for value in [f32::NAN, f32::INFINITY] {
+        let host = Host::new(Session::PLAIN);
+        assert_eq!(unsafe { fmi3SetFloat32(host.instance, &toy::SINGLE, 1, &raw const value, 1) }, fmi3Error);
+        assert!(host.error().contains("it must be finite"));
+    }
     assert_eq!(host.try_float(toy::SINGLE).0, fmi3Error);
     assert!(host.error().contains("variable single (value reference 19) is of type Float32, not Float64"));
     let host = Host::new(Session::PLAIN);
@@ -114,6 +121,41 @@ fn there_is_no_binary_variable() {
     let status = unsafe { fmi3GetBinary(host.instance, &toy::GAIN, 1, &raw mut size, &raw mut bytes, 1) };
     assert_eq!(status, fmi3Error);
     assert!(host.error().contains("variable toy.gain (value reference 0) is of type Float64, not Binary"));
+    let host = Host::new(Session::PLAIN);
+    let status = unsafe { fmi3SetBinary(host.instance, &toy::LABEL, 1, &raw const size, &raw const bytes, 1) };
+    assert_eq!(status, fmi3Error);
+    assert!(host.error().contains("variable label (value reference 9) is of type String, not Binary"));
+}
+
+#[test]
+fn every_type_refuses_a_variable_of_another() {
+    let refused = |call: &dyn Fn(fmi3Instance) -> fmi3Status, message: &str| {
+        let host = Host::started(Session::EVENTS);
+        assert_eq!(host.enter_event_mode(), fmi3OK);
+        host.lines();
+        assert_eq!(call(host.instance), fmi3Error, "{message}");
+        let error = host.error();
+        assert!(error.contains(message), "{error}");
+    };
+    let gain = &toy::GAIN;
+    refused(&|i| unsafe { fmi3GetBoolean(i, gain, 1, &mut 0, 1) }, "is of type Float64, not Boolean");
+    refused(&|i| unsafe { fmi3SetBoolean(i, &toy::LAW_VR, 1, &1, 1) }, "is of type Enumeration, not Boolean");
+    refused(&|i| unsafe { fmi3GetString(i, gain, 1, &mut null(), 1) }, "is of type Float64, not String");
+    refused(&|i| unsafe { fmi3SetString(i, &toy::ON, 1, &c"".as_ptr(), 1) }, "is of type Boolean, not String");
+    refused(&|i| unsafe { fmi3GetClock(i, &toy::ON, 1, &mut 0) }, "is of type Boolean, not Clock");
+    refused(&|i| unsafe { fmi3GetBoolean(i, &toy::TICK, 1, &mut 0, 1) }, "is of type Clock, not Boolean");
+    refused(&|i| unsafe { fmi3GetInt32(i, &toy::LAW_VR, 1, &mut 0, 1) }, "is of type Enumeration, not Int32");
+    refused(&|i| unsafe { fmi3GetInt64(i, &toy::SEED, 1, &mut 0, 1) }, "is of type Int32, not Int64");
+}
+
+#[test]
+fn a_text_that_is_null_or_no_utf8_is_refused() {
+    for (text, message) in [(null(), "it is NULL"), (c"\xff".as_ptr(), "it is not UTF-8")] {
+        let host = Host::new(Session::PLAIN);
+        assert_eq!(unsafe { fmi3SetString(host.instance, &toy::LABEL, 1, &raw const text, 1) }, fmi3Error);
+        let error = host.error();
+        assert!(error.contains("label") && error.contains(message), "{error}");
+    }
 }
 
 #[test]
@@ -145,6 +187,101 @@ fn the_variables_that_the_exporter_adds_follow_the_table() {
     assert_eq!(host.stepped(0.0, 1.0), (false, false, 1.0));
     assert_eq!(host.float(toy::COUNT_OF_VARIABLES), 1.0);
     assert_eq!(host.set_float(toy::COUNT_OF_VARIABLES, 1.0), fmi3Error);
+}
+
+/// Neither a time of its own nor a state that jumps.
+#[derive(Clone)]
+struct Bare(f64);
+
+impl Slave for Bare {
+    const INFO: ModelInfo = ModelInfo::new("Bare").model_exchange(2);
+
+    fn variables() -> &'static [Variable<Self>] {
+        type V = Variable<Bare>;
+        static TABLE: [V; 2] = [
+            V::output("x", "1", "A state").get(|m| m.0),
+            V::output("v", "1/s", "Its rate").derivative_of("x").get(|_| 3.0),
+        ];
+        &TABLE
+    }
+
+    fn new() -> Self {
+        Self(0.5)
+    }
+
+    fn do_step(&mut self, _: f64, _: f64, _: &Logger) -> Result<(), SlaveError> {
+        Ok(())
+    }
+
+    fn place(&mut self, _: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
+        self.0 = states.map_or(self.0, |states| states[0]);
+        Ok(())
+    }
+
+    fn event_indicators(&self) -> Vec<f64> {
+        vec![self.0, -self.0]
+    }
+}
+
+#[test]
+fn a_table_without_a_time_is_given_one_ahead_of_its_indicators() {
+    static FMU: Fmu = Fmu::new();
+    let (token, pointer) = (Guid::of::<Bare>(Standard::Fmi3).to_string(), null_mut());
+    let token = std::ffi::CString::new(token).expect("no NUL");
+    let (name, token) = (c"bare".as_ptr(), token.as_ptr());
+    let get = |i, reference: u32| {
+        let mut value = f64::NAN;
+        (unsafe { of::fmi3GetFloat64::<Bare>(i, &raw const reference, 1, &raw mut value, 1) }, value)
+    };
+    unsafe {
+        let i = of::fmi3InstantiateModelExchange::<Bare>(&FMU, name, token, null(), 0, 0, pointer, None);
+        assert!(!i.is_null());
+        assert_eq!(of::fmi3EnterInitializationMode::<Bare>(i, 0, 0.0, 2.0, 0, 0.0), fmi3OK);
+        assert_eq!(of::fmi3ExitInitializationMode::<Bare>(i), fmi3OK);
+        // A state that does not jump is the importer's at events.
+        assert_eq!(of::fmi3SetFloat64::<Bare>(i, &0, 1, &0.25, 1), fmi3OK);
+        assert_eq!([0, 1, 2, 3, 4].map(|k| get(i, k).1), [0.25, 3.0, 2.0, 0.25, -0.25]);
+        assert_eq!(of::fmi3EnterContinuousTimeMode::<Bare>(i), fmi3OK);
+        assert_eq!(of::fmi3SetTime::<Bare>(i, 7.0), fmi3OK);
+        assert_eq!(get(i, 2), (fmi3OK, 7.0));
+        assert_eq!(get(i, 5).0, fmi3Error, "there are two indicators");
+        assert_eq!(of::fmi3Reset::<Bare>(i), fmi3OK);
+        assert_eq!(of::fmi3SetFloat64::<Bare>(i, &2, 1, &1.0, 1), fmi3Error, "time is not set as a variable");
+        of::fmi3FreeInstance::<Bare>(i);
+        // It has no events, and so no event mode.
+        let made = |events| {
+            of::fmi3InstantiateCoSimulation::<Bare>(
+                &FMU,
+                name,
+                token,
+                null(),
+                0,
+                0,
+                events,
+                1,
+                null(),
+                0,
+                pointer,
+                None,
+                None,
+            )
+        };
+        assert!(made(1).is_null());
+        let i = made(0);
+        assert!(!i.is_null());
+        of::fmi3FreeInstance::<Bare>(i);
+    }
+}
+
+/// They are in modelDescription.xml, so that a wrong type is what is wrong with the call.
+#[test]
+#[ignore = "says that no variable has this value reference"]
+fn an_added_variable_is_no_unknown_one() {
+    let host = Host::started(Session::EXCHANGE);
+    let mut value = 0.0;
+    let status = unsafe { fmi3GetFloat32(host.instance, &toy::COUNT_OF_VARIABLES, 1, &raw mut value, 1) };
+    assert_eq!(status, fmi3Error);
+    assert!(host.error().contains("is of type Float64, not Float32"));
 }
 
 #[test]

@@ -81,6 +81,20 @@ impl Harvester {
         model.under_inputs(force, self.voltages, self.voltage_rates).ok()
     }
 
+    /// W of an impact at this relative speed, m/s, J: Eq. (13).
+    pub(crate) fn impact_energy(&self, speed: f64) -> f64 {
+        let bias = self.parameters.bias_voltage;
+        self.read(|model| model.membrane().impact_energy(bias, speed))
+    }
+
+    /// How that of the last impact changes with its speed, J s/m, by central differences of the fourth order.
+    pub(crate) fn energy_slope(&self) -> f64 {
+        let Some((_, speed)) = self.last_impact.filter(|(_, speed)| *speed > 0.0) else { return 0.0 };
+        let h = 1e-3 * speed;
+        let [far, near, back, far_back] = [2.0, 1.0, -1.0, -2.0].map(|k| self.impact_energy(speed + k * h));
+        (8.0 * (near - back) - (far - far_back)) / (12.0 * h)
+    }
+
     /// The model, once initialised.
     pub(crate) fn model(&self) -> Option<&Model> {
         self.model.as_ref().ok()

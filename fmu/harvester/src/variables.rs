@@ -490,17 +490,17 @@ static IMPACTS: [V; 4] = [
         .discrete()
         .clocked_by(&[CLOCK])
         .depends_on(&[CLOCK])
+        .partial_derivative(change!(last_speed))
         .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| speed)),
     V::output("impact.energy", "J", "W: energy gain of the impact, Eq. (13) at the deflection of Eq. (10)")
         .discrete()
         .clocked_by(&[CLOCK])
         .depends_on(&[CLOCK])
         .nominal(1e-6)
-        .get(|slave| {
-            let bias = slave.parameters.bias_voltage;
-            let energy = |speed| slave.read(|model| model.membrane().impact_energy(bias, speed));
-            slave.last_impact.map_or(0.0, |(_, speed)| energy(speed))
-        }),
+        .partial_derivative(|slave, known| {
+            slave.partial(known, |change| change.shown(|changes| changes.last_speed)) * slave.energy_slope()
+        })
+        .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| slave.impact_energy(speed))),
 ];
 
 /// Number of variables.

@@ -12,7 +12,8 @@ import harness
 import job
 
 NAME = "fmi (Rust)"
-PROVES = "loads and runs both FMUs, goes back to saved and serialised states to the last bit"
+PROVES = "loads and runs both FMUs, goes back to saved and serialised states (FMI 2.0) to the last bit"
+FMI_3 = True
 MANIFEST = harness.ROOT / "tests" / "fmi-crate" / "Cargo.toml"
 
 
@@ -21,6 +22,7 @@ def version() -> str:
 
 
 def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
-    program = job.build_program("videg-fmi-crate", "--locked", "--manifest-path", str(MANIFEST))
+    name = "videg-fmi3-crate" if job.is_fmi_3(fmus[job.HARVESTER]) else "videg-fmi-crate"
+    program = job.build_program(name, "--locked", "--manifest-path", str(MANIFEST))
     with tempfile.TemporaryDirectory() as folder:
         return job.run_program(program, fmus, Path(folder))

@@ -14,7 +14,7 @@ PROGRAM = "fmi-sim"
 
 INTERFACES = {"CoSimulation": "co-simulation", "ModelExchange": "model-exchange"}
 STEP, STOP = 1e-3, 1.0
-LOADS = True
+LOADS = FMI_3 = True
 
 
 def is_available() -> bool:

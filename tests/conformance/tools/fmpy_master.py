@@ -5,21 +5,35 @@ import shutil
 import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
 
 import job
 
 NAME = "FMPy"
 PROVES = "loads and runs both FMUs"
+FMI_3 = True
+
+
+class Slave3(FMU3Slave):
+    """One of FMI 3.0, called as one of FMI 2.0."""
+
+    def setupExperiment(self, startTime: float, stopTime: float) -> None:
+        self.experiment = {"startTime": startTime, "stopTime": stopTime}
+
+    def enterInitializationMode(self) -> None:
+        super().enterInitializationMode(**self.experiment)
+
+    setReal, getReal = FMU3Slave.setFloat64, FMU3Slave.getFloat64
 
 
 def version() -> str:
     return fmpy.__version__
 
 
-def instantiate(fmu: str) -> tuple[FMU2Slave, dict[str, int], str]:
+def instantiate(fmu: str) -> tuple[FMU2Slave | Slave3, dict[str, int], str]:
     folder = fmpy.extract(fmu)
     description = fmpy.read_model_description(folder)
-    slave = FMU2Slave(
+    slave = (Slave3 if description.fmiVersion == "3.0" else FMU2Slave)(
         guid=description.guid,
         modelIdentifier=description.coSimulation.modelIdentifier,
         unzipDirectory=folder,

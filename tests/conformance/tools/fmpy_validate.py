@@ -5,6 +5,7 @@ from fmpy.validation import validate_fmu
 
 NAME = "FMPy validate"
 PROVES = "variable names, start values, units and ModelStructure follow the standard"
+FMI_3 = True
 
 
 def version() -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 import fmpy
 
 NAME = "xmllint"
-PROVES = "modelDescription.xml is valid against the XSD of FMI 2.0"
+PROVES = "modelDescription.xml, and terminalsAndIcons.xml of FMI 3.0, are valid against the XSD of the standard"
+FMI_3 = True
 
 
 def version() -> str:
@@ -16,7 +17,14 @@ def version() -> str:
 
 
 def check(fmu: str) -> None:
-    schema = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
+    schemas = Path(fmpy.__file__).parent / "schema"
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(fmu) as archive:
-        description = archive.extract("modelDescription.xml", folder)
-        subprocess.run(["xmllint", "--noout", "--nonet", "--schema", schema, description], check=True)
+        files = {"modelDescription.xml": schemas / "fmi2" / "fmi2ModelDescription.xsd"}
+        if b'fmiVersion="3.0"' in archive.read("modelDescription.xml"):
+            files = {
+                "modelDescription.xml": schemas / "fmi3" / "fmi3ModelDescription.xsd",
+                "terminalsAndIcons/terminalsAndIcons.xml": schemas / "fmi3" / "fmi3TerminalsAndIcons.xsd",
+            }
+        for file, schema in files.items():
+            document = archive.extract(file, folder)
+            subprocess.run(["xmllint", "--noout", "--nonet", "--schema", schema, document], check=True)

@@ -1,12 +1,13 @@
 //! The functions without an instance that is live, or without a status.
 
 use super::super::ffi::{Fmu, array, check_name, fmi2FreeInstance, made, text};
+use crate::added::has_events;
 use crate::instance::{Instance, Session};
 use crate::logger::{Callback, Logger};
 use crate::panics::guard;
 use crate::slave::Slave;
 use crate::standard::Standard;
-use crate::variable::{Causality, Kind, Variability, Variable, has_events};
+use crate::variable::{Causality, Kind, Variability, Variable};
 use core::ptr::null_mut;
 use fmu_abi::fmi3::{
     fmi3Boolean, fmi3ClockUpdateCallback, fmi3False, fmi3Instance, fmi3InstanceEnvironment,

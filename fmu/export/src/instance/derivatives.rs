@@ -104,12 +104,14 @@ impl<S: Slave> Instance<S> {
         self.check_real(variable, may_be, "known")
     }
 
-    /// An output or the derivative of a continuous state; during initialisation a calculated parameter, too.
+    /// An output or the derivative of a continuous state; during initialisation a calculated parameter, too, but no variable of a
+    /// clock, which has not ticked yet.
     fn unknown(&self, reference: u32) -> Call<&'static Variable<S>> {
         let variable = variable::<S>(reference)?;
+        let initializing = self.core.state.is_before_initialization();
         let may_be = match variable.causality() {
-            Causality::CalculatedParameter => self.core.state.is_before_initialization(),
-            Causality::Output => true,
+            Causality::CalculatedParameter => initializing,
+            Causality::Output => !initializing || variable.clocks().is_empty(),
             _ => variable.derivative_of().is_some(),
         };
         self.check_real(variable, may_be, "unknown")

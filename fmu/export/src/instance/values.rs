@@ -1,12 +1,13 @@
 //! Get and Set of variables. A Set is all or nothing: every value is checked before the first is written.
 
 use super::{Call, Instance};
+use crate::added::Added;
 use crate::call_state::{CallState, Legality};
 use crate::error::CallError;
 use crate::logger::c_string;
 use crate::slave::Slave;
 use crate::standard::Standard;
-use crate::variable::{Added, AsString, Transfer, Variable};
+use crate::variable::{AsString, Transfer, Variable};
 use core::ffi::c_char;
 
 /// The variable with this value reference.

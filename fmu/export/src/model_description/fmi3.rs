@@ -1,9 +1,10 @@
 //! What the description of FMI 3.0 has of its own.
 
 use super::{Attribute, Written, Xml, derivative_orders, double, element, empty, text, type_attributes};
+use crate::added::{Added, has_events};
 use crate::fmi3::is_intermediate;
 use crate::slave::Slave;
-use crate::variable::{Added, Causality, ClockInterval, Kind, Variable, has_events, value_reference};
+use crate::variable::{Causality, ClockInterval, Kind, Variable, value_reference};
 
 /// The interfaces, with their capabilities; those that are left out are false. There is no scheduled execution.
 pub(super) fn interfaces<S: Slave>(xml: &mut Xml) -> Written {

@@ -8,12 +8,10 @@
 //! Write `type V = Variable<MyModel>;` and start the rows with `V::`, so that the compiler knows the model in
 //! every closure.
 
-mod added;
 mod assign;
 mod builder;
 mod kind;
 
-pub(crate) use added::{Added, has_events};
 pub(crate) use assign::{
     AsBoolean, AsFloat32, AsFloat64, AsInt8, AsInt16, AsInt32, AsInt64, AsInteger, AsReal, AsString, AsUInt8, AsUInt16,
     AsUInt32, AsUInt64, Transfer,

@@ -40,6 +40,14 @@ pub fn host_in(session: Session, state: CallState) -> Option<Host> {
     Some(host)
 }
 
+/// An initialised instance after a call that returned `fmi3Error`.
+pub fn failed_host(session: Session) -> Host {
+    let host = Host::started(session);
+    assert_eq!(host.try_float(u32::MAX).0, fmi3Error);
+    host.lines();
+    host
+}
+
 impl Host {
     fn fail_fatally(&self) {
         if self.session.exchange {
@@ -50,7 +58,8 @@ impl Host {
     }
 }
 
-/// Calls a function with arguments that are right as such. `state` is an FMU state of the instance or NULL.
+/// Calls a function with arguments that are right as such. `state` is an FMU state of the instance or NULL. Only
+/// `fmi3DeserializeFMUState` calls others before, which make its bytes, unless `state` is NULL.
 #[allow(clippy::too_many_lines)] // all functions
 pub fn call(instance: fmi3Instance, function: Function, mut state: fmi3FMUState) -> fmi3Status {
     use Function as F;
@@ -114,8 +123,10 @@ pub fn call(instance: fmi3Instance, function: Function, mut state: fmi3FMUState)
             F::SerializedFmuStateSize => fmi3SerializedFMUStateSize(i, state, &raw mut size),
             F::SerializeFmuState => fmi3SerializeFMUState(i, state, bytes.as_mut_ptr(), bytes.len()),
             F::DeserializeFmuState => {
-                fmi3SerializedFMUStateSize(i, state, &raw mut size);
-                fmi3SerializeFMUState(i, state, bytes.as_mut_ptr(), bytes.len());
+                if !state.is_null() {
+                    fmi3SerializedFMUStateSize(i, state, &raw mut size);
+                    fmi3SerializeFMUState(i, state, bytes.as_mut_ptr(), bytes.len());
+                }
                 fmi3DeserializeFMUState(i, bytes.as_ptr(), size, &raw mut fresh)
             }
             F::GetDirectionalDerivative => {

@@ -110,9 +110,20 @@ pub fn token() -> String {
 
 /// Calls `fmi3InstantiateCoSimulation` or `fmi3InstantiateModelExchange`; the outputs of the toy may be read within steps.
 pub fn instantiate(session: Session, name: &str, token: &str, environment: &Environment) -> fmi3Instance {
+    let required = [toy::INTEGRAL];
+    instantiate_for(session, name, token, environment, if session.looks { &required } else { &[] })
+}
+
+/// The same with these variables to be read within steps.
+pub fn instantiate_for(
+    session: Session,
+    name: &str,
+    token: &str,
+    environment: &Environment,
+    required: &[u32],
+) -> fmi3Instance {
     let (name, token, pointer) = (c(name), c(token), core::ptr::from_ref(environment).cast_mut().cast());
     let Session { exchange, event_mode, early_return, looks } = session;
-    let required = [toy::INTEGRAL];
     unsafe {
         if exchange {
             return fmi3InstantiateModelExchange(name.as_ptr(), token.as_ptr(), null(), 0, 1, pointer, Some(log));
@@ -126,7 +137,7 @@ pub fn instantiate(session: Session, name: &str, token: &str, environment: &Envi
             event_mode.into(),
             early_return.into(),
             required.as_ptr(),
-            usize::from(looks),
+            required.len(),
             pointer,
             Some(log),
             looks.then_some(update as _),
@@ -153,8 +164,13 @@ pub struct Stepped {
 impl Host {
     /// In state `instantiated`.
     pub fn new(session: Session) -> Self {
+        Self::requiring(session, if session.looks { &[toy::INTEGRAL] } else { &[] })
+    }
+
+    /// The same with these variables to be read within steps.
+    pub fn requiring(session: Session, required: &[u32]) -> Self {
         let environment = Box::<Environment>::default();
-        let instance = instantiate(session, "host", &token(), &environment);
+        let instance = instantiate_for(session, "host", &token(), &environment, required);
         // That a toy with clocks is made without event mode is logged.
         let lines = environment.lines();
         assert!(!instance.is_null() && lines.iter().all(|line| line.category == "logTolerated"), "{lines:?}");
@@ -164,14 +180,19 @@ impl Host {
     /// Initialised at 0 s, and past the first event.
     pub fn started(session: Session) -> Self {
         let host = Self::new(session);
-        assert_eq!((host.enter_initialization(None), host.exit_initialization()), (fmi3OK, fmi3OK));
-        if session.exchange {
-            host.update();
-            assert_eq!(unsafe { fmi3EnterContinuousTimeMode(host.instance) }, fmi3OK);
-        } else if session.event_mode {
-            assert_eq!(unsafe { fmi3EnterStepMode(host.instance) }, fmi3OK);
-        }
+        host.start();
         host
+    }
+
+    /// From state `instantiated` past the first event.
+    pub fn start(&self) {
+        assert_eq!((self.enter_initialization(None), self.exit_initialization()), (fmi3OK, fmi3OK));
+        if self.session.exchange {
+            self.update();
+            assert_eq!(unsafe { fmi3EnterContinuousTimeMode(self.instance) }, fmi3OK);
+        } else if self.session.event_mode {
+            assert_eq!(unsafe { fmi3EnterStepMode(self.instance) }, fmi3OK);
+        }
     }
 
     pub fn enter_initialization(&self, stop: Option<f64>) -> fmi3Status {

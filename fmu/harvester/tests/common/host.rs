@@ -26,7 +26,9 @@ pub fn continuous_unknowns() -> Vec<&'static str> {
 
 /// The calculated parameters besides.
 pub fn initial_unknowns() -> Vec<&'static str> {
-    [reals(|v| v.causality() == Causality::CalculatedParameter), unknowns()].concat()
+    let clocked = |name: &&str| !row(name).clocks().is_empty();
+    let unknowns = unknowns().into_iter().filter(|name| !clocked(name)).collect();
+    [reals(|v| v.causality() == Causality::CalculatedParameter), unknowns].concat()
 }
 
 /// Real parameters and inputs.

@@ -57,7 +57,9 @@ pub fn get(slave: &Harvester, name: &str) -> f64 {
         Kind::Real(spec) => (spec.get)(slave),
         Kind::Integer(spec) => i32::try_from((spec.get)(slave)).expect("a small number").into(),
         Kind::Boolean(spec) => f64::from(u8::from((spec.get)(slave))),
-        _ => unreachable!("{name} is neither number nor truth value"),
+        Kind::Clock(spec) => f64::from(u8::from((spec.get)(slave))),
+        Kind::Enumeration(spec) => f64::from((spec.get)(slave)),
+        Kind::String(_) => unreachable!("{name} is a text"),
     }
 }
 

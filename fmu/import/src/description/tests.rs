@@ -94,7 +94,7 @@ fn missing_and_bad_parts_are_named_with_place_found_and_allowed() {
         ("modelIdentifier=\"Toy\"", "", "CoSimulation has no modelIdentifier"),
         ("valueReference=\"0\"", "", "variable \"mass\" has no valueReference"),
         ("declaredType=\"Law\"", "", "variable \"law\" has no declaredType"),
-        ("fmiVersion=\"2.0\"", "fmiVersion=\"3.0\"", "fmiVersion is \"3.0\", allowed is \"2.0\""),
+        ("fmiVersion=\"2.0\"", "fmiVersion=\"1.0\"", "fmiVersion is \"1.0\", allowed is \"2.0\" or \"3.0\""),
         ("start=\"1.5\"", "start=\"heavy\"", "variable \"mass\": start is \"heavy\", allowed is a number"),
         ("causality=\"input\"", "causality=\"in\"", "allowed is parameter, calculatedParameter, input"),
         ("index=\"2\"", "index=\"99\"", "index is \"99\", allowed is 1 .. 7"),

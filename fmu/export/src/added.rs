@@ -1,8 +1,8 @@
 //! Variables that FMI 3.0 wants and a table need not have: time, and one for each event indicator. Their value references follow
 //! those of the table.
 
-use super::{Causality, Variable};
 use crate::slave::Slave;
+use crate::variable::{Causality, Variable};
 
 /// A variable that the exporter adds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
