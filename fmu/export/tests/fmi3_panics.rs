@@ -127,7 +127,6 @@ fn panics_while_a_model_is_copied_or_dropped_are_caught() {
 }
 
 #[test]
-#[ignore = "the message names fmi2FreeInstance"]
 fn a_panic_while_an_instance_is_freed_names_the_function() {
     let environment = Box::<Environment>::default();
     let instance = instantiate(Session::EVENTS, "host", &token(), &environment);

@@ -6,6 +6,7 @@ Built without optimisation: compiling takes far longer than running.
 
 import re
 import tempfile
+import zipfile
 from pathlib import Path
 
 import harness
@@ -17,12 +18,31 @@ FMI_3 = True
 MANIFEST = harness.ROOT / "tests" / "fmi-crate" / "Cargo.toml"
 
 
+KNOWN = {"no ampere": "it reads no unit of FMI 3.0 with amperes, and gets copies of the descriptions without them"}
+
+
+def without_ampere(fmu: str, folder: Path) -> str:
+    """A copy whose units have no amperes in their base units."""
+    copy = folder / Path(fmu).name
+    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(copy, "w") as target:
+        for entry in source.infolist():
+            content = source.read(entry)
+            if entry.filename == "modelDescription.xml":
+                content = re.sub(rb'(<BaseUnit[^>]*?) A="[^"]*"', rb"\1", content)
+            target.writestr(entry, content)
+    return str(copy)
+
+
 def version() -> str:
     return re.search(r'^fmi = .*version = "=([^"]*)"', MANIFEST.read_text(), re.MULTILINE).group(1)
 
 
 def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
-    name = "videg-fmi3-crate" if job.is_fmi_3(fmus[job.HARVESTER]) else "videg-fmi-crate"
+    is_fmi_3 = job.is_fmi_3(fmus[job.HARVESTER])
+    name = "videg-fmi3-crate" if is_fmi_3 else "videg-fmi-crate"
     program = job.build_program(name, "--locked", "--manifest-path", str(MANIFEST))
     with tempfile.TemporaryDirectory() as folder:
+        if is_fmi_3:
+            print("warning: no ampere")
+            fmus = {name: without_ampere(fmu, Path(folder)) for name, fmu in fmus.items()}
         return job.run_program(program, fmus, Path(folder))

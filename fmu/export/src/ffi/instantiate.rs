@@ -1,7 +1,6 @@
 //! The functions without a component that is live, or without a status.
 
 use super::{Fmu, Handle, text};
-use crate::call_state::CallState;
 use crate::instance::{Instance, Session};
 use crate::logger::{Callback, Logger};
 use crate::panics::{guard, panic_message};
@@ -118,12 +117,8 @@ pub unsafe fn fmi2FreeInstance<S: Slave>(component: fmi2Component) {
     }
     // SAFETY: by contract the component points to a live handle.
     let live = unsafe { &*handle };
-    if live.busy.swap(true, Ordering::Acquire) {
-        return;
-    }
-    // SAFETY: `busy` keeps others out. Within a step of FMI 3.0 the importer is called without it.
-    if unsafe { &*live.instance.get() }.state() == CallState::IntermediateUpdateMode {
-        live.busy.store(false, Ordering::Release);
+    // Within a step of FMI 3.0 the importer is called while nothing else is under way.
+    if live.shown.load(Ordering::Acquire) || live.busy.swap(true, Ordering::Acquire) {
         return;
     }
     // SAFETY: by contract it came from `Box::into_raw` in `instantiate` and was not freed; `busy` keeps others out.

@@ -67,12 +67,15 @@ impl Fmu {
 /// refused; nothing guarantees it, and two that begin together are undefined behaviour.
 pub(crate) struct Handle<S: Slave> {
     busy: AtomicBool,
+    /// The importer is called within a step: it may read, and must not free.
+    shown: AtomicBool,
     instance: UnsafeCell<Instance<S>>,
 }
 
 impl<S: Slave> Handle<S> {
     pub(crate) fn new(instance: Instance<S>) -> Self {
-        Self { busy: AtomicBool::new(false), instance: UnsafeCell::new(instance) }
+        let (busy, shown) = (AtomicBool::new(false), AtomicBool::new(false));
+        Self { busy, shown, instance: UnsafeCell::new(instance) }
     }
 
     /// Runs `body`, which does not panic, on the instance unless it is busy.
@@ -117,6 +120,15 @@ pub(crate) unsafe fn with<S: Slave>(
         return fmi2Error;
     };
     handle.with(body)
+}
+
+/// Calls the importer within a step of a component that is live; it does not free it meanwhile.
+pub(crate) unsafe fn showing<S: Slave>(component: fmi2Component, show: impl FnOnce()) {
+    // SAFETY: by contract the component points to a live handle, and stays so: `fmi2FreeInstance` looks.
+    let shown = unsafe { &(*component.cast::<Handle<S>>()).shown };
+    let before = shown.swap(true, Ordering::AcqRel);
+    show();
+    shown.store(before, Ordering::Release);
 }
 
 /// Checks a pointer that is to become a slice.

@@ -1,7 +1,7 @@
 //! `fmi3DoStep`, which may call the importer back while no reference to the instance is alive, so that it may read.
 
 use super::Function;
-use crate::ffi::{check_array, enter, with};
+use crate::ffi::{check_array, enter, showing, with};
 use crate::instance::{Call, Instance, Progress, StepOutcome};
 use crate::slave::Slave;
 use fmu_abi::fmi3::{
@@ -54,16 +54,15 @@ struct Update {
 }
 
 impl Update {
-    /// Lets the importer look. The time at which it wants the step to end, if it does.
-    unsafe fn show(self) -> Option<f64> {
-        let callback = self.callback?;
+    /// Lets the importer look. A step that may end early does so here, whether it is asked to or not.
+    unsafe fn show(self) {
+        let Some(callback) = self.callback else { return };
         let (mut wants, mut time) = (fmi3False, self.time);
         let (set, get, finished, can_return_early) = (fmi3False, fmi3True, fmi3True, self.can_return_early.into());
         // SAFETY: the callback came from the importer with this environment.
         unsafe {
             callback(self.environment, self.time, set, get, finished, can_return_early, &raw mut wants, &raw mut time);
         }
-        (wants != fmi3False).then_some(time)
     }
 }
 
@@ -108,9 +107,9 @@ unsafe fn step_in_parts<S: Slave>(instance: fmi3Instance, t: f64, h: f64, output
     // SAFETY: contract of this module; so below.
     let mut status = unsafe { with(instance, |i: &mut Instance<S>| i.guarded(name, begin)) };
     while let Some(shown) = update.take() {
-        let wanted = unsafe { shown.show() };
+        unsafe { showing::<S>(instance, || shown.show()) };
         let resume = |i: &mut Instance<S>| {
-            let progress = i.resume_step(wanted)?;
+            let progress = i.resume_step()?;
             update = follow(i, progress, outputs);
             Ok(())
         };

@@ -159,12 +159,13 @@ impl<S: Slave> Instance<S> {
         for (i, (&reference, &order)) in references.iter().zip(orders).enumerate() {
             let variable = variable::<S>(reference)?;
             let Kind::Real(spec) = variable.kind() else {
-                return Err(not_real(variable, reference));
+                return Err(self.wrong_type(reference, <AsReal as Transfer<S>>::NAME));
             };
             let Some((highest, get)) = spec.output_derivatives else {
                 return Err(no_derivatives(variable));
             };
             let order = check_order(variable, order, highest)?;
+            self.check_intermediate(variable, reference)?;
             write(i, get(&self.core.model, order));
         }
         Ok(())

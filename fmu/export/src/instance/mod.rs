@@ -94,11 +94,6 @@ impl<S: Slave> Instance<S> {
         Self { core, session, under_way: None, logger, guid, resources, strings: Vec::new() }
     }
 
-    /// The state that it is in.
-    pub(crate) fn state(&self) -> CallState {
-        self.core.state
-    }
-
     /// How it was made.
     pub(crate) const fn session(&self) -> &Session {
         &self.session
@@ -107,11 +102,15 @@ impl<S: Slave> Instance<S> {
     /// `fmi2FreeInstance`. Each model is dropped behind a guard of its own: a second panic while the first unwinds would
     /// end the process.
     pub(crate) fn free(self) {
-        let Self { core, logger, .. } = self;
+        let Self { core, logger, session, .. } = self;
+        let name = match session.standard {
+            Standard::Fmi2 => Function::FreeInstance.name(),
+            Standard::Fmi3 => crate::fmi3::Function::FreeInstance.name(),
+        };
         for core in core.into_all() {
             if let Err(payload) = catch_unwind(AssertUnwindSafe(|| drop(core))) {
                 let error = CallError::Panic(panic_message(payload));
-                logger.status(fmi2Error, format_args!("{}: {error}", Function::FreeInstance.name()));
+                logger.status(fmi2Error, format_args!("{name}: {error}"));
             }
         }
     }

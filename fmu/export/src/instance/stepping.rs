@@ -82,8 +82,6 @@ pub(super) struct UnderWay {
     at: f64,
     /// Where it would end.
     end: f64,
-    /// Where the importer wants it to end, which is not behind that.
-    wanted: f64,
     had_event: bool,
     /// The last point is one where it may stop.
     may_stop: bool,
@@ -91,7 +89,7 @@ pub(super) struct UnderWay {
 
 impl UnderWay {
     const fn new(start: f64, end: f64) -> Self {
-        Self { start, at: start, end, wanted: end, had_event: false, may_stop: false }
+        Self { start, at: start, end, had_event: false, may_stop: false }
     }
 }
 
@@ -134,29 +132,21 @@ impl<S: Slave> Instance<S> {
     #[inline(never)]
     pub(crate) fn begin_step(&mut self, t: f64, h: f64) -> Call<Progress> {
         self.check_step(t, h)?;
-        self.core.ticking = false;
         self.under_way = Some(UnderWay::new(t, t + h));
         self.go_on()
     }
 
-    /// Goes on with the step that is under way, after the importer has looked; `wanted` is the time, s, where it wants it to end.
-    pub(crate) fn resume_step(&mut self, wanted: Option<f64>) -> Call<Progress> {
+    /// Goes on with the step that is under way, after the importer has looked. One that may end early does so wherever there is
+    /// something to look at, whether it is asked to or not.
+    pub(crate) fn resume_step(&mut self) -> Call<Progress> {
         if self.core.state != CallState::IntermediateUpdateMode {
             return Err(CallError::Unsupported("a step whose instance failed within intermediateUpdate"));
         }
         self.core.state = CallState::StepMode;
-        let Some(step) = &mut self.under_way else {
+        let Some(step) = self.under_way else {
             return Err(CallError::Unsupported("an intermediate update without a step"));
         };
-        if let Some(wanted) = wanted.filter(|_| self.session.early_return) {
-            if wanted.is_nan() {
-                let bound = "it must be a time of the step".to_owned();
-                return Err(CallError::BadArgument { argument: "earlyReturnTime", value: wanted.to_string(), bound });
-            }
-            step.wanted = step.wanted.min(wanted.max(step.at));
-        }
-        let step = *step;
-        if step.at >= step.wanted || step.may_stop && self.session.early_return {
+        if step.at >= step.end || step.may_stop && self.session.early_return {
             return Ok(Progress::Ended(self.end_step(step)));
         }
         self.go_on()
@@ -168,14 +158,14 @@ impl<S: Slave> Instance<S> {
             let Some(mut step) = self.under_way else {
                 return Err(CallError::Unsupported("a step that is not under way"));
             };
-            let stop = match self.core.model.do_step_to_event(step.at, step.wanted, &self.logger) {
+            let stop = match self.core.model.do_step_to_event(step.at, step.end, &self.logger) {
                 Ok(stop) => stop,
                 Err(error) => {
                     self.under_way = None;
                     return self.stopped(&error, step).map(Progress::Ended);
                 }
             };
-            step.at = stop.map_or(step.wanted, |stop: Stop| stop.time.min(step.wanted));
+            step.at = stop.map_or(step.end, |stop: Stop| stop.time.min(step.end));
             step.had_event |= stop.is_some_and(|stop| stop.is_event);
             step.may_stop = stop.is_some();
             (self.core.time, self.core.ticking) = (step.at, step.had_event);
@@ -184,7 +174,7 @@ impl<S: Slave> Instance<S> {
                 self.core.state = CallState::IntermediateUpdateMode;
                 return Ok(Progress::Update(step.at));
             }
-            if step.at >= step.wanted || step.may_stop && self.session.early_return {
+            if step.at >= step.end || step.may_stop && self.session.early_return {
                 return Ok(Progress::Ended(self.end_step(step)));
             }
         }

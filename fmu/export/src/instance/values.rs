@@ -21,6 +21,9 @@ impl<S: Slave> Instance<S> {
     /// A variable that is of another type than is asked for, or of none.
     pub(crate) fn wrong_type(&self, reference: u32, wanted: &'static str) -> CallError {
         match variable::<S>(reference) {
+            Err(_) if self.session.standard == Standard::Fmi3 && Added::of::<S>(reference).is_some() => {
+                CallError::WrongType { name: "time or event indicator", reference, actual: "Float64", wanted }
+            }
             Err(unknown) => unknown,
             Ok(variable) => {
                 let actual = match self.session.standard {
@@ -62,7 +65,7 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn get<T: Transfer<S>>(&mut self, references: &[u32], mut write: impl FnMut(usize, T::Taken)) -> Call {
         self.update()?;
         for (i, &reference) in references.iter().enumerate() {
-            let variable = variable::<S>(reference)?;
+            let variable = variable::<S>(reference).map_err(|_| self.wrong_type(reference, T::NAME))?;
             let value = T::get(variable, &self.core.model).ok_or_else(|| self.wrong_type(reference, T::NAME))?;
             if self.may_be_read(variable, reference)? == Legality::Tolerated {
                 self.tolerate(variable, "read");
@@ -102,14 +105,18 @@ impl<S: Slave> Instance<S> {
         Ok(())
     }
 
-    /// In intermediate update mode only what the importer asked for when it made the instance.
     fn may_be_read(&self, variable: &Variable<S>, reference: u32) -> Call<Legality> {
-        let state = self.core.state;
-        if state == CallState::IntermediateUpdateMode && !self.session.is_intermediate(reference) {
-            let (name, type_name) = (variable.name(), variable.kind().type_name_3());
-            return Err(CallError::NotIntermediate { name, type_name });
+        self.check_intermediate(variable, reference)?;
+        Ok(variable.may_be_read(S::variables(), self.core.state, self.session.standard))
+    }
+
+    /// In intermediate update mode only what the importer asked for when it made the instance is read.
+    pub(super) fn check_intermediate(&self, variable: &Variable<S>, reference: u32) -> Call {
+        if self.core.state != CallState::IntermediateUpdateMode || self.session.is_intermediate(reference) {
+            return Ok(());
         }
-        Ok(variable.may_be_read(S::variables(), state, self.session.standard))
+        let (name, type_name) = (variable.name(), variable.kind().type_name_3());
+        Err(CallError::NotIntermediate { name, type_name })
     }
 
     pub(super) fn check_settable(&self, variable: &Variable<S>) -> Call {

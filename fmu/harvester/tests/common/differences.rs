@@ -18,11 +18,11 @@ pub fn natural_size(name: &str) -> f64 {
         "deflection" => 1e-3,
         "capacitance" | "restCapacitance" => 1e-11,
         "voltage" => 100.0,
-        "energyEq13" => 1e-6,
+        "energyEq13" | "energy" => 1e-6,
         "kinetic" | "cylinderKinetic" | "excitation" | "elastic" | "impactLoss" | "electrical" | "wall" => 1e-4,
         "electricField" => 1e7,
         "areaRatio" | "stretch" | "nextTime" | "nextKnot" => 1.0,
-        "velocity" | "lastVelocity" | "position)" => 0.1,
+        "velocity" | "lastVelocity" | "speed" | "position)" => 0.1,
         "velocity)" => 4.0,
         _ => 1e-2,
     }

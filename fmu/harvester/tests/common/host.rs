@@ -13,9 +13,12 @@ fn reals(is_listed: impl Fn(&Variable<Harvester>) -> bool) -> Vec<&'static str> 
     rows.map(Variable::name).collect()
 }
 
-/// The Real outputs and the derivatives of the continuous states.
+/// Those that FMI 3.0 alone has, at the ticks of a clock.
+pub const CLOCKED: [&str; 2] = ["impact.speed", "impact.energy"];
+
+/// The Real outputs and the derivatives of the continuous states, as FMI 2.0 has them.
 pub fn unknowns() -> Vec<&'static str> {
-    reals(|v| v.causality() == Causality::Output || v.derivative_of().is_some())
+    reals(|v| v.is_of(Standard::Fmi2) && (v.causality() == Causality::Output || v.derivative_of().is_some()))
 }
 
 /// The continuous ones among them.
@@ -26,9 +29,7 @@ pub fn continuous_unknowns() -> Vec<&'static str> {
 
 /// The calculated parameters besides.
 pub fn initial_unknowns() -> Vec<&'static str> {
-    let clocked = |name: &&str| !row(name).clocks().is_empty();
-    let unknowns = unknowns().into_iter().filter(|name| !clocked(name)).collect();
-    [reals(|v| v.causality() == Causality::CalculatedParameter), unknowns].concat()
+    [reals(|v| v.causality() == Causality::CalculatedParameter), unknowns()].concat()
 }
 
 /// Real parameters and inputs.
