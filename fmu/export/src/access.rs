@@ -44,11 +44,11 @@ impl<M> Variable<M> {
 
     /// Whether it may be read in a state, if a Get is legal there: in initialization mode outputs and initial unknowns,
     /// elsewhere everything. Importers show parameters and inputs in initialization mode, too: tolerated. FMI 3.0 restricts clocked
-    /// variables only, which cannot be read between events; importers show them: tolerated.
+    /// variables only, which are there at events; importers show them all the time: tolerated.
     pub fn may_be_read(&self, table: &[Self], state: CallState, standard: Standard) -> Legality {
         if standard == Standard::Fmi3 {
-            let between = matches!(state, CallState::StepMode | CallState::ContinuousTimeMode);
-            return if between && !self.clocks().is_empty() { Legality::Tolerated } else { Legality::Legal };
+            let at_event = matches!(state, CallState::InitializationMode | CallState::EventMode);
+            return if at_event || self.clocks().is_empty() { Legality::Legal } else { Legality::Tolerated };
         }
         let restricted = state == CallState::InitializationMode && !self.is_initial_unknown(table);
         if restricted && self.causality() != Causality::Output { Legality::Tolerated } else { Legality::Legal }

@@ -53,11 +53,11 @@ impl LogCategory {
     pub const fn description(self) -> &'static str {
         match self {
             Self::Events => "Events of the model",
-            Self::Tolerated => "Calls that FMI 2.0 forbids and that work all the same; they return fmi2OK",
-            Self::Warning => "Messages that go with fmi2Warning",
-            Self::Discard => "Messages that go with fmi2Discard",
-            Self::Error => "Messages that go with fmi2Error",
-            Self::Fatal => "Messages that go with fmi2Fatal",
+            Self::Tolerated => "Calls that the standard forbids and that work all the same; they return OK",
+            Self::Warning => "Messages that go with the status Warning",
+            Self::Discard => "Messages that go with the status Discard",
+            Self::Error => "Messages that go with the status Error",
+            Self::Fatal => "Messages that go with the status Fatal",
         }
     }
 

@@ -143,7 +143,7 @@ fn clocks_that_cannot_be_set_say_so() {
     let status =
         unsafe { fmi3GetIntervalDecimal(host.instance, &toy::TRIGGER, 1, &raw mut interval, &raw mut qualifier) };
     assert_eq!(status, fmi3Error);
-    assert!(host.error().contains("variable trigger = interval: this clock is triggered and has none"));
+    assert!(host.error().contains("variable trigger = interval and shift: this clock is triggered and has neither"));
 }
 
 /// Times at which the importer looks, and what it reads there, in a step from 0 to 2.5 s.

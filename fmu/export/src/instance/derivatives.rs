@@ -9,6 +9,7 @@ use super::{Call, Instance};
 use crate::call_state::CallState;
 use crate::error::{CallError, SlaveError};
 use crate::slave::Slave;
+use crate::standard::Standard;
 use crate::variable::{Causality, Kind, Variability, Variable};
 
 fn check_seeds<S: Slave>(seeds: &[f64], argument: &'static str) -> Call {
@@ -38,7 +39,8 @@ impl<S: Slave> Instance<S> {
         seeds: &[f64],
         mut write: impl FnMut(usize, f64),
     ) -> Call {
-        check_seeds::<S>(seeds, "dvKnown")?;
+        let argument = if self.session.standard == Standard::Fmi2 { "dvKnown" } else { "seed" };
+        check_seeds::<S>(seeds, argument)?;
         let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns)?;
         for (i, unknown) in unknowns.into_iter().enumerate() {
             let terms = knowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
@@ -128,7 +130,7 @@ impl<S: Slave> Instance<S> {
         }
         Err(CallError::NoDerivative {
             name: variable.name(),
-            type_name: variable.kind().type_name(),
+            type_name: self.type_name(variable),
             causality: variable.causality().as_str(),
             variability: variable.variability().as_str(),
             role,

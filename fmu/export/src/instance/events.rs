@@ -98,8 +98,8 @@ impl<S: Slave> Instance<S> {
             let ClockInterval::Periodic { interval, shift } = clock.interval else {
                 return Err(CallError::BadValue {
                     name: variable.name(),
-                    value: "interval".to_owned(),
-                    bound: "this clock is triggered and has none".to_owned(),
+                    value: "interval and shift".to_owned(),
+                    bound: "this clock is triggered and has neither".to_owned(),
                 });
             };
             write(k, [interval, shift]);

@@ -18,6 +18,14 @@ pub(super) fn variable<S: Slave>(reference: u32) -> Call<&'static Variable<S>> {
 }
 
 impl<S: Slave> Instance<S> {
+    /// Name of the type of a variable, in this version of FMI.
+    pub(super) fn type_name(&self, variable: &Variable<S>) -> &'static str {
+        match self.session.standard {
+            Standard::Fmi2 => variable.kind().type_name(),
+            Standard::Fmi3 => variable.kind().type_name_3(),
+        }
+    }
+
     /// A variable that is of another type than is asked for, or of none.
     pub(crate) fn wrong_type(&self, reference: u32, wanted: &'static str) -> CallError {
         match variable::<S>(reference) {
@@ -26,11 +34,7 @@ impl<S: Slave> Instance<S> {
             }
             Err(unknown) => unknown,
             Ok(variable) => {
-                let actual = match self.session.standard {
-                    Standard::Fmi2 => variable.kind().type_name(),
-                    Standard::Fmi3 => variable.kind().type_name_3(),
-                };
-                CallError::WrongType { name: variable.name(), reference, actual, wanted }
+                CallError::WrongType { name: variable.name(), reference, actual: self.type_name(variable), wanted }
             }
         }
     }
