@@ -21,5 +21,6 @@ fn check(document: &[u8]) -> bool {
 }
 
 fn seeds() -> Vec<Vec<u8>> {
-    [fmu::SMALL_DESCRIPTION, fmu::HARVESTER, fmu::CIRCUIT].map(|text| text.as_bytes().to_vec()).to_vec()
+    let of_fmi_2 = [fmu::SMALL_DESCRIPTION, fmu::HARVESTER, fmu::CIRCUIT];
+    of_fmi_2.into_iter().chain(fmu::OF_FMI_3).map(|text| text.as_bytes().to_vec()).collect()
 }

@@ -7,6 +7,11 @@ use fmu_host::{Fmu, run_tape};
 pub const HARVESTER: &str = include_str!("../../../modelDescription/VibroImpactHarvester.xml");
 /// As above.
 pub const CIRCUIT: &str = include_str!("../../../modelDescription/HarvestingCircuit.xml");
+/// The same of FMI 3.0.
+pub(crate) const OF_FMI_3: [&str; 2] = [
+    include_str!("../../../modelDescription/fmi3/HarvestingCircuit.xml"),
+    include_str!("../../../fmu/import/src/testdata/good3.xml"),
+];
 /// A model description of a few lines, with variables of all types.
 pub(crate) const SMALL_DESCRIPTION: &str = include_str!("../../../fmu/import/src/testdata/good.xml");
 

@@ -140,3 +140,57 @@ fn documents_that_are_broken_or_beyond_bounds_are_refused() {
     let error = told("<ModelVariables>", &format!("<ModelVariables>{}", "<a/>".repeat(1_000_000)));
     assert_eq!(error, "the model description has more than 1000000 elements");
 }
+
+const GOOD_3: &str = include_str!("../testdata/good3.xml");
+
+#[test]
+fn fmi_3_has_other_elements_for_the_same_facts() {
+    let description = parse(GOOD_3).unwrap();
+    assert!(description.is_fmi_3() && !parse(GOOD).unwrap().is_fmi_3());
+    assert_eq!(description.guid, "{token}");
+    assert!(description.co_simulation.can_get_and_set_fmu_state);
+    assert!(description.co_simulation.provides_directional_derivative);
+    assert_eq!(description.output_variables().map(|it| it.name.as_str()).collect::<Vec<_>>(), ["tick", "position"]);
+    let kind = |name: &str| {
+        let variable = description.variable(name).unwrap();
+        (variable.type_name, variable.kind.clone())
+    };
+    let unit = Some("kg".into());
+    let mass = Kind::Real { unit, start: Some(1.5), min: Some(0.0), max: Some(10.0) };
+    assert_eq!(kind("mass"), ("Float64", mass));
+    let vector = Kind::Real { unit: None, start: Some(1.0), min: None, max: None };
+    assert_eq!(kind("vector"), ("Float32", vector), "of an array the first value");
+    assert_eq!(kind("count"), ("Int32", Kind::Integer { start: Some(2), min: Some(1), max: Some(9) }));
+    assert_eq!(kind("large"), ("UInt64", Kind::Integer { start: Some(i64::MAX), min: None, max: None }));
+    assert_eq!(kind("enabled"), ("Boolean", Kind::Boolean { start: Some(true) }));
+    assert_eq!(kind("label"), ("String", Kind::String { start: Some("a & b".to_owned()) }));
+    assert_eq!(kind("law"), ("Enumeration", Kind::Enumeration { start: Some(2) }));
+    assert_eq!(description.enumeration(description.variable("law").unwrap()).unwrap().items[1].name, "compliant");
+    assert_eq!((kind("blob"), kind("tick")), (("Binary", Kind::Other), ("Clock", Kind::Other)));
+    assert_eq!(description.variable("time").unwrap().initial, None);
+}
+
+#[test]
+fn bad_parts_of_fmi_3_are_named_with_place_found_and_allowed() {
+    for (from, to, part) in [
+        ("instantiationToken=\"{token}\"", "", "fmiModelDescription has no instantiationToken"),
+        ("start=\"1 2 3\"", "start=\"one\"", "variable \"vector\": start is \"one\", allowed is a number"),
+        (
+            "start=\"18446744073709551615\"",
+            "start=\"1e3\"",
+            "variable \"large\": start is \"1e3\", allowed is an integer",
+        ),
+        ("declaredType=\"Law\"", "", "variable \"law\": declaredType is \"\", allowed is an enumeration"),
+        (
+            "<Output valueReference=\"9\"",
+            "<Output valueReference=\"99\"",
+            "valueReference is \"99\", allowed is that of a",
+        ),
+        ("<Output valueReference=\"9\"", "<Output", "ModelStructure/Output has no valueReference"),
+        ("<Start value=", "<Start text=", "variable \"label\" has no value"),
+        ("name=\"tick\"", "name=\"blob\"", "two variables are named \"blob\""),
+    ] {
+        let found = parse(&GOOD_3.replacen(from, to, 1)).unwrap_err();
+        assert!(found.contains(part), "{part}: {found}");
+    }
+}
