@@ -34,6 +34,8 @@ struct Row {
 }
 
 const STEP: (&str, &str) = ("calls", "doStep without impact");
+const STEP_3: (&str, &str) = ("calls", "doStep without impact, FMI 3.0");
+const EVENTS_3: (&str, &str) = ("calls", "doStep without impact, FMI 3.0 with events");
 const STATE: (&str, &str) = ("calls", "get, set and free FMU state");
 const ROLLBACK: (&str, &str) = ("calls", "get FMU state, doStep, set, free");
 const CALLS: (&str, &str) = ("calls", "100 s of fig14 in calls");
@@ -52,6 +54,8 @@ const STAGES: &str = "fig14, Runge-Kutta stage by stage";
 #[rustfmt::skip] // one row each
 const ROWS: &[Row] = &[
     row("`fmi2DoStep`, 1 ms without an impact; a bouncing ball in C", STEP, "harvester", BALL, AtMost(1.5)),
+    row("`fmi3DoStep`, the same; that ball with the functions of FMI 3.0", STEP_3, "harvester", BALL, AtMost(1.5)),
+    row("the same for an importer that handles events and takes steps that end early; that ball, whose steps do not", EVENTS_3, "harvester", BALL, Nothing),
     row("`fmi2GetFMUstate`, `fmi2SetFMUstate`, `fmi2FreeFMUstate`; a bouncing ball in C", STATE, "harvester", BALL, AtMost(1.5)),
     row("the same with a step in between, which is taken back; a bouncing ball in C", ROLLBACK, "harvester", BALL, Nothing),
     row("100 s of Fig. 14 in 100,000 calls of `fmi2DoStep`; the paper's Runge-Kutta at 1e-5 s", CALLS, "doStep, 1 ms", RUNGE_KUTTA, Faster(50.0)),

@@ -1,7 +1,7 @@
 //! The functions without an instance that is live, or without a status.
 
-use super::super::ffi::{Fmu, array, check_name, fmi2FreeInstance, made, text};
 use crate::added::has_events;
+use crate::ffi::{Fmu, array, check_name, fmi2FreeInstance, made, text};
 use crate::instance::{Instance, Session};
 use crate::logger::{Callback, Logger};
 use crate::panics::guard;
