@@ -84,6 +84,24 @@ fn no_event_comes_unannounced_before_the_time_up_to_which_knots_are_known() {
     let noisy = Parameters { phase_noise: 2.0, ..base };
     let held = Parameters { noise_hold: 2e-2, ..noisy };
     let fine = Parameters { noise_hold: 1e-3, ..noisy };
+    // Its contacts take more steps than are followed at a time.
+    let mut hard = Parameters { contact_law: ContactLaw::Compliant, reaction: true, ..noisy };
+    for (name, value) in [
+        ("excitation.amplitude", 6.87),
+        ("excitation.frequency", 7.0),
+        ("excitation.noiseHold", 0.0614),
+        ("membrane.restitution", 0.79),
+        ("ball.mass", 0.006),
+        ("cylinder.length", 0.051),
+        ("initial.ballVelocity", 0.446),
+        ("cylinder.inclination", 1.22),
+        ("gravity", 9.81),
+        ("cylinder.suspensionStiffness", 5.0),
+        ("cylinder.suspensionDamping", 0.2),
+    ] {
+        let quantity = Parameters::TABLE.iter().find(|quantity| quantity.name == name).unwrap();
+        (quantity.set)(&mut hard, value);
+    }
     let times: Vec<f64> = (0..50).map(|k| 0.1 * f64::from(k)).collect();
     let values = times.iter().map(|time| 0.05 * (7.0 * time).sin()).collect();
     let recording = Recording::new(videg_model::ExcitationKind::Force, times, values).unwrap();
@@ -93,6 +111,7 @@ fn no_event_comes_unannounced_before_the_time_up_to_which_knots_are_known() {
         ("in blocks", fine, None),
         ("wiener", Parameters { noise_model: NoiseModel::Wiener, ..fine }, None),
         ("compliant", Parameters { contact_law: ContactLaw::Compliant, ..held }, None),
+        ("compliant, followed in parts", hard, None),
         ("recorded", fine, Some(&recording)),
         ("longer than a period", Parameters { noise_hold: 0.7, ..noisy }, None),
     ] {

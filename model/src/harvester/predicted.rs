@@ -39,10 +39,13 @@ impl Harvester {
     }
 
     /// Up to where [`Harvester::next_knot`] knows every knot, s, later than the present time: one excitation period ahead, with phase noise at
-    /// most 256 hold intervals, and where these are passed one by one the end of the present one.
+    /// most 256 hold intervals, and where these are passed one by one the end of the present one; during a contact as far as
+    /// it has been followed.
     pub fn known_until(&self) -> f64 {
         let period = 1.0 / self.parameters.frequency;
-        let ahead = self.time + self.noise.horizon(period);
+        let followed = self.motion.ball.contact().map_or(f64::INFINITY, Contact::end);
+        let followed = if followed > self.time { followed } else { f64::INFINITY };
+        let ahead = followed.min(self.time + self.noise.horizon(period));
         if self.noise.in_blocks() {
             return ahead;
         }
