@@ -10,7 +10,10 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import printLogMessage
+from fmpy.fmi2 import defaultCallbacks, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
+from fmpy.logging import addLoggerProxy
 from fmpy.validation import validate_fmu
 from lxml import etree
 
@@ -71,6 +74,9 @@ def logged_impacts(fmu: str, values: dict) -> tuple[list[tuple[float, str, float
         debug_logging=True,
         logger=lambda *line: lines.append(line[-1].decode()),
     )
+    # FMPy has one logger for the whole process, which is gone now: the one of before comes back.
+    defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
+    addLoggerProxy(ctypes.byref(defaultCallbacks))
     pattern = re.compile(r"impact \d+ at t = (\S+) s on the (\w+) membrane, relative speed ([^ ;]+) m/s")
     found = [pattern.match(line) for line in lines]
     return [(float(it[1]), it[2], float(it[3])) for it in found if it], any("rests" in line for line in lines)
