@@ -107,7 +107,10 @@ impl<'a> Slave<'a> {
     fn step(&mut self, time: f64, size: f64) -> Result<()> {
         let (mut event, mut terminate, mut early, mut last) = (true, true, true, f64::NAN);
         self.instance.do_step(time, size, true, &mut event, &mut terminate, &mut early, &mut last)?;
-        ensure!(!event && !terminate && !early && last == time + size, "the step from {time} s ended at {last} s");
+        ensure!(
+            !event && !terminate && !early && last.to_bits() == (time + size).to_bits(),
+            "the step from {time} s ended at {last} s"
+        );
         Ok(())
     }
 
