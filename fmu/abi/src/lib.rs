@@ -1,11 +1,13 @@
 //! The C types and function signatures of FMI 2.0 and, in [`fmi3`], of FMI 3.0. Those here are of FMI 2.0 (2.0.4, files `fmi2TypesPlatform.h`, `fmi2FunctionTypes.h`
 //! and `fmi2Functions.h`), spelled as the standard spells them.
 //!
-//! Nothing else lives here: the exporter and the importer meet on these types. Enumerations arrive from foreign
+//! Nothing else lives here, but what a packager asks a library ([`describe`]): exporter, importer and packager meet on these types.
+//! Enumerations arrive from foreign
 //! code, so they are plain integers with named constants: an unexpected value must not be undefined behaviour.
 #![no_std]
 #![allow(non_camel_case_types, non_snake_case, non_upper_case_globals)]
 
+pub mod describe;
 pub mod fmi3;
 
 use core::ffi::{c_char, c_double, c_int, c_uint, c_void};

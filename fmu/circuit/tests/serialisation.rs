@@ -20,16 +20,16 @@ fn restored(bytes: &[u8]) -> Result<Harvesting, StateError> {
 fn set(slave: &mut Harvesting, name: &str, value: f64) {
     let reference = value_reference(Harvesting::variables(), name).expect(name);
     match Harvesting::variables()[reference as usize].kind() {
-        Kind::Real(spec) => spec.set.expect("a setter")(slave, value),
+        Kind::Real(spec) => spec.set.expect("a setter").set(slave, value),
         #[allow(clippy::cast_possible_truncation)]
-        Kind::Enumeration(spec) => spec.set.expect("a setter")(slave, value as i32),
+        Kind::Enumeration(spec) => spec.set.expect("a setter").set(slave, value as i32),
         _ => unreachable!("{name}"),
     }
 }
 
 fn outputs(slave: &Harvesting) -> Vec<f64> {
     let outputs = Harvesting::variables().iter().filter(|v| v.causality() == Causality::Output);
-    outputs.map(|v| if let Kind::Real(spec) = v.kind() { (spec.get)(slave) } else { f64::NAN }).collect()
+    outputs.map(|v| if let Kind::Real(spec) = v.kind() { spec.get.get(slave) } else { f64::NAN }).collect()
 }
 
 /// Steps number `from` to `to` of 10 ms with pulsating capacitances; the outputs after each.

@@ -92,6 +92,9 @@ mod access;
 mod added;
 mod call_state;
 mod check;
+#[cfg(feature = "model-description")]
+#[doc(hidden)]
+pub mod describe;
 mod error;
 pub mod ffi;
 mod fingerprint;
@@ -120,6 +123,8 @@ pub use call_state::{CallState, Function, Interface, Legality};
 pub use check::TableError;
 pub use error::{Severity, SlaveError};
 pub use fmu_abi as abi;
+#[cfg(feature = "derive")]
+pub use fmu_derive::{Choice, Variables};
 pub use guid::Guid;
 pub use info::{DefaultExperiment, ModelInfo, Terminal};
 pub use logger::{LogCategory, Logger};
@@ -131,7 +136,7 @@ pub use serialize::{StateError, StateReader, StateWriter};
 pub use slave::{EventOutcome, Experiment, Slave, Stop};
 pub use standard::Standard;
 pub use variable::{
-    BooleanSpec, Causality, ClockInterval, ClockSpec, Declaration, EnumerationSpec, EnumerationType, GetDerivative,
-    Initial, IntegerSpec, IntegerWidth, Kind, PartialDerivative, ReadOnly, RealSpec, SetDerivative, Settable,
-    StringSpec, Variability, Variable, concat, value_reference,
+    BooleanSpec, Causality, Choice, ClockInterval, ClockSpec, Declaration, EnumerationSpec, EnumerationType,
+    GetDerivative, Getter, Initial, IntegerSpec, IntegerWidth, Kind, PartialDerivative, ReadOnly, RealSpec,
+    SetDerivative, Settable, Setter, StringSpec, Variability, Variable, concat, value_reference,
 };

@@ -14,6 +14,7 @@ macro_rules! export_fmu {
 
             $crate::abi::functions!([$crate::__export_fmu] $slave $(, $model_exchange)?);
             $crate::abi::functions3!([$crate::__export_fmu3] $slave);
+            $crate::__export_description!($slave);
         };
     };
 }
@@ -84,4 +85,31 @@ macro_rules! __export_fmu3 {
             }
         )*
     };
+}
+
+/// Defines the function that gives the model descriptions to a packager.
+#[cfg(feature = "model-description")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __export_description {
+    ($slave:ty) => {
+        #[unsafe(no_mangle)]
+        unsafe extern "C" fn fmu_export_describe(
+            resources: *const ::core::ffi::c_char,
+            icon: ::core::ffi::c_int,
+            take: $crate::abi::describe::Take,
+            context: *mut ::core::ffi::c_void,
+        ) {
+            // SAFETY: the packager keeps the contract.
+            unsafe { $crate::describe::fmu_export_describe::<$slave>(resources, icon, take, context) }
+        }
+    };
+}
+
+/// Nothing, in the library of an FMU.
+#[cfg(not(feature = "model-description"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __export_description {
+    ($slave:ty) => {};
 }

@@ -51,6 +51,17 @@ pub trait Slave: Clone + Send + 'static {
     /// Facts about the FMU as a whole.
     const INFO: ModelInfo;
 
+    /// For a table that is known at run time only: reads it from the folder `resources` of the unpacked FMU, if the importer names
+    /// one, for [`variables`](Self::variables) to give. Called before anything else at each instantiation, and when the FMU is packaged.
+    /// A library belongs to one FMU, so that what the first call has read counts.
+    ///
+    /// # Errors
+    /// If there is no table; the instantiation fails.
+    fn load_variables(resources: Option<&Path>) -> Result<(), SlaveError> {
+        let _ = resources;
+        Ok(())
+    }
+
     /// The variable table. The value reference of a variable is its index here.
     fn variables() -> &'static [Variable<Self>];
 

@@ -94,24 +94,24 @@ fn words(row: &V) -> String {
     let mut it = Sample { real: 7.5, rate: 0.5, integer: 7, on: false, text: "y".to_owned() };
     let (start, value) = match row.kind() {
         Kind::Real(spec) => {
-            spec.set.into_iter().for_each(|set| set(&mut it, 4.5));
-            (spec.start.map(|start| format!("{start:?}")), (spec.get)(&it).to_string())
+            spec.set.into_iter().for_each(|set| set.set(&mut it, 4.5));
+            (spec.start.map(|start| format!("{start:?}")), spec.get.get(&it).to_string())
         }
         Kind::Integer(spec) => {
-            spec.set.into_iter().for_each(|set| set(&mut it, 4));
-            (spec.start.map(|start| start.to_string()), (spec.get)(&it).to_string())
+            spec.set.into_iter().for_each(|set| set.set(&mut it, 4));
+            (spec.start.map(|start| start.to_string()), spec.get.get(&it).to_string())
         }
         Kind::Boolean(spec) => {
-            spec.set.into_iter().for_each(|set| set(&mut it, true));
-            (spec.start.map(|start| start.to_string()), (spec.get)(&it).to_string())
+            spec.set.into_iter().for_each(|set| set.set(&mut it, true));
+            (spec.start.map(|start| start.to_string()), spec.get.get(&it).to_string())
         }
         Kind::String(spec) => {
-            spec.set.into_iter().for_each(|set| set(&mut it, "z"));
-            (spec.start.map(str::to_owned), (spec.get)(&it))
+            spec.set.into_iter().for_each(|set| set.set(&mut it, "z".to_owned()));
+            (spec.start.map(str::to_owned), spec.get.get(&it))
         }
         Kind::Enumeration(spec) => {
-            spec.set.into_iter().for_each(|set| set(&mut it, 1));
-            (spec.start.and_then(|start| spec.of.item(start)).map(str::to_owned), (spec.get)(&it).to_string())
+            spec.set.into_iter().for_each(|set| set.set(&mut it, 1));
+            (spec.start.and_then(|start| spec.of.item(start)).map(str::to_owned), spec.get.get(&it).to_string())
         }
         Kind::Clock(_) => unreachable!("no clock among these"),
     };

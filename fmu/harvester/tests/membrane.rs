@@ -40,7 +40,7 @@ fn write(folder: &Path, name: &str, factor: f64) -> PathBuf {
 fn with(path: &Path) -> Harvester {
     let mut slave = Harvester::new();
     let Kind::String(file) = row("membrane.file").kind() else { unreachable!() };
-    file.set.expect("a setter")(&mut slave, path.to_str().expect("UTF-8"));
+    file.set.expect("a setter").set(&mut slave, path.to_str().expect("UTF-8").to_owned());
     choose(&mut slave, "membrane.law", 2);
     set(&mut slave, "initial.ballVelocity", 0.2);
     slave.update();

@@ -20,7 +20,7 @@ fn reference(name: &str) -> u32 {
 
 fn set_file(slave: &mut Harvester, path: &Path) {
     let Kind::String(file) = row("excitation.file").kind() else { unreachable!() };
-    file.set.expect("a setter")(slave, path.to_str().expect("UTF-8"));
+    file.set.expect("a setter").set(slave, path.to_str().expect("UTF-8").to_owned());
 }
 
 /// Writes samples so that they read back to the same bits.
@@ -290,7 +290,7 @@ fn a_step_over_more_samples_than_anybody_waits_for_is_discarded() {
     write(&path, ExcitationKind::Force, &[0.0, 1e-6, 3e-6], &[0.0, 1.0, 0.0]);
     let mut slave = under(&path);
     let Kind::Boolean(repeat) = row("excitation.fileRepeat").kind() else { unreachable!() };
-    repeat.set.unwrap()(&mut slave, true);
+    repeat.set.unwrap().set(&mut slave, true);
     slave.update();
     slave.initialize(&Logger::silent()).unwrap();
     let error = slave.do_step(0.0, 200.0, &Logger::silent()).unwrap_err().to_string();

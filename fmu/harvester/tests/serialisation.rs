@@ -75,7 +75,7 @@ fn a_contact_of_the_compliant_law_goes_on_to_the_last_bit() {
     choose(&mut original, "contact.law", 2);
     for name in ["contact.electrostaticFeedback", "contact.reaction"] {
         let Kind::Boolean(option) = row(name).kind() else { unreachable!() };
-        option.set.expect("a setter")(&mut original, true);
+        option.set.expect("a setter").set(&mut original, true);
     }
     original.update();
     original.initialize(&Logger::silent()).expect("valid parameters");

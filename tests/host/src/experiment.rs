@@ -49,7 +49,7 @@ fn real<S: Slave>(name: &str) -> &'static fmu_export::RealSpec<S> {
 fn set_inputs<S: Slave>(slave: &mut S, inputs: &Inputs, time: f64) {
     for (name, value) in inputs.at(time) {
         if let Some(set) = real::<S>(name).set {
-            set(slave, value);
+            set.set(slave, value);
         }
     }
 }
@@ -66,7 +66,7 @@ pub fn reference<S: Slave>(
     let (mut slave, log) = (S::new(), Logger::silent());
     for row in S::variables() {
         if let Kind::Real(fmu_export::RealSpec { start: Some(start), set: Some(set), .. }) = row.kind() {
-            set(&mut slave, *start);
+            set.set(&mut slave, *start);
         }
     }
     slave.setup_experiment(&Experiment { start_time: 0.0, stop_time: None, tolerance: None }, &log)?;
@@ -76,7 +76,7 @@ pub fn reference<S: Slave>(
     let mut text = outputs.iter().fold("\"time\"".to_owned(), |line, name| line + ",\"" + name + "\"");
     for step in 0..=steps {
         let time = f64::from(step) * size;
-        let values = outputs.iter().map(|name| (real::<S>(name).get)(&slave));
+        let values = outputs.iter().map(|name| real::<S>(name).get.get(&slave));
         let cells: Vec<_> = core::iter::once(time).chain(values).map(rounded).collect();
         let _ = write!(text, "\n{}", cells.join(","));
         if step < steps {

@@ -24,15 +24,15 @@ fn change<S>(row: &Variable<S>, slave: &mut S, size: f64, random: &mut Random) {
     let number = |random: &mut Random, bound| i32::try_from(random.below(bound)).unwrap_or_default();
     match row.kind() {
         Kind::Real(spec) => {
-            let (present, sign) = ((spec.get)(slave), random.between(-1.0, 1.0));
+            let (present, sign) = (spec.get.get(slave), random.between(-1.0, 1.0));
             let factor = (sign * random.pick(&[0.03, 0.3, 2.0])).exp();
             let may_be_zero = spec.min <= 0.0 && (present == 0.0 || random.once_in(4));
             let moved = if may_be_zero { sign * size } else { present * factor };
-            spec.set.expect("a setter")(slave, moved.clamp(spec.min, spec.max));
+            spec.set.expect("a setter").set(slave, moved.clamp(spec.min, spec.max));
         }
-        Kind::Integer(spec) => spec.set.expect("a setter")(slave, number(random, 1000).into()),
-        Kind::Boolean(spec) => spec.set.expect("a setter")(slave, random.once_in(2)),
-        Kind::Enumeration(spec) => spec.set.expect("a setter")(slave, 1 + number(random, spec.of.items.len())),
+        Kind::Integer(spec) => spec.set.expect("a setter").set(slave, number(random, 1000).into()),
+        Kind::Boolean(spec) => spec.set.expect("a setter").set(slave, random.once_in(2)),
+        Kind::Enumeration(spec) => spec.set.expect("a setter").set(slave, 1 + number(random, spec.of.items.len())),
         Kind::String(_) | Kind::Clock(_) => {}
     }
 }
@@ -41,7 +41,7 @@ fn change<S>(row: &Variable<S>, slave: &mut S, size: f64, random: &mut Random) {
 fn values<S: Slave>(slave: &S) -> Option<Vec<(&'static str, f64)>> {
     let table = S::variables();
     let value = |row: &'static Variable<S>| match row.kind() {
-        Kind::Real(spec) => (row.name(), (spec.get)(slave)),
+        Kind::Real(spec) => (row.name(), spec.get.get(slave)),
         _ => (row.name(), f64::NAN),
     };
     let values: Vec<_> = table.iter().filter(|row| row.is_initial_unknown(table)).map(value).collect();

@@ -70,7 +70,20 @@ pub(crate) fn made<S: Slave>(
 }
 
 fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<Instance<S>, String> {
-    let own_guid = fmu.guid::<S>(Standard::Fmi2).map_err(|e| format!("the FMU is faulty: {e}"))?;
+    // Few models read anything from there, so an odd location is worth a warning at most.
+    let resources = match request.resources.map(|uri| uri.map(resource_folder)) {
+        Some(Ok(Ok(folder))) => Some(folder),
+        Some(Ok(Err(e))) => {
+            logger.warning(format_args!("fmi2Instantiate: {e}"));
+            None
+        }
+        Some(Err(reason)) => {
+            logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}"));
+            None
+        }
+        None => None,
+    };
+    let own_guid = fmu.guid::<S>(Standard::Fmi2, resources.as_deref())?;
     check_name(request.name)?;
     let exchange = request.kind == fmi2ModelExchange;
     if !(exchange && S::INFO.model_exchange.is_some() || request.kind == fmi2CoSimulation) {
@@ -86,19 +99,6 @@ fn create<S: Slave>(fmu: &Fmu, request: &Request<'_>, logger: Logger) -> Result<
     if given != own_guid.to_string() {
         return Err(format!("fmuGUID = {given:?}; this FMU has {own_guid}"));
     }
-    // Few models read anything from there, so an odd location is worth a warning at most.
-    let resources = match request.resources.map(|uri| uri.map(resource_folder)) {
-        Some(Ok(Ok(folder))) => Some(folder),
-        Some(Ok(Err(e))) => {
-            logger.warning(format_args!("fmi2Instantiate: {e}"));
-            None
-        }
-        Some(Err(reason)) => {
-            logger.warning(format_args!("fmi2Instantiate: fmuResourceLocation: {reason}"));
-            None
-        }
-        None => None,
-    };
     // There is no status to carry it, so the warning must not colour the next call.
     logger.take_warned();
     Ok(Instance::new(Session::new(Standard::Fmi2, exchange), resources, logger, own_guid))

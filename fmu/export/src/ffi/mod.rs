@@ -24,7 +24,7 @@ pub use functions::*;
 pub use instantiate::*;
 
 use crate::call_state::Row;
-use crate::check::{TableError, check_fmu};
+use crate::check::check_fmu;
 use crate::error::CallError;
 use crate::guid::Guid;
 use crate::instance::{Call, Instance};
@@ -36,6 +36,7 @@ use core::mem::MaybeUninit;
 use core::ptr::without_provenance_mut;
 use core::sync::atomic::{AtomicBool, Ordering};
 use fmu_abi::{fmi2Component, fmi2Error, fmi2FMUstate, fmi2Status};
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// What is worked out once per FMU and process: the GUID, once the table is known to be sound. It takes no memory that an
@@ -52,12 +53,14 @@ impl Fmu {
         Self { fmi2: OnceLock::new(), fmi3: OnceLock::new() }
     }
 
-    pub(crate) fn guid<S: Slave>(&self, standard: Standard) -> Result<Guid, TableError> {
+    /// The GUID, or why there is no FMU.
+    pub(crate) fn guid<S: Slave>(&self, standard: Standard, resources: Option<&Path>) -> Result<Guid, String> {
+        S::load_variables(resources).map_err(|e| format!("there are no variables: {e}"))?;
         let guid = if standard == Standard::Fmi2 { &self.fmi2 } else { &self.fmi3 };
         if let Some(guid) = guid.get() {
             return Ok(*guid);
         }
-        check_fmu::<S>()?;
+        check_fmu::<S>().map_err(|e| format!("the FMU is faulty: {e}"))?;
         Ok(*guid.get_or_init(|| Guid::of::<S>(standard)))
     }
 }

@@ -40,7 +40,8 @@ unsafe fn instantiate<S: Slave>(
         let callback = request.log.map_or(Callback::None, Callback::Fmi3);
         let logger = |logging_on| Logger::new(callback, request.environment, name, logging_on);
         made(request.function, &logger(true), || {
-            let own = fmu.guid::<S>(Standard::Fmi3).map_err(|e| format!("the FMU is faulty: {e}"))?;
+            let folder = resources.ok().map(PathBuf::from);
+            let own = fmu.guid::<S>(Standard::Fmi3, folder.as_deref())?;
             check_name(name)?;
             let given = token.map_err(|reason| format!("instantiationToken: {reason}"))?;
             if given != own.to_string() {
@@ -48,16 +49,13 @@ unsafe fn instantiate<S: Slave>(
             }
             let logger = logger(request.logging_on);
             let session = session(&logger)?;
-            let resources = match resources {
-                Ok(path) => Some(PathBuf::from(path)),
-                Err(_) if request.resources.is_null() => None,
-                Err(reason) => {
-                    logger.warning(format_args!("{}: resourcePath: {reason}", request.function));
-                    None
-                }
-            };
+            if let Err(reason) = resources
+                && !request.resources.is_null()
+            {
+                logger.warning(format_args!("{}: resourcePath: {reason}", request.function));
+            }
             logger.take_warned(); // there is no status to carry it
-            Ok(Instance::<S>::new(session, resources, logger, own))
+            Ok(Instance::<S>::new(session, folder, logger, own))
         })
     })
 }

@@ -53,7 +53,7 @@ impl<S: Slave> Instance<S> {
         self.core.ticking = false;
         for variable in S::variables() {
             if let Kind::Clock(ClockSpec { set: Some(set), .. }) = variable.kind() {
-                set(&mut self.core.model, false);
+                set.set(&mut self.core.model, false);
             }
         }
     }
@@ -64,7 +64,7 @@ impl<S: Slave> Instance<S> {
         for (k, &reference) in references.iter().enumerate() {
             let (variable, clock) = clock::<S>(reference)?;
             let may_tick = self.core.ticking || variable.causality() == Causality::Input;
-            write(k, may_tick && (clock.get)(&self.core.model));
+            write(k, may_tick && clock.get.get(&self.core.model));
         }
         Ok(())
     }
@@ -80,13 +80,13 @@ impl<S: Slave> Instance<S> {
                 bound: bound.to_owned(),
             };
             let set = clock.set.ok_or_else(|| refuse("an output clock ticks by itself"))?;
-            if !ticks && (clock.get)(&self.core.model) {
+            if !ticks && clock.get.get(&self.core.model) {
                 return Err(refuse("it ticks, and cannot be deactivated before the event is over"));
             }
             checked.push((set, ticks));
         }
         for (set, ticks) in checked {
-            set(&mut self.core.model, ticks);
+            set.set(&mut self.core.model, ticks);
         }
         Ok(())
     }

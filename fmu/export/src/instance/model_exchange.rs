@@ -40,7 +40,7 @@ fn check_states<S: Slave>(states: &[f64]) -> Call {
 }
 
 fn real<M>(variable: &Variable<M>, model: &M) -> f64 {
-    if let Kind::Real(spec) = variable.kind() { (spec.get)(model) } else { f64::NAN }
+    if let Kind::Real(spec) = variable.kind() { spec.get.get(model) } else { f64::NAN }
 }
 
 impl<S: Slave> Instance<S> {

@@ -47,7 +47,7 @@ impl<M: 'static> Transfer<M> for AsReal {
 
     fn get(variable: &Variable<M>, model: &M) -> Option<f64> {
         match &variable.kind {
-            Kind::Real(spec) => Some((spec.get)(model)),
+            Kind::Real(spec) => Some(spec.get.get(model)),
             _ => None,
         }
     }
@@ -61,7 +61,7 @@ impl<M: 'static> Transfer<M> for AsReal {
 
     fn set(variable: &Variable<M>, model: &mut M, value: f64) {
         if let Kind::Real(RealSpec { set: Some(set), .. }) = variable.kind {
-            set(model, value);
+            set.set(model, value);
         }
     }
 }
@@ -112,8 +112,8 @@ trait Whole: Copy + ToString {
 impl<M> Kind<M> {
     fn whole(&self, model: &M) -> Option<i64> {
         match self {
-            Self::Integer(spec) => Some((spec.get)(model)),
-            Self::Enumeration(spec) => Some((spec.get)(model).into()),
+            Self::Integer(spec) => Some(spec.get.get(model)),
+            Self::Enumeration(spec) => Some(spec.get.get(model).into()),
             _ => None,
         }
     }
@@ -135,8 +135,8 @@ impl<M> Kind<M> {
 
     fn set_whole(&self, model: &mut M, value: i64) {
         match self {
-            Self::Integer(IntegerSpec { set: Some(set), .. }) => set(model, value),
-            Self::Enumeration(EnumerationSpec { set: Some(set), .. }) => set(model, i32::of(value)),
+            Self::Integer(IntegerSpec { set: Some(set), .. }) => set.set(model, value),
+            Self::Enumeration(EnumerationSpec { set: Some(set), .. }) => set.set(model, i32::of(value)),
             _ => {}
         }
     }
@@ -217,7 +217,7 @@ impl<M: 'static> Transfer<M> for AsBoolean {
 
     fn get(variable: &Variable<M>, model: &M) -> Option<fmi2Boolean> {
         match &variable.kind {
-            Kind::Boolean(spec) => Some(fmi2Boolean::from((spec.get)(model))),
+            Kind::Boolean(spec) => Some(fmi2Boolean::from(spec.get.get(model))),
             _ => None,
         }
     }
@@ -228,7 +228,7 @@ impl<M: 'static> Transfer<M> for AsBoolean {
 
     fn set(variable: &Variable<M>, model: &mut M, value: bool) {
         if let Kind::Boolean(BooleanSpec { set: Some(set), .. }) = variable.kind {
-            set(model, value);
+            set.set(model, value);
         }
     }
 }
@@ -241,7 +241,7 @@ impl<M: 'static> Transfer<M> for AsString {
 
     fn get(variable: &Variable<M>, model: &M) -> Option<String> {
         match &variable.kind {
-            Kind::String(spec) => Some((spec.get)(model)),
+            Kind::String(spec) => Some(spec.get.get(model)),
             _ => None,
         }
     }
@@ -260,7 +260,7 @@ impl<M: 'static> Transfer<M> for AsString {
         if let Kind::String(StringSpec { set: Some(set), .. }) = variable.kind
             && let Ok(value) = value
         {
-            set(model, value);
+            set.set(model, value.to_owned());
         }
     }
 }

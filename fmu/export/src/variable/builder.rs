@@ -6,8 +6,8 @@
 //! output that can be written.
 
 use super::kind::{
-    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, IntegerSpec, IntegerWidth, Kind,
-    PartialDerivative, RealSpec, StringSpec,
+    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, Getter, IntegerSpec, IntegerWidth, Kind,
+    PartialDerivative, RealSpec, Setter, StringSpec,
 };
 use super::{Causality, Variability, Variable};
 use core::marker::PhantomData;
@@ -83,7 +83,7 @@ const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
         max: f64::INFINITY,
         nominal: None,
         infinity_allowed: false,
-        get: |_| f64::NAN,
+        get: Getter::Field(|_| f64::NAN),
         set: None,
         input_derivatives: None,
         output_derivatives: None,
@@ -93,19 +93,19 @@ const fn real<M>(unit: &'static str, start: Option<f64>) -> RealSpec<M> {
 
 const fn integer<M>(start: Option<i64>) -> IntegerSpec<M> {
     let (min, max) = IntegerWidth::Int32.bounds();
-    IntegerSpec { width: IntegerWidth::Int32, start, min, max, get: |_| 0, set: None }
+    IntegerSpec { width: IntegerWidth::Int32, start, min, max, get: Getter::Field(|_| 0), set: None }
 }
 
 const fn boolean<M>(start: Option<bool>) -> BooleanSpec<M> {
-    BooleanSpec { start, get: |_| false, set: None }
+    BooleanSpec { start, get: Getter::Field(|_| false), set: None }
 }
 
 const fn text<M>(start: Option<&'static str>) -> StringSpec<M> {
-    StringSpec { start, longest: usize::MAX, get: |_| String::new(), set: None }
+    StringSpec { start, longest: usize::MAX, get: Getter::Field(|_| String::new()), set: None }
 }
 
 const fn enumeration<M>(of: &'static EnumerationType, start: Option<i32>) -> EnumerationSpec<M> {
-    EnumerationSpec { of, start, get: |_| 0, set: None }
+    EnumerationSpec { of, start, get: Getter::Field(|_| 0), set: None }
 }
 
 /// Constructors of Real variables. `unit` is `"1"` where there is none.
@@ -206,7 +206,7 @@ impl<M> Variable<M> {
     /// A clock that the model makes tick at events: [`Slave::do_step_to_event`](crate::Slave::do_step_to_event) or
     /// [`Slave::handle_events`](crate::Slave::handle_events) tell of one, and the getter says whether this clock ticks there.
     pub const fn output_clock(name: &'static str, description: &'static str) -> Declaration<ClockSpec<M>, ReadOnly> {
-        let spec = ClockSpec { interval: ClockInterval::Triggered, get: |_| false, set: None };
+        let spec = ClockSpec { interval: ClockInterval::Triggered, get: Getter::Field(|_| false), set: None };
         declare(DISCRETE_OUTPUT, name, description, spec)
     }
 
@@ -217,7 +217,7 @@ impl<M> Variable<M> {
         interval: ClockInterval,
         description: &'static str,
     ) -> Declaration<ClockSpec<M>, Settable> {
-        declare(DISCRETE_INPUT, name, description, ClockSpec { interval, get: |_| false, set: None })
+        declare(DISCRETE_INPUT, name, description, ClockSpec { interval, get: Getter::Field(|_| false), set: None })
     }
 }
 
@@ -389,10 +389,24 @@ impl<M> Declaration<StringSpec<M>, Settable> {
 }
 
 macro_rules! finishers {
-    ($($spec:ident $kind:ident $get:ty, $set:ty;)*) => {$(
+    ($($spec:ident $kind:ident $value:ty;)*) => {$(
         impl<M> Declaration<$spec<M>, Settable> {
             /// Finishes the row with its accessors.
-            pub const fn access(mut self, get: fn(&M) -> $get, set: fn(&mut M, $set)) -> Variable<M> {
+            pub const fn access(self, get: fn(&M) -> $value, set: fn(&mut M, $value)) -> Variable<M> {
+                self.accessed(Getter::Field(get), Setter::Field(set))
+            }
+
+            /// The same by a number: for a table that is known at run time only.
+            pub const fn access_element(
+                self,
+                number: usize,
+                get: fn(&M, usize) -> $value,
+                set: fn(&mut M, usize, $value),
+            ) -> Variable<M> {
+                self.accessed(Getter::Element(get, number), Setter::Element(set, number))
+            }
+
+            const fn accessed(mut self, get: Getter<M, $value>, set: Setter<M, $value>) -> Variable<M> {
                 self.spec.get = get;
                 self.spec.set = Some(set);
                 let kind = Kind::$kind(self.spec);
@@ -402,7 +416,16 @@ macro_rules! finishers {
 
         impl<M> Declaration<$spec<M>, ReadOnly> {
             /// Finishes the row with its getter.
-            pub const fn get(mut self, get: fn(&M) -> $get) -> Variable<M> {
+            pub const fn get(self, get: fn(&M) -> $value) -> Variable<M> {
+                self.read(Getter::Field(get))
+            }
+
+            /// The same by a number: for a table that is known at run time only.
+            pub const fn get_element(self, number: usize, get: fn(&M, usize) -> $value) -> Variable<M> {
+                self.read(Getter::Element(get, number))
+            }
+
+            const fn read(mut self, get: Getter<M, $value>) -> Variable<M> {
                 self.spec.get = get;
                 let kind = Kind::$kind(self.spec);
                 self.finish(kind)
@@ -411,10 +434,10 @@ macro_rules! finishers {
     )*};
 }
 finishers! {
-    RealSpec Real f64, f64;
-    IntegerSpec Integer i64, i64;
-    BooleanSpec Boolean bool, bool;
-    StringSpec String String, &str;
-    EnumerationSpec Enumeration i32, i32;
-    ClockSpec Clock bool, bool;
+    RealSpec Real f64;
+    IntegerSpec Integer i64;
+    BooleanSpec Boolean bool;
+    StringSpec String String;
+    EnumerationSpec Enumeration i32;
+    ClockSpec Clock bool;
 }

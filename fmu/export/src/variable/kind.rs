@@ -19,6 +19,44 @@ pub enum Kind<M: 'static> {
     Clock(ClockSpec<M>),
 }
 
+/// How a variable is read.
+pub enum Getter<M: 'static, T: 'static> {
+    /// By a function of its own.
+    Field(fn(&M) -> T),
+    /// By its number: a function for all rows of a table that is known at run time only.
+    Element(fn(&M, usize) -> T, usize),
+}
+
+impl<M, T> Getter<M, T> {
+    /// Reads the model.
+    #[inline]
+    pub fn get(self, model: &M) -> T {
+        match self {
+            Self::Field(get) => get(model),
+            Self::Element(get, number) => get(model, number),
+        }
+    }
+}
+
+/// How a variable is written.
+pub enum Setter<M: 'static, T: 'static> {
+    /// By a function of its own.
+    Field(fn(&mut M, T)),
+    /// By its number, as [`Getter::Element`].
+    Element(fn(&mut M, usize, T), usize),
+}
+
+impl<M, T> Setter<M, T> {
+    /// Writes the model.
+    #[inline]
+    pub fn set(self, model: &mut M, value: T) {
+        match self {
+            Self::Field(set) => set(model, value),
+            Self::Element(set, number) => set(model, number, value),
+        }
+    }
+}
+
 /// Sets a time derivative of an input: model, order from 1, value.
 pub type SetDerivative<M> = fn(&mut M, u32, f64);
 
@@ -45,9 +83,9 @@ pub struct RealSpec<M: 'static> {
     /// Whether a Set may give an infinite value. NaN is refused always.
     pub infinity_allowed: bool,
     /// Reads the model.
-    pub get: fn(&M) -> f64,
+    pub get: Getter<M, f64>,
     /// Writes the model.
-    pub set: Option<fn(&mut M, f64)>,
+    pub set: Option<Setter<M, f64>>,
     /// Highest order and setter of the time derivatives of an input.
     pub input_derivatives: Option<(u32, SetDerivative<M>)>,
     /// Highest order and getter of the time derivatives of an output.
@@ -76,9 +114,9 @@ pub struct IntegerSpec<M: 'static> {
     /// Upper bound; that of its type if there is no other.
     pub max: i64,
     /// Reads the model.
-    pub get: fn(&M) -> i64,
+    pub get: Getter<M, i64>,
     /// Writes the model.
-    pub set: Option<fn(&mut M, i64)>,
+    pub set: Option<Setter<M, i64>>,
 }
 
 macro_rules! integer_widths {
@@ -122,9 +160,9 @@ pub struct ClockSpec<M: 'static> {
     /// When it ticks.
     pub interval: ClockInterval,
     /// Whether it ticks at the present event.
-    pub get: fn(&M) -> bool,
+    pub get: Getter<M, bool>,
     /// Makes it tick, or no longer. An input has one.
-    pub set: Option<fn(&mut M, bool)>,
+    pub set: Option<Setter<M, bool>>,
 }
 
 /// When a clock ticks.
@@ -146,9 +184,9 @@ pub struct BooleanSpec<M: 'static> {
     /// Start value; none if the model calculates it.
     pub start: Option<bool>,
     /// Reads the model.
-    pub get: fn(&M) -> bool,
+    pub get: Getter<M, bool>,
     /// Writes the model.
-    pub set: Option<fn(&mut M, bool)>,
+    pub set: Option<Setter<M, bool>>,
 }
 
 /// Attributes and accessors of a String.
@@ -158,9 +196,9 @@ pub struct StringSpec<M: 'static> {
     /// Most bytes that a Set may give; `usize::MAX` if there is no bound.
     pub longest: usize,
     /// Reads the model.
-    pub get: fn(&M) -> String,
+    pub get: Getter<M, String>,
     /// Writes the model.
-    pub set: Option<fn(&mut M, &str)>,
+    pub set: Option<Setter<M, String>>,
 }
 
 /// Attributes and accessors of an enumeration. The accessors speak in item numbers, from 1.
@@ -170,9 +208,9 @@ pub struct EnumerationSpec<M: 'static> {
     /// Start value; none if the model calculates it.
     pub start: Option<i32>,
     /// Reads the model.
-    pub get: fn(&M) -> i32,
+    pub get: Getter<M, i32>,
     /// Writes the model; never called with a number that is not an item.
-    pub set: Option<fn(&mut M, i32)>,
+    pub set: Option<Setter<M, i32>>,
 }
 
 /// An enumeration type. Its items are numbered from 1 in the order given.
@@ -194,18 +232,31 @@ impl EnumerationType {
     }
 }
 
+/// A type of a model whose values are the items of an enumeration. With the feature `derive`, `#[derive(Choice)]` makes an `enum`
+/// one: name and documentation of each item are those of the enumeration.
+pub trait Choice: Sized {
+    /// The enumeration.
+    const TYPE: &'static EnumerationType;
+
+    /// The number of an item, from 1.
+    fn number(&self) -> i32;
+
+    /// The item with this number, if there is one.
+    fn of(number: i32) -> Option<Self>;
+}
+
 // Derived impls would ask for `M: Clone`, which fn pointers do not need.
 macro_rules! copy {
-    ($($name:ident)*) => {$(
-        impl<M> Clone for $name<M> {
+    ($($name:ident<M $(, $value:ident)?>)*) => {$(
+        impl<M $(, $value)?> Clone for $name<M $(, $value)?> {
             fn clone(&self) -> Self {
                 *self
             }
         }
-        impl<M> Copy for $name<M> {}
+        impl<M $(, $value)?> Copy for $name<M $(, $value)?> {}
     )*};
 }
-copy!(Kind RealSpec IntegerSpec BooleanSpec StringSpec EnumerationSpec ClockSpec);
+copy!(Kind<M> RealSpec<M> IntegerSpec<M> BooleanSpec<M> StringSpec<M> EnumerationSpec<M> ClockSpec<M> Getter<M, T> Setter<M, T>);
 
 impl<M> Kind<M> {
     /// The name of the type, as the XML element of the `modelDescription.xml` of FMI 2.0.
@@ -237,18 +288,14 @@ impl<M> Kind<M> {
             Self::Integer(s) => apply(s.start, s.set, model),
             Self::Boolean(s) => apply(s.start, s.set, model),
             Self::Enumeration(s) => apply(s.start, s.set, model),
-            Self::String(s) => {
-                if let (Some(start), Some(set)) = (s.start, s.set) {
-                    set(model, start);
-                }
-            }
+            Self::String(s) => apply(s.start.map(str::to_owned), s.set, model),
             Self::Clock(_) => {}
         }
     }
 }
 
-fn apply<M, T>(start: Option<T>, set: Option<fn(&mut M, T)>, model: &mut M) {
-    if let (Some(start), Some(set)) = (start, set) {
-        set(model, start);
+fn apply<M, T>(start: Option<T>, setter: Option<Setter<M, T>>, model: &mut M) {
+    if let (Some(start), Some(setter)) = (start, setter) {
+        setter.set(model, start);
     }
 }

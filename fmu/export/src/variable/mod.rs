@@ -18,8 +18,8 @@ pub(crate) use assign::{
 };
 pub use builder::{Declaration, ReadOnly, Settable};
 pub use kind::{
-    BooleanSpec, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, GetDerivative, IntegerSpec, IntegerWidth,
-    Kind, PartialDerivative, RealSpec, SetDerivative, StringSpec,
+    BooleanSpec, Choice, ClockInterval, ClockSpec, EnumerationSpec, EnumerationType, GetDerivative, Getter,
+    IntegerSpec, IntegerWidth, Kind, PartialDerivative, RealSpec, SetDerivative, Setter, StringSpec,
 };
 
 use crate::standard::Standard;

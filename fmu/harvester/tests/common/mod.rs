@@ -39,7 +39,7 @@ pub fn initialized(reals: &[(&str, f64)]) -> Harvester {
 
 pub fn set(slave: &mut Harvester, name: &str, value: f64) {
     match row(name).kind() {
-        Kind::Real(spec) => spec.set.expect("a setter")(slave, value),
+        Kind::Real(spec) => spec.set.expect("a setter").set(slave, value),
         _ => unreachable!("{name} is no Real"),
     }
 }
@@ -47,18 +47,18 @@ pub fn set(slave: &mut Harvester, name: &str, value: f64) {
 /// Sets an item of an enumeration.
 pub fn choose(slave: &mut Harvester, name: &str, item: i32) {
     match row(name).kind() {
-        Kind::Enumeration(spec) => spec.set.expect("a setter")(slave, item),
+        Kind::Enumeration(spec) => spec.set.expect("a setter").set(slave, item),
         _ => unreachable!("{name} is no enumeration"),
     }
 }
 
 pub fn get(slave: &Harvester, name: &str) -> f64 {
     match row(name).kind() {
-        Kind::Real(spec) => (spec.get)(slave),
-        Kind::Integer(spec) => i32::try_from((spec.get)(slave)).expect("a small number").into(),
-        Kind::Boolean(spec) => f64::from(u8::from((spec.get)(slave))),
-        Kind::Clock(spec) => f64::from(u8::from((spec.get)(slave))),
-        Kind::Enumeration(spec) => f64::from((spec.get)(slave)),
+        Kind::Real(spec) => spec.get.get(slave),
+        Kind::Integer(spec) => i32::try_from(spec.get.get(slave)).expect("a small number").into(),
+        Kind::Boolean(spec) => f64::from(u8::from(spec.get.get(slave))),
+        Kind::Clock(spec) => f64::from(u8::from(spec.get.get(slave))),
+        Kind::Enumeration(spec) => f64::from(spec.get.get(slave)),
         Kind::String(_) => unreachable!("{name} is a text"),
     }
 }

@@ -1,0 +1,129 @@
+//! The table of a model.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{Data, DeriveInput, Error, Fields, Result};
+
+use crate::field;
+
+/// The associated constant `VARIABLES`: a row for each field that has an attribute, in the order of the fields.
+pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
+    let name = &input.ident;
+    let fields = match &input.data {
+        Data::Struct(data) => match &data.fields {
+            Fields::Named(fields) => &fields.named,
+            _ => return Err(Error::new_spanned(name, "a model is a struct whose fields have names")),
+        },
+        _ => return Err(Error::new_spanned(name, "a model is a struct")),
+    };
+    if let Some(generic) = input.generics.params.first() {
+        return Err(Error::new_spanned(generic, "a model has no generic parameters"));
+    }
+    let rows = fields.iter().filter_map(|it| field::row(it).transpose()).collect::<Result<Vec<_>>>()?;
+    let count = rows.len();
+    Ok(quote! {
+        // The table sees to it that values are within their types.
+        #[allow(
+            clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_lossless, clippy::unnecessary_cast,
+            trivial_numeric_casts
+        )]
+        impl #name {
+            /// The variables in the order of the fields; the value reference of each is its place here.
+            pub(crate) const VARIABLES: [::fmu_export::Variable<Self>; #count] = [#(#rows),*];
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use syn::parse_quote;
+
+    use super::*;
+
+    fn refused(input: &DeriveInput) -> String {
+        expand(input).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_no_model_or_variable_is_refused_with_its_reason() {
+        let of = |field: TokenStream| -> String { refused(&parse_quote!(struct Model { #field })) };
+        for (field, said) in [
+            (quote!(#[input] #[output] x: f64), "a field is one variable"),
+            (quote!(#[input] x: [f64; 2]), "no variable of FMI has this type"),
+            (quote!(#[input] x: usize), "no variable of FMI has this type"),
+            (quote!(#[input(unit = "s")] x: i32), "only f64 and f32 have a unit"),
+            (quote!(#[input(unit = "s", unit = "m")] x: f64), "unit is given twice"),
+            (quote!(#[input(max = 1.0, max = 2.0)] x: f64), "max is given twice"),
+            (quote!(#[input(unit = 1)] x: f64), "expected string literal"),
+            (quote!(#[input(unit =)] x: f64), "a value is missing"),
+            (quote!(#[input = "s"] x: f64), "settings stand in parentheses"),
+            (quote!(#[output(start = 1.0)] x: f64), "no output has a start value: the model calculates it"),
+            (quote!(#[output_clock] x: f64), "a clock is a bool: whether it ticks"),
+            (quote!(#[input(interval = 1.0)] x: bool), "only an input clock has an interval"),
+            (quote!(#[calculated_parameter] x: bool), "a calculated parameter is a f64 or f32"),
+        ] {
+            assert_eq!(of(field.clone()), said, "{field}");
+        }
+        assert_eq!(
+            refused(&parse_quote!(
+                enum Model {}
+            )),
+            "a model is a struct"
+        );
+        assert_eq!(
+            refused(&parse_quote!(
+                struct Model(f64);
+            )),
+            "a model is a struct whose fields have names"
+        );
+        assert_eq!(
+            refused(&parse_quote!(
+                struct Model<T> {
+                    x: T,
+                }
+            )),
+            "a model has no generic parameters"
+        );
+    }
+
+    #[test]
+    fn what_is_no_choice_is_refused_with_its_reason() {
+        let refused = |input: DeriveInput| crate::choice::expand(&input).unwrap_err().to_string();
+        assert_eq!(
+            refused(parse_quote!(
+                struct Law {}
+            )),
+            "a choice is an enum"
+        );
+        assert_eq!(
+            refused(parse_quote!(
+                enum Law {}
+            )),
+            "a choice has at least one item"
+        );
+        assert_eq!(
+            refused(parse_quote!(
+                enum Law {
+                    A(f64),
+                }
+            )),
+            "an item of a choice has no fields"
+        );
+        assert_eq!(
+            refused(parse_quote!(
+                enum Law {
+                    A = 3,
+                }
+            )),
+            "items are numbered from 1 in their order"
+        );
+        assert_eq!(
+            refused(parse_quote!(
+                enum Law<T> {
+                    A,
+                }
+            )),
+            "a choice has no generic parameters"
+        );
+    }
+}
