@@ -26,7 +26,7 @@ export VIDEG_ALL_TOOLS=1
 export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
 
 # What the stage slow is made of.
-readonly SLOW_STAGES=(unit-slow scale conformance browser book python)
+readonly SLOW_STAGES=(unit-slow scale conformance exporter browser book python)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
 readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers miri release coverage)
 
@@ -47,6 +47,8 @@ CI runs this one, too:
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
                on how masters converge and circuits agree
+  exporter     the README of fmu-export, followed outside of the source tree with the packaged crates, ends with an FMU that FMPy runs;
+               so do the exporter's examples
   browser      reports and the page of `videg explore` in headless Chromium: drawn, without errors or requests, on a phone and a
                desktop, on paper; the page has the numbers of the command line; screenshots go to target/screenshots
   book         every code block of the book and the README runs and prints what is shown there; mdBook builds
@@ -287,6 +289,11 @@ stage_conformance() {
     run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling tests/netlists
     run "$VENV/bin/python" tests/conformance
     run "$VENV/bin/python" tests/coupling
+}
+
+stage_exporter() {
+    need_python
+    run "$VENV/bin/python" -m pytest tests/exporter
 }
 
 stage_browser() {

@@ -10,7 +10,7 @@ use std::path::Path;
 use sources::{Imports, root_module};
 
 /// Packages of the workspace, each with those of ours that it may import.
-const PACKAGES: [(&str, &[&str]); 17] = [
+const PACKAGES: [(&str, &[&str]); 20] = [
     ("model", &[]),
     ("circuit", &[]),
     ("coupled", &["circuit", "model"]),
@@ -20,13 +20,16 @@ const PACKAGES: [(&str, &[&str]); 17] = [
     ("system", &[]),
     ("report", &["system"]),
     ("fmu/abi", &[]),
-    ("fmu/export", &["fmu/abi"]),
+    ("fmu/derive", &[]),
+    ("fmu/export", &["fmu/abi", "fmu/derive"]),
     ("fmu/import", &["fmu/abi", "input", "system"]),
+    ("fmu/package", &["fmu/abi", "fmu/import", "input", "system"]),
+    ("fmu/cargo", &["fmu/package"]),
     ("fmu/harvester", &["data", "fmu/export", "model"]),
     ("fmu/circuit", &["fmu/export", "circuit"]),
     ("explorer", &["circuit", "coupled", "data", "model", "spice"]),
     ("explorer/bundle", &[]),
-    (".", &["circuit", "coupled", "data", "fmu/import", "input", "model", "report", "spice", "system"]),
+    (".", &["circuit", "coupled", "data", "fmu/import", "fmu/package", "input", "model", "report", "spice", "system"]),
     ("python", &[".", "fmu/import", "model"]),
 ];
 

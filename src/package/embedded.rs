@@ -5,9 +5,10 @@
 
 use std::path::Path;
 
-use super::entries::Entries;
+use fmu_package::{Entries, Fmu};
+
 use super::error::{PackageError, Result};
-use super::{AddedBinary, FMUS, FmuPackage, Options, file_name, locate, resources};
+use super::{AddedBinary, FMUS, FmuPackage, Options, add_resources, added, locate};
 
 /// Bytes of an archive in the folder that `VIDEG_FMUS` named when the program was compiled.
 #[cfg(feature = "embedded-fmus")]
@@ -68,34 +69,35 @@ pub(super) fn with_added(archives: [&[u8]; FMUS.len()], options: &Options) -> Re
     let parts = FMUS.iter().zip(archives).zip(DESCRIPTIONS);
     parts
         .map(|((fmu, archive), description)| {
-            let mut entries = entries(fmu, archive, description, added)?;
-            resources::add(fmu, resources, &mut entries)?;
+            let mut whole = whole(fmu, archive, description, added)?;
+            add_resources(fmu, resources, &mut whole)?;
             // The same entries, packed again, may get other bytes.
-            if added.is_empty() && resources.is_empty() {
-                Ok(archive.to_vec())
-            } else {
-                entries.packed(&file_name(fmu))
-            }
+            if added.is_empty() && resources.is_empty() { Ok(archive.to_vec()) } else { Ok(whole.packed()?) }
         })
         .collect()
 }
 
-fn entries(fmu: &FmuPackage, archive: &[u8], description: &str, added: &[AddedBinary]) -> Result<Entries> {
+/// The FMU in an archive inside the program, with the added libraries.
+fn whole(fmu: &FmuPackage, archive: &[u8], description: &str, added: &[AddedBinary]) -> Result<Fmu> {
     let refuse = |why: String| PackageError::Embedded { identifier: fmu.identifier, why };
-    let mut entries = Entries::read(archive).map_err(|cause| refuse(format!("is broken: {cause}")))?;
+    let entries = Entries::read(archive).map_err(|cause| refuse(format!("is broken: {cause}")))?;
     if entries.bytes("modelDescription.xml") != Some(description.as_bytes()) {
         return Err(refuse("has another model description; package the FMUs and compile videg again".to_owned()));
     }
-    for binary in added.iter().filter(|binary| binary.identifier == fmu.identifier) {
-        entries.add_file(&binary.platform.entry(fmu.identifier), &binary.path)?;
+    let mut whole = Fmu::new(description, "modelDescription.xml")?;
+    for name in entries.names() {
+        whole.entries_mut().add(name, entries.bytes(name).unwrap_or_default());
     }
-    Ok(entries)
+    for binary in added::of(fmu.identifier, added) {
+        whole.add_library_file(binary.platform, &binary.path)?;
+    }
+    Ok(whole)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::package::Platform;
+    use fmu_package::Platform;
 
     /// A library that does not go through a packer in one piece.
     fn library() -> Vec<u8> {
@@ -136,8 +138,10 @@ mod tests {
         let archive = packaged(DESCRIPTIONS[0]);
         for (platform, wanted) in [("linux64", b"added".to_vec()), ("win64", library())] {
             let platform = Platform::of_folder(platform).unwrap();
-            let added = AddedBinary { platform, identifier: FMUS[0].identifier, path: added_library.clone() };
-            let found = entries(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap();
+            let binary = fmu_package::AddedBinary { platform, path: added_library.clone() };
+            let added = AddedBinary { identifier: FMUS[0].identifier, binary };
+            let found = whole(&FMUS[0], &archive, DESCRIPTIONS[0], &[added]).unwrap();
+            let found = found.entries();
             let inside = found.bytes("binaries/linux64/VibroImpactHarvester.so");
             assert!(inside == Some(&wanted[..]), "{}", platform.folder);
             assert_eq!(found.bytes(&platform.entry(FMUS[0].identifier)), Some(&b"added"[..]));
@@ -147,12 +151,12 @@ mod tests {
     #[test]
     fn an_archive_of_other_sources_is_refused() {
         let other_guid = DESCRIPTIONS[0].replacen("guid=\"{", "guid=\"{0", 1);
-        let error = entries(&FMUS[0], &packaged(&other_guid), DESCRIPTIONS[0], &[]).unwrap_err().to_string();
+        let error = whole(&FMUS[0], &packaged(&other_guid), DESCRIPTIONS[0], &[]).unwrap_err().to_string();
         assert!(
             error.starts_with("the VibroImpactHarvester.fmu inside videg has another model description"),
             "{error}"
         );
-        let error = entries(&FMUS[1], b"no zip", DESCRIPTIONS[1], &[]).unwrap_err().to_string();
+        let error = whole(&FMUS[1], b"no zip", DESCRIPTIONS[1], &[]).unwrap_err().to_string();
         assert!(error.starts_with("the HarvestingCircuit.fmu inside videg is broken: "), "{error}");
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::error::{PackageError, Result};
-use super::{Options, cargo, locate};
+use super::{Options, locate};
 
 /// The page in the file that `VIDEG_EXPLORER` named when the program was compiled.
 #[cfg(feature = "embedded-explorer")]
@@ -26,7 +26,9 @@ pub fn explorer(options: &Options) -> Result<String> {
     let Some(workspace) = workspace else { return Err(PackageError::NoPage { looked: PathBuf::from("explorer") }) };
     let page = locate::build_folder(&workspace).join("explorer").join("page.html");
     if options.build {
-        cargo::build_page(&workspace, &page, options.progress)?;
+        let file = page.display().to_string();
+        let arguments = ["run", "--release", "-p", "videg-explorer-bundle", "--", &file];
+        fmu_package::cargo::run(&workspace, &arguments, options.progress)?;
     }
     read(&page)
 }
@@ -34,6 +36,6 @@ pub fn explorer(options: &Options) -> Result<String> {
 fn read(page: &Path) -> Result<String> {
     std::fs::read_to_string(page).map_err(|cause| match cause.kind() {
         std::io::ErrorKind::NotFound => PackageError::NoPage { looked: page.to_owned() },
-        _ => PackageError::Io { action: "read", path: page.to_owned(), cause },
+        _ => PackageError::io("read", page)(cause),
     })
 }

@@ -3,10 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use fmu_package::cargo::{self, Build};
+use fmu_package::{Platform, Target};
+
 use super::error::{PackageError, Result};
-use super::platform::Platform;
-use super::target::Target;
-use super::{FMUS, FmuPackage, NO_BUILD, Options, cargo, fresh};
+use super::{FMUS, FmuPackage, NO_BUILD, Options, fresh};
 
 /// Reason for users who have the program alone.
 const NO_TREE: &str = if cfg!(feature = "embedded-fmus") {
@@ -69,18 +70,26 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
     let why = match workspace {
         None => NO_TREE.to_owned(),
         Some(_) if !options.build => format!("building is switched off, by option or {NO_BUILD}"),
-        Some(workspace) => match cargo::build(workspace, target, options.progress) {
+        Some(workspace) => match build(workspace, target, options.progress) {
             // There is no toolchain.
-            Err(error @ PackageError::Cargo { .. }) if is_not_found(&error) => error.to_string(),
+            Err(error) if is_not_found(&error) => error.to_string(),
             // Cargo cannot work in a read-only source tree, whose libraries cannot be out of date either.
-            Err(PackageError::Build { .. }) if !can_write(&build_folder(workspace)) => {
+            Err(fmu_package::PackageError::Build { .. }) if !can_write(&build_folder(workspace)) => {
                 format!("nothing can be built into {}, which cannot be written", build_folder(workspace).display())
             }
-            other => return other,
+            other => return Ok(other?),
         },
     };
     let folders = folders(workspace, target);
     FMUS.iter().map(|fmu| find(fmu, platform, &folders, &why)).collect()
+}
+
+/// Builds the libraries of all FMUs and returns them in the order of [`FMUS`].
+fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_package::Result<Vec<PathBuf>> {
+    let packages = FMUS.iter().flat_map(|fmu| ["-p", fmu.package]);
+    let arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
+    let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, progress })?;
+    FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect()
 }
 
 /// The release libraries beside the running program, if all are there and pass `test`.
@@ -91,8 +100,8 @@ fn beside_program(platform: Platform, test: impl Fn(&Path) -> bool) -> Option<Ve
     libraries.map(|library| (library.is_file() && test(&library)).then_some(library)).collect()
 }
 
-fn is_not_found(error: &PackageError) -> bool {
-    matches!(error, PackageError::Cargo { cause, .. } if cause.kind() == io::ErrorKind::NotFound)
+fn is_not_found(error: &fmu_package::PackageError) -> bool {
+    matches!(error, fmu_package::PackageError::Cargo { cause, .. } if cause.kind() == io::ErrorKind::NotFound)
 }
 
 /// Folders in which libraries may be: beside the program (tests run in `deps`), then where Cargo puts them.

@@ -16,37 +16,26 @@
 //! # }
 //! ```
 
-mod binary;
+mod added;
 mod cache;
-mod cargo;
-mod documentation;
+mod content;
 mod embedded;
-mod entries;
 mod error;
 mod explorer;
-mod fmi3;
 mod fresh;
 mod locate;
-mod platform;
-mod references;
-mod resources;
-mod shared_file;
 mod ssp;
-mod target;
-mod tools;
 
 use std::path::{Path, PathBuf};
 
-use fmu_import::ModelDescription;
+pub use fmu_package::{FmiVersion, Platform};
+use fmu_package::{Fmu, targets};
 
-pub use binary::AddedBinary;
+pub use added::AddedBinary;
 pub use cache::Placed;
-use entries::Entries;
 pub use error::{PackageError, Result};
 pub use explorer::explorer;
-pub use platform::Platform;
 pub use ssp::{Part, SystemPackage};
-use target::Target;
 
 /// An FMU of this project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,15 +54,8 @@ pub const FMUS: [FmuPackage; 2] = [
     FmuPackage { identifier: "HarvestingCircuit", package: "videg-fmu-circuit", folder: "fmu/circuit" },
 ];
 
-/// A version of FMI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FmiVersion {
-    /// FMI 2.0
-    #[default]
-    Fmi2,
-    /// FMI 3.0
-    Fmi3,
-}
+/// The FMU that reads files.
+const READER: &str = "VibroImpactHarvester";
 
 /// Environment variable that keeps the packager from running Cargo, unless it is empty.
 pub const NO_BUILD: &str = "VIDEG_NO_BUILD";
@@ -156,9 +138,14 @@ fn pack(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     let (archives, output) = pack_2(options)?;
     Ok(match options.fmi {
         FmiVersion::Fmi2 => (archives, output),
-        FmiVersion::Fmi3 if options.output.is_some() => (fmi3::converted(&archives)?, output),
-        FmiVersion::Fmi3 => (fmi3::converted(&archives)?, output.join("fmi3")),
+        FmiVersion::Fmi3 if options.output.is_some() => (pack_3(&archives)?, output),
+        FmiVersion::Fmi3 => (pack_3(&archives)?, output.join("fmi3")),
     })
+}
+
+/// Those of FMI 3.0, from those of FMI 2.0.
+fn pack_3(archives: &[Vec<u8>]) -> Result<Vec<Vec<u8>>> {
+    FMUS.iter().zip(archives).map(|(fmu, archive)| Ok(content::converted(fmu.identifier, archive)?.packed()?)).collect()
 }
 
 /// Those of FMI 2.0.
@@ -172,32 +159,38 @@ fn pack_2(options: &Options) -> Result<(Vec<Vec<u8>>, PathBuf)> {
     let binaries = binaries(options, workspace)?;
     let mut archives = Vec::new();
     for (index, fmu) in FMUS.iter().enumerate() {
-        let (description, mut entries) = described(fmu.identifier, &locate::description(fmu, workspace)?)?;
-        let built = binaries.iter().filter_map(|(platform, libraries)| Some((*platform, libraries.get(index)?)));
-        let added = options.added.iter().filter(|binary| binary.identifier == fmu.identifier);
-        for (platform, library) in built.chain(added.map(|binary| (binary.platform, &binary.path))) {
-            entries.add_file(&platform.entry(fmu.identifier), library)?;
+        let mut archive = described(fmu.identifier, &locate::description(fmu, workspace)?)?;
+        for (platform, libraries) in &binaries {
+            libraries.get(index).map_or(Ok(()), |library| archive.add_library_file(*platform, library))?;
         }
-        documentation::add(&description, &mut entries)?;
-        references::add(fmu.identifier, &mut entries);
-        resources::add(fmu, &options.resources, &mut entries)?;
-        archives.push(entries.packed(&file_name(fmu))?);
+        for binary in added::of(fmu.identifier, &options.added) {
+            archive.add_library_file(binary.platform, &binary.path)?;
+        }
+        content::add(&mut archive)?;
+        add_resources(fmu, &options.resources, &mut archive)?;
+        archives.push(archive.packed()?);
     }
     Ok((archives, output(workspace)))
 }
 
-/// The model description at `path`, and the entries of an archive, which begin with it. It must be that of `identifier`.
-fn described(identifier: &str, path: &Path) -> Result<(ModelDescription, Entries)> {
+/// An FMU with the model description at `path`, which must be that of `identifier`.
+fn described(identifier: &str, path: &Path) -> Result<Fmu> {
     let text = std::fs::read(path).map_err(PackageError::io("read", path))?;
-    let description = ModelDescription::parse(&text, &path.display().to_string())?;
-    let found = &description.co_simulation.model_identifier;
+    let fmu = Fmu::new(text, &path.display().to_string())?;
+    let found = fmu.identifier();
     if found != identifier {
-        let (path, found, allowed) = (path.to_path_buf(), found.clone(), identifier.to_owned());
+        let (path, found, allowed) = (path.to_path_buf(), found.to_owned(), identifier.to_owned());
         return Err(PackageError::Identifier { path, found, allowed });
     }
-    let mut entries = Entries::default();
-    entries.add("modelDescription.xml", text);
-    Ok((description, entries))
+    Ok(fmu)
+}
+
+/// Adds files to the resources of an archive, if it is that of the FMU that reads them.
+fn add_resources(fmu: &FmuPackage, files: &[PathBuf], archive: &mut Fmu) -> Result<()> {
+    if fmu.identifier == READER {
+        fmu_package::add_resources(files, archive.entries_mut())?;
+    }
+    Ok(())
 }
 
 fn file_name(fmu: &FmuPackage) -> PathBuf {
@@ -207,17 +200,25 @@ fn file_name(fmu: &FmuPackage) -> PathBuf {
 /// Writes archives, in the order of [`FMUS`], into `folder`.
 fn write(archives: &[Vec<u8>], folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = FMUS.iter().map(|fmu| folder.join(file_name(fmu)));
-    paths.zip(archives).map(|(path, archive)| shared_file::write_shared(&path, archive).map(|()| path)).collect()
+    paths
+        .zip(archives)
+        .map(|(path, archive)| {
+            fmu_package::write_shared(&path, archive)?;
+            Ok(path)
+        })
+        .collect()
 }
 
 /// The libraries of each platform, in the order of [`FMUS`].
 fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
     // Checked before the first library is built, which may take minutes.
     let targets = targets(&options.targets)?;
-    check_added(&options.added, &targets)?;
+    for fmu in &FMUS {
+        fmu_package::AddedBinary::check_all(fmu.identifier, &added::of(fmu.identifier, &options.added), &targets)?;
+    }
     if targets.is_empty() {
         let is_added = |fmu: &FmuPackage| {
-            options.added.iter().any(|it| it.identifier == fmu.identifier && it.platform == Platform::HOST)
+            added::of(fmu.identifier, &options.added).iter().any(|binary| binary.platform == Platform::HOST)
         };
         if FMUS.iter().all(is_added) {
             return Ok(Vec::new());
@@ -225,32 +226,6 @@ fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform
         return Ok(vec![(Platform::HOST, locate::libraries(options, workspace, None)?)]);
     }
     targets.iter().map(|target| Ok((target.platform, locate::libraries(options, workspace, Some(target))?))).collect()
-}
-
-/// Reads the targets; each platform may be named once.
-fn targets(asked: &[String]) -> Result<Vec<Target>> {
-    let targets = asked.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
-    for (index, target) in targets.iter().enumerate() {
-        if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
-            let (first, second) = (first.argument(), target.argument());
-            return Err(PackageError::SamePlatform { platform: target.platform, first, second });
-        }
-    }
-    Ok(targets)
-}
-
-/// Refuses two libraries of one FMU for one platform.
-fn check_added(added: &[AddedBinary], targets: &[Target]) -> Result<()> {
-    for (index, binary) in added.iter().enumerate() {
-        let AddedBinary { platform, identifier, path } = binary.clone();
-        let twin = added.iter().take(index).find(|it| it.identifier == identifier && it.platform == platform);
-        let target = targets.iter().find(|target| target.platform == platform);
-        let other = twin.map(|twin| twin.path.display().to_string());
-        if let Some(other) = other.or_else(|| target.map(|target| format!("the target {}", target.argument()))) {
-            return Err(PackageError::AddedTwice { identifier, platform, path, other });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -8,9 +8,9 @@ use std::{fmt, io};
 use askama::Template;
 use askama::filters::Escaper;
 
-use super::entries::Entries;
+use fmu_package::Entries;
+
 use super::error::{PackageError, Result};
-use super::resources;
 use crate::scenario::Setting;
 use fmu_import::{BaseUnit, Causality, Kind, ModelDescription, Value, Variable};
 
@@ -168,8 +168,8 @@ impl Part<'_> {
         }
         let mut entries =
             Entries::read(&bytes).map_err(|cause| PackageError::io("read", self.fmu)(io::Error::other(cause)))?;
-        resources::add_all(self.resources, &mut entries)?;
-        entries.packed(self.fmu)
+        fmu_package::add_resources(self.resources, &mut entries)?;
+        Ok(entries.packed(self.fmu)?)
     }
 
     /// What differs from the start values, in the order of the model description.

@@ -3,8 +3,9 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{Entries, FMUS, Options, PackageError, build_all, described, documentation, locate};
+use super::{FMUS, Fmu, Options, PackageError, build_all, content, described, locate};
 use fmu_import::Archive;
+use fmu_package::Platform;
 
 const DESCRIPTION: &str = include_str!("../../fmu/import/src/testdata/good.xml");
 
@@ -15,18 +16,17 @@ fn tree() -> TempDir {
     tree
 }
 
-fn entries(tree: &Path) -> Entries {
-    let (description, mut entries) = described("Toy", &tree.join("Toy.xml")).unwrap();
-    entries.add("binaries/linux64/Toy.so", "library");
-    documentation::add(&description, &mut entries).unwrap();
-    entries
+fn packed(tree: &Path) -> Fmu {
+    let mut fmu = described("Toy", &tree.join("Toy.xml")).unwrap();
+    fmu.add_library(Platform::of_folder("linux64").unwrap(), b"library").unwrap();
+    content::add(&mut fmu).unwrap();
+    fmu
 }
 
 #[test]
 fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
     let tree = tree();
-    let path = tree.path().join("out/deep/Toy.fmu");
-    entries(tree.path()).write(&path).unwrap();
+    let path = packed(tree.path()).write(&tree.path().join("out/deep")).unwrap();
     let mut archive = Archive::open(&path).unwrap();
     let wanted = [
         "binaries/linux64/Toy.so",
@@ -48,7 +48,7 @@ fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
     let archive = |tree: &TempDir| {
         let path = tree.path().join("Toy.fmu");
         fs::write(&path, "old").unwrap();
-        entries(tree.path()).write(&path).unwrap();
+        packed(tree.path()).write(tree.path()).unwrap();
         fs::read(path).unwrap()
     };
     let bytes = archive(&first);

@@ -1,57 +1,12 @@
-//! Exports a Rust model through the C functions of FMI 2.0 and 3.0 for co-simulation and, if it offers that, model exchange. One
-//! library serves the FMUs of both versions.
+#![doc = include_str!("../README.md")]
 //!
-//! A model implements [`Slave`], describes its variables in one table of [`Variable`]s, and names itself in
-//! [`export_fmu!`]. The table is the only place where a variable is described: Get and Set, the checks of
-//! values, start values, the GUID and `modelDescription.xml` all follow from it.
+//! # Reference
+//! A model implements [`Slave`], describes its variables in one table of [`Variable`]s, and names itself in [`export_fmu!`]. The table is
+//! the only place where a variable is described: Get and Set, the checks of values, start values, the GUID and `modelDescription.xml` all
+//! follow from it. With the feature `model-description`, `model_description::<Lag>(Standard::Fmi2)` gives the text of
+//! `modelDescription.xml`, and `Standard::Fmi3` that of FMI 3.0. The shared library of an FMU never needs the feature.
 //!
-//! # A complete FMU
-//! ```
-//! use fmu_export::{Logger, ModelInfo, Slave, SlaveError, Variable, export_fmu};
-//!
-//! /// A first-order lag.
-//! #[derive(Clone, Default)]
-//! struct Lag {
-//!     time_constant: f64,
-//!     input: f64,
-//!     output: f64,
-//! }
-//!
-//! type V = Variable<Lag>;
-//!
-//! static VARIABLES: [V; 3] = [
-//!     V::parameter("timeConstant", "s", 1.0, "T: time constant")
-//!         .min(1e-6)
-//!         .access(|m| m.time_constant, |m, v| m.time_constant = v),
-//!     V::input("u", "1", 0.0, "Input").access(|m| m.input, |m, v| m.input = v),
-//!     V::output("y", "1", "Output").depends_on(&[]).get(|m| m.output),
-//! ];
-//!
-//! impl Slave for Lag {
-//!     const INFO: ModelInfo = ModelInfo::new("Lag")
-//!         .description("First-order lag")
-//!         .default_experiment(0.0, 10.0, 0.1);
-//!
-//!     fn variables() -> &'static [Variable<Self>] {
-//!         &VARIABLES
-//!     }
-//!
-//!     fn new() -> Self {
-//!         Self::default() // The start values of the table follow.
-//!     }
-//!
-//!     fn do_step(&mut self, _t: f64, h: f64, _log: &Logger) -> Result<(), SlaveError> {
-//!         self.output += (self.input - self.output) * -(-h / self.time_constant).exp_m1();
-//!         Ok(())
-//!     }
-//! }
-//!
-//! export_fmu!(Lag);
-//! ```
-//! With the feature `model-description`, `model_description::<Lag>(Standard::Fmi2)` gives the text of `modelDescription.xml`, and
-//! `Standard::Fmi3` that of FMI 3.0. The shared library itself never needs the feature.
-//!
-//! # What FMI 3.0 adds
+//! ## What FMI 3.0 adds
 //! - [`Slave::do_step_to_event`] stops a step at the events of the model ([`ModelInfo::stops_at_events`]): co-simulation has event
 //!   mode and early return then. Importers may read continuous outputs within any step (`intermediateUpdate`).
 //! - Clocks ([`Variable::output_clock`], [`Variable::input_clock`]) and variables that belong to them
@@ -59,7 +14,7 @@
 //! - Types: [`IntegerWidth`], single precision. Adjoint derivatives, from the same rows as directional ones. Terminals
 //!   ([`ModelInfo::terminals`]).
 //!
-//! # What the exporter sees to
+//! ## What the exporter sees to
 //! - Call order: one table says which [`Function`] is legal in which [`CallState`].
 //! - Calls that the standard forbids, but importers make and no harm comes of, work and return `fmi2OK`; the category
 //!   `logTolerated` tells of them. `fmi2Warning` is the model's, for what a host should stop and look at.
@@ -77,16 +32,11 @@
 //! - Messages go to the importer's logger only. Events, tolerated calls, warnings and discarded steps are reported while logging is on
 //!   for their category; errors and fatal errors always, since `loggingOn` is about debug logging.
 //!
-//! # Not offered
+//! ## Not offered
 //! Asynchronous steps. Their functions exist, as importers demand, and return `fmi2Error`. So does
 //! `fmi2GetDirectionalDerivative` unless the model offers it. Of FMI 3.0: arrays and structural parameters, binary variables, clocks
 //! whose interval changes, setting values within a step, dependencies of single elements, scheduled execution.
 #![allow(non_upper_case_globals)] // The constants of the ABI, in patterns, are spelled as in the standard.
-
-/// The chapter of the book about this crate: what it shows compiles and runs.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/howto/fmu.md")]
-mod book {}
 
 mod access;
 mod added;

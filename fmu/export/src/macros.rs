@@ -7,6 +7,8 @@
 macro_rules! export_fmu {
     ($slave:ty $(, $model_exchange:ident)?) => {
         const _: () = {
+            assert!(cfg!(panic = "unwind"), "with panic = \"abort\" a panic of the model would end the process of the importer");
+
             use $crate::abi::fmi3::*;
             use $crate::abi::*;
 

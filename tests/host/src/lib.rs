@@ -5,6 +5,11 @@
 #![cfg_attr(miri, feature(c_variadic))] // for the logger
 #![allow(non_upper_case_globals)] // the constants of the ABI, in patterns, are spelled as in the standard
 
+/// The chapter of the book about the exporter: what it shows compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/howto/fmu.md")]
+mod book {}
+
 mod arguments;
 mod call;
 pub mod experiment;

@@ -6,9 +6,9 @@ use super::platform::Platform;
 /// The C library that `linux64` must run with: that of the oldest distributions which simulation tools still support.
 const OLDEST_GLIBC: &str = "2.17";
 
-/// Something to build for.
+/// A machine to build for.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Target {
+pub struct Target {
     /// As Rust names it.
     pub triple: String,
     /// Version of the GNU C library to link with, when it is to be another than this machine's.
@@ -52,6 +52,21 @@ impl Target {
     pub fn subcommand(&self) -> &'static str {
         if self.glibc.is_some() { "zigbuild" } else { "build" }
     }
+}
+
+/// Reads the targets; each platform may be named once.
+///
+/// # Errors
+/// As [`Target::parse`], and when two are for one platform.
+pub fn targets(asked: &[String]) -> Result<Vec<Target>> {
+    let targets = asked.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
+    for (index, target) in targets.iter().enumerate() {
+        if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
+            let (first, second) = (first.argument(), target.argument());
+            return Err(PackageError::SamePlatform { platform: target.platform, first, second });
+        }
+    }
+    Ok(targets)
 }
 
 fn is_version(text: &str) -> bool {

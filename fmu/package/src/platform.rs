@@ -45,7 +45,12 @@ impl Platform {
 
     /// Name of the library inside the archive: no `lib` in front.
     pub fn entry(self, identifier: &str) -> String {
-        format!("binaries/{}/{identifier}.{}", self.folder, library_extension(self.folder))
+        format!("binaries/{}/{}", self.folder, self.file_name(identifier))
+    }
+
+    /// Name of the library in the folder of its platform, in any version of FMI.
+    pub fn file_name(self, identifier: &str) -> String {
+        format!("{identifier}.{}", library_extension(self.folder))
     }
 
     /// Name that Cargo gives to the library.

@@ -1,8 +1,7 @@
 //! A first-order lag as an FMU, with all that a model can offer: T y' = u - y, solved exactly for an input that is
 //! constant or linear within a step.
 //!
-//! `cargo build -p fmu-export --example lag` makes the shared library (`binaries/linux64/Lag.so` of the FMU),
-//! `cargo run -p fmu-export --features model-description --example lag_description` prints `modelDescription.xml`.
+//! `cargo fmu build --example lag` makes the FMU.
 
 use fmu_export::{Logger, ModelInfo, Slave, SlaveError, StateError, StateReader, StateWriter, Variable, export_fmu};
 

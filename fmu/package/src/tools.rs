@@ -80,7 +80,7 @@ fn missing(tool: &str, target: &Target, install: &str) -> PackageError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::package::Platform;
+    use crate::Platform;
 
     #[test]
     fn a_rust_target_that_is_not_there_is_named_with_its_cure() {

@@ -53,14 +53,14 @@ fn add(platform: &str, name: &str, content: &[u8]) -> std::result::Result<AddedB
     AddedBinary::parse(&format!("{platform}={}", path.display())).map_err(|error| error.to_string())
 }
 
-const NAME: &str = "libVibroImpactHarvester.dylib";
+const NAME: &str = "libLag.dylib";
 
 #[test]
 fn a_library_for_either_mac_or_both_is_taken() {
     let (intel, arm) = (mach_o(X86_64, LIBRARY, "_fmi2Instantiate"), mach_o(ARM64, LIBRARY, "_fmi2Instantiate"));
     for content in [intel.clone(), arm.clone(), fat(&[(X86_64, intel), (ARM64, arm)])] {
         let added = add("darwin64", NAME, &content).unwrap();
-        assert_eq!((added.platform.folder, added.identifier), ("darwin64", "VibroImpactHarvester"));
+        assert_eq!(added.platform.folder, "darwin64");
     }
 }
 
@@ -91,15 +91,28 @@ fn what_is_no_fmu_library_is_refused() {
 }
 
 #[test]
-fn the_argument_names_platform_and_fmu() {
+fn the_argument_names_platform_and_file() {
     let library = mach_o(X86_64, LIBRARY, "_fmi2Instantiate");
-    let error = add("darwin64", "libOther.dylib", &library).unwrap_err();
-    assert!(
-        error.ends_with("is named after no FMU; allowed are VibroImpactHarvester and HarvestingCircuit"),
-        "{error}"
-    );
     let error = add("macos", NAME, &library).unwrap_err();
     assert!(error.starts_with("no platform of FMI 2.0 is called \"macos\"; allowed are linux32, "), "{error}");
-    let error = AddedBinary::parse("libVibroImpactHarvester.dylib").unwrap_err().to_string();
-    assert_eq!(error, "--add-binary wants PLATFORM=FILE, found \"libVibroImpactHarvester.dylib\"");
+    let error = AddedBinary::parse("libLag.dylib").unwrap_err().to_string();
+    assert_eq!(error, "--add-binary wants PLATFORM=FILE, found \"libLag.dylib\"");
+}
+
+#[test]
+fn a_platform_has_one_library() {
+    let added = |platform: &str, path: &str| AddedBinary {
+        platform: Platform::of_folder(platform).unwrap(),
+        path: PathBuf::from(path),
+    };
+    let check = |added: &[AddedBinary], targets: &[Target]| {
+        AddedBinary::check_all("Lag", added, targets).map_err(|error| error.to_string())
+    };
+    let both = [added("win64", "a.dll"), added("linux64", "b.so")];
+    assert_eq!(check(&both, &[]), Ok(()));
+    let twice = [added("win64", "a.dll"), added("win64", "b.dll")];
+    assert_eq!(check(&twice, &[]), Err("two libraries of Lag for win64: b.dll and a.dll".to_owned()));
+    let target = Target::parse("win64").unwrap();
+    let said = "two libraries of Lag for win64: a.dll and the target x86_64-pc-windows-gnu";
+    assert_eq!(check(&both, &[target]), Err(said.to_owned()));
 }

@@ -6,9 +6,9 @@ use object::read::macho::{FatArch, MachOFatFile32, MachOFatFile64};
 use object::read::{File, FileKind, NameOrOrdinal, Object, ObjectKind};
 use object::{Architecture, BinaryFormat};
 
-use super::FMUS;
 use super::error::PackageError;
 use super::platform::Platform;
+use super::target::Target;
 
 /// The function that makes a library an FMU's.
 const ENTRY_POINT: &str = "fmi2Instantiate";
@@ -18,18 +18,15 @@ const ENTRY_POINT: &str = "fmi2Instantiate";
 pub struct AddedBinary {
     /// The platform that it runs on.
     pub platform: Platform,
-    /// Model identifier of its FMU.
-    pub identifier: &'static str,
     /// The file.
     pub path: PathBuf,
 }
 
 impl AddedBinary {
-    /// Reads `PLATFORM=PATH`, such as `darwin64=libVibroImpactHarvester.dylib`, and checks that the file is what it is
-    /// said to be. The file's name tells the FMU: it holds the model identifier.
+    /// Reads `PLATFORM=PATH`, such as `darwin64=libLag.dylib`, and checks that the file is what it is said to be.
     ///
     /// # Errors
-    /// When the platform is unknown, the name tells no FMU, or the file is no such library.
+    /// When the platform is unknown, or the file is no such library.
     pub fn parse(text: &str) -> Result<Self, PackageError> {
         let Some((platform, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
             return Err(PackageError::AddedForm { found: text.to_owned() });
@@ -39,15 +36,29 @@ impl AddedBinary {
             PackageError::PlatformName { found, allowed }
         })?;
         let path = PathBuf::from(path);
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
-        let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: path.clone() })?;
         let data = videg_input::read(&path).map_err(PackageError::io("read", &path))?;
         match check(&data, platform) {
-            Ok(()) => Ok(Self { platform, identifier, path }),
+            Ok(()) => Ok(Self { platform, path }),
             Err(Fault::Is(found)) => Err(PackageError::AddedLibrary { path, found, platform }),
             Err(Fault::NoEntryPoint) => Err(PackageError::AddedExport { path, symbol: ENTRY_POINT }),
         }
+    }
+
+    /// Refuses two libraries of the FMU `identifier` for one platform.
+    ///
+    /// # Errors
+    /// When two of `added` are for one platform, or one is for that of a target.
+    pub fn check_all(identifier: &str, added: &[Self], targets: &[Target]) -> Result<(), PackageError> {
+        for (index, Self { platform, path }) in added.iter().enumerate() {
+            let twin = added.iter().take(index).find(|it| it.platform == *platform);
+            let target = targets.iter().find(|target| target.platform == *platform);
+            let other = twin.map(|twin| twin.path.display().to_string());
+            if let Some(other) = other.or_else(|| target.map(|target| format!("the target {}", target.argument()))) {
+                let (identifier, path) = (identifier.to_owned(), path.clone());
+                return Err(PackageError::AddedTwice { identifier, platform: *platform, path, other });
+            }
+        }
+        Ok(())
     }
 }
 

@@ -13,7 +13,7 @@ use super::shared_file::write_shared;
 
 /// The entries of an archive: bytes by sorted names with forward slashes.
 #[derive(Debug, Default)]
-pub(super) struct Entries(BTreeMap<String, Vec<u8>>);
+pub struct Entries(BTreeMap<String, Vec<u8>>);
 
 impl Entries {
     /// Reads an archive that this program wrote. Foreign archives need bounds, see [`fmu_import::Archive`].
@@ -58,11 +58,17 @@ impl Entries {
     }
 
     /// Writes the archive, atomically.
+    ///
+    /// # Errors
+    /// When it cannot be written.
     pub fn write(&self, archive: &Path) -> Result<()> {
         write_shared(archive, &self.packed(archive)?)
     }
 
     /// The bytes of the archive; errors name it.
+    ///
+    /// # Errors
+    /// When they cannot be packed.
     pub fn packed(&self, archive: &Path) -> Result<Vec<u8>> {
         let packed = || {
             let mut writer = ZipWriter::new(Cursor::new(Vec::new()));

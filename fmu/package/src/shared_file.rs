@@ -11,13 +11,16 @@ use super::error::{PackageError, Result};
 use videg_system::atomic_file::{self, LockError, Part};
 
 /// Name of an unfinished file: these around the name of the file and random letters.
-const PREFIX: &str = ".videg-";
+const PREFIX: &str = ".fmu-package-";
 const SUFFIX: &str = ".part";
 /// Number of the letters.
 const LETTERS: usize = 6;
 
-/// Writes a file under another name and renames it. Of several processes that do so at once, the last one wins.
-pub(super) fn write_shared(path: &Path, bytes: &[u8]) -> Result<()> {
+/// Writes a file under another name and renames it, atomically. Of several processes that do so at once, the last one wins.
+///
+/// # Errors
+/// When the folder cannot be made or the file not be written.
+pub fn write_shared(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(PackageError::io("create", folder))?;
     let prefix = format!("{PREFIX}{}-", path.file_name().unwrap_or_default().to_string_lossy());
@@ -82,15 +85,15 @@ mod tests {
             fs::write(&path, "half").unwrap();
             path
         };
-        let abandoned = [".videg-Toy.fmu-abc123.part", ".videg-Toy.fmu-XYZ789.part"].map(file);
-        let at_work = file(".videg-Toy.fmu-def456.part");
+        let abandoned = [".fmu-package-Toy.fmu-abc123.part", ".fmu-package-Toy.fmu-XYZ789.part"].map(file);
+        let at_work = file(".fmu-package-Toy.fmu-def456.part");
         let held = atomic_file::lock(&at_work).unwrap();
         let others = [
-            ".videg-Toys.fmu-abc123.part",
-            ".videg-Toy.fmu-2-abc123.part",
-            ".videg-Toy.fmu-abc1234.part",
+            ".fmu-package-Toys.fmu-abc123.part",
+            ".fmu-package-Toy.fmu-2-abc123.part",
+            ".fmu-package-Toy.fmu-abc1234.part",
             "Toy.fmu.part",
-            ".videg-Toy.fmu-abc123",
+            ".fmu-package-Toy.fmu-abc123",
         ]
         .map(file);
         write_shared(&path, b"first").unwrap();
@@ -106,9 +109,9 @@ mod tests {
     #[test]
     fn an_unfinished_file_is_locked_so_that_others_leave_it() {
         let folder = tempfile::tempdir().unwrap();
-        let file = new_file(folder.path(), ".videg-Toy.fmu-").unwrap();
-        assert!(is_unfinished(file.path().file_name().unwrap(), ".videg-Toy.fmu-"));
-        remove_abandoned(folder.path(), ".videg-Toy.fmu-");
+        let file = new_file(folder.path(), ".fmu-package-Toy.fmu-").unwrap();
+        assert!(is_unfinished(file.path().file_name().unwrap(), ".fmu-package-Toy.fmu-"));
+        remove_abandoned(folder.path(), ".fmu-package-Toy.fmu-");
         assert!(file.path().exists());
     }
 }

@@ -1,4 +1,4 @@
-//! Builds the libraries with Cargo, which knows whether they are fresh and where they are.
+//! Runs Cargo, which knows whether libraries are fresh and where they are.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
@@ -8,7 +8,6 @@ use std::thread::Builder;
 
 use serde::Deserialize;
 
-use super::FMUS;
 use super::error::{PackageError, Result};
 use super::platform::Platform;
 use super::target::Target;
@@ -32,36 +31,87 @@ struct Artifact {
     name: String,
 }
 
-/// Builds the libraries of all FMUs in release mode and returns them in the order of [`FMUS`].
-///
-/// This may run inside `cargo run` and `cargo test`, which no longer lock the build folder.
-pub(super) fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> Result<Vec<PathBuf>> {
-    if let Some(target) = target {
-        tools::check(workspace, target)?;
-    }
-    let platform = target.map_or(Platform::HOST, |target| target.platform);
-    let mut command = command(workspace);
-    command.args(arguments(target)).arg("--message-format=json-render-diagnostics");
-    let shown = shown(target);
-    let artifacts = run(command, &shown, progress, |stdout| read_artifacts(stdout, platform))?;
-    let library = |identifier| {
-        let found = artifacts.iter().find(|(name, _)| name == identifier).map(|(_, path)| path.clone());
-        found.ok_or_else(|| PackageError::NotBuilt { command: shown.clone(), identifier })
-    };
-    FMUS.iter().map(|fmu| library(fmu.identifier)).collect()
+/// A build of libraries.
+#[derive(Debug, Clone, Copy)]
+pub struct Build<'a> {
+    /// Where Cargo is run.
+    pub folder: &'a Path,
+    /// What is built, and how: arguments behind `build`.
+    pub arguments: &'a [String],
+    /// For which machine; none means this one.
+    pub target: Option<&'a Target>,
+    /// Takes the lines about work.
+    pub progress: fn(&str),
 }
 
-/// Builds the page that shows the harvester in a browser, without what it knows of variables, into `page`.
-pub(super) fn build_page(workspace: &Path, page: &Path, progress: fn(&str)) -> Result<()> {
-    let arguments = ["run", "--release", "-p", "videg-explorer-bundle", "--"];
-    let mut command = command(workspace);
-    command.args(arguments).arg(page);
-    let ignore = |mut stdout: ChildStdout| drop(std::io::copy(&mut stdout, &mut std::io::sink()));
-    run(command, &format!("cargo {}", arguments.join(" ")), progress, ignore)
+/// The libraries that a build has made.
+#[derive(Debug)]
+pub struct Libraries {
+    /// Name and file of each.
+    found: Vec<(String, PathBuf)>,
+    /// The command line, for errors.
+    command: String,
+}
+
+impl Libraries {
+    /// The one with this name.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn named(&self, name: &str) -> Result<PathBuf> {
+        // Older versions of Cargo tell the name of the package where newer ones tell that of the library.
+        let same = |other: &str| other.replace('-', "_") == name.replace('-', "_");
+        let found = self.found.iter().find(|(other, _)| same(other)).map(|(_, path)| path.clone());
+        let missing = || PackageError::NotBuilt { command: self.command.clone(), identifier: name.to_owned() };
+        found.ok_or_else(missing)
+    }
+}
+
+/// Builds shared libraries.
+///
+/// This may run inside `cargo run` and `cargo test`, which no longer lock the build folder.
+///
+/// # Errors
+/// When a tool is missing, or Cargo fails.
+pub fn libraries(build: &Build<'_>) -> Result<Libraries> {
+    if let Some(target) = build.target {
+        tools::check(build.folder, target)?;
+    }
+    let platform = build.target.map_or(Platform::HOST, |target| target.platform);
+    let arguments = arguments(build);
+    let shown = format!("cargo {}", arguments.join(" "));
+    let mut command = command(build.folder);
+    command.args(arguments).arg("--message-format=json-render-diagnostics");
+    let found = execute(command, &shown, build.progress, |stdout| read_artifacts(stdout, platform))?;
+    Ok(Libraries { found, command: shown })
+}
+
+/// Runs Cargo with these arguments in a folder.
+///
+/// # Errors
+/// When it fails.
+pub fn run(folder: &Path, arguments: &[&str], progress: fn(&str)) -> Result<()> {
+    output_of(folder, arguments, progress).map(drop)
+}
+
+/// The same, and gives what it prints.
+pub(crate) fn output(folder: &Path, arguments: &[&str]) -> Result<Vec<u8>> {
+    output_of(folder, arguments, |_| {})
+}
+
+fn output_of(folder: &Path, arguments: &[&str], progress: fn(&str)) -> Result<Vec<u8>> {
+    let mut command = command(folder);
+    command.args(arguments);
+    execute(command, &format!("cargo {}", arguments.join(" ")), progress, |mut stdout| {
+        let mut text = Vec::new();
+        // Of a program that ends too early, the status tells.
+        let _ = stdout.read_to_end(&mut text);
+        text
+    })
 }
 
 /// Runs Cargo to its end, and gives what `read` makes of its output.
-fn run<T: Default>(
+fn execute<T: Default>(
     mut command: Command,
     shown: &str,
     progress: fn(&str),
@@ -95,22 +145,15 @@ fn command(workspace: &Path) -> Command {
     command
 }
 
-fn arguments(target: Option<&Target>) -> Vec<String> {
-    let mut arguments = vec![target.map_or("build", Target::subcommand).to_owned(), "--release".to_owned()];
-    for fmu in &FMUS {
-        arguments.extend(["-p".to_owned(), fmu.package.to_owned()]);
-    }
-    if let Some(target) = target {
+fn arguments(build: &Build<'_>) -> Vec<String> {
+    let mut arguments = vec![build.target.map_or("build", Target::subcommand).to_owned()];
+    arguments.extend_from_slice(build.arguments);
+    if let Some(target) = build.target {
         // A released library needs no symbol table, which is half of a DLL.
         arguments.extend(["--config", "profile.release.strip=\"symbols\"", "--target"].map(ToOwned::to_owned));
         arguments.push(target.argument());
     }
     arguments
-}
-
-/// The command line, for errors.
-fn shown(target: Option<&Target>) -> String {
-    format!("cargo {}", arguments(target).join(" "))
 }
 
 /// Names and files of the shared libraries that Cargo reports, fresh ones included.
