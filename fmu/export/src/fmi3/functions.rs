@@ -241,7 +241,7 @@ functions! {
         i.directional_derivative(
             array(unknowns, unknown_count, "unknowns")?,
             array(knowns, known_count, "knowns")?,
-            array(seed, known_count, "seed")?,
+            array(seed, known_count, i.seed_argument())?,
             array_out(sensitivity, unknown_count, "sensitivity")?,
         )
     };
@@ -254,7 +254,7 @@ functions! {
         i.adjoint_derivative(
             array(unknowns, unknown_count, "unknowns")?,
             array(knowns, known_count, "knowns")?,
-            array(seed, unknown_count, "seed")?,
+            array(seed, unknown_count, i.seed_argument())?,
             array_out(sensitivity, known_count, "sensitivity")?,
         )
     };
