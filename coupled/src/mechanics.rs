@@ -97,8 +97,7 @@ impl Mechanics {
     pub fn follow<F: Follower>(&mut self, time: f64, follower: &mut F) -> Result<Gains, F::Error> {
         while self.harvester.time() < time {
             let now = self.harvester.time();
-            let knot = self.harvester.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);
-            let end = knot.min(self.harvester.known_until()).min(time);
+            let (end, _) = self.harvester.smooth_until(time);
             self.capacitances.clear();
             self.deflections.clear();
             let half = self.half_pulse(end);

@@ -110,8 +110,7 @@ impl Machine {
         while simulation.harvester().time() < to {
             let harvester = simulation.harvester();
             let now = harvester.time();
-            let knot = harvester.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);
-            let end = knot.min(harvester.known_until()).min(to);
+            let (end, _) = harvester.smooth_until(to);
             let least = if is_deflected(harvester) { in_pulse } else { 1 };
             let count = ((end - now) / spacing).ceil().clamp(f64::from(least), MOST as f64);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the most rows")]

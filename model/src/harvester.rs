@@ -201,11 +201,10 @@ impl Harvester {
             return Ok(false);
         }
         loop {
-            let (now, impacts) = (self.time, self.totals().impacts);
-            let knot = self.next_knot().filter(|knot| *knot > now).unwrap_or(f64::INFINITY);
-            let end = knot.min(self.known_until()).min(time);
+            let impacts = self.totals().impacts;
+            let (end, is_knot) = self.smooth_until(time);
             self.advance_shown(end, Some(&mut show))?;
-            if end == knot || self.totals().impacts > impacts {
+            if is_knot || self.totals().impacts > impacts {
                 return Ok(true);
             }
             if end >= time {

@@ -8,6 +8,7 @@ import pytest
 
 import chromium
 import harness
+from pages import Visit, closing
 
 
 def run(*command):
@@ -62,28 +63,14 @@ def browser():
         yield browser
 
 
-class Visit:
-    """An open report with all that it did wrong."""
+class ReportVisit(Visit):
+    """An open report."""
 
     def __init__(self, browser, report, **options):
-        self.path, self.name = report
-        self.faults = []
-        self.context = browser.new_context(**options)
+        path, self.name = report
         # A chart of all events takes long to draw where other programs run, too.
-        self.context.set_default_timeout(180_000)
-        self.page = self.context.new_page()
-        self.page.on("console", self.heard)
-        self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
-        self.page.on("request", self.requested)
-        self.page.goto(self.path.as_uri())
-
-    def heard(self, message):
-        if message.type in ("error", "warning"):
-            self.faults.append(f"{message.type}: {message.text}")
-
-    def requested(self, request):
-        if request.url != self.path.as_uri() and not request.url.startswith(("data:", "blob:")):
-            self.faults.append(f"request: {request.url}")
+        super().__init__(browser, path, 180_000, **options)
+        self.open()
 
     def shoot(self, name, target=None):
         path = chromium.SCREENSHOTS / f"{self.name}-{name}.png"
@@ -96,14 +83,9 @@ class Visit:
 @pytest.fixture
 def visit(browser, report):
     """Opens the report; after the test, nothing may have gone wrong."""
-    visits = []
+    with closing() as visits:
+        def open_report(width=1440, scheme="light", **options):
+            visits.append(ReportVisit(browser, report, viewport={"width": width, "height": 900}, color_scheme=scheme, **options))
+            return visits[-1]
 
-    def open_report(width=1440, scheme="light", **options):
-        visits.append(Visit(browser, report, viewport={"width": width, "height": 900}, color_scheme=scheme, **options))
-        return visits[-1]
-
-    yield open_report
-    faults = [fault for visit in visits for fault in visit.faults]
-    for visit in visits:
-        visit.context.close()
-    assert faults == []
+        yield open_report

@@ -6,17 +6,11 @@ import re
 import pytest
 from playwright.sync_api import TimeoutError
 
+from pages import OVERFLOW, beyond
+
 WIDTHS = [375, 800, 1440]
 SCHEMES = ["light", "dark"]
-
-# Both sides of the page, which text and figures must not leave unless a box of their own scrolls.
-OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
-# What sticks out of the page and is in no box that scrolls.
-BEYOND = """() => [...document.querySelectorAll('body *')].filter(it => {
-    if (it.closest('.scroll, .plot, .chart, pre, .thumbnails svg, desc') || !it.checkVisibility()) return false;
-    const box = it.getBoundingClientRect();
-    return box.width > 0 && (box.right > document.documentElement.clientWidth + 1 || box.left < -1);
-}).map(it => it.outerHTML.slice(0, 100))"""
+BEYOND = beyond(".scroll, .plot, .chart, pre, .thumbnails svg, desc")
 # Texts of a picture that reach over its edge.
 CLIPPED = """picture => {
     const frame = picture.getBoundingClientRect();

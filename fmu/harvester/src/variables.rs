@@ -1,17 +1,19 @@
 //! The variable table: each name, unit and description stands here once, those of the parameters in the tables of the
 //! model.
 
+mod impacts;
 mod initial;
 mod parameters;
 
 use std::sync::Arc;
 
-use fmu_export::{EnumerationType, IntegerWidth, Variable, concat};
+use fmu_export::{Variable, concat};
 use videg_model::{ForceTable, Recording, Side};
 
 use crate::file::{Content, LONGEST};
 use crate::harvester::Harvester;
-use initial::{FILM, FORCE_LAW, IMPACT, OPTIONS};
+use impacts::{EFFECTIVE_RESTITUTION, EVENTS, IMPACTS, TWINS};
+use initial::{FILM, IMPACT};
 use parameters::{choices, reals};
 
 type V = Variable<Harvester>;
@@ -26,6 +28,7 @@ macro_rules! change {
         |slave, known| slave.partial(known, |change| change.shown(|changes| changes.$($path)+))
     };
 }
+use change;
 
 /// What follows from the parameters.
 static CALCULATED: [V; 4] = [
@@ -137,10 +140,6 @@ pub(crate) const STATES: [&str; 4] = ["cylinder.position", "cylinder.velocity", 
 /// One more continuous state, which acts on nothing but the work of the excitation.
 pub(crate) const DAMPING: &str = "energy.damping";
 
-/// What the predicted times depend on.
-const PREDICTED_FROM: [&str; 7] =
-    ["cylinder.position", "cylinder.velocity", "ball.position", "ball.velocity", FORCE, VOLTAGES[0], VOLTAGES[1]];
-
 /// These states, and what depends on them.
 static MOTION: [V; 5] = [
     V::output("cylinder.position", "m", "z_M: position of the cylinder, Eq. (7)")
@@ -178,59 +177,6 @@ static MOTION: [V; 5] = [
         .initially_depends_on(&[IMPACT])
         .partial_derivative(change!(relative_displacement))
         .get(|slave| slave.read(videg_model::Harvester::relative_displacement)),
-];
-
-static EVENTS: [V; 8] = [
-    V::integer_output("impact.count", "Number of impacts since the start; the endless tail of a chattering end is not counted")
-        .width(IntegerWidth::UInt64)
-        .local()
-        .get(|slave| slave.model().map_or(0, |model| as_count(model.totals().impacts))),
-    V::output("impact.lastVelocity", "m/s", "abs(v_m - v_M) before the last impact, Eq. (10); 0 before the first")
-        .discrete()
-        .depends_on(&[])
-        .initially_depends_on(&[IMPACT])
-        .partial_derivative(change!(last_speed))
-        .get(|slave| slave.read(|model| model.totals().last_speed)),
-    V::output(
-        "impact.nextTime",
-        "s",
-        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted within one period (with phase noise: within 256 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a period)",
-    )
-    .discrete()
-    .depends_on(&PREDICTED_FROM)
-    .initially_depends_on(&[IMPACT, &[FORCE]])
-    .partial_derivative(|slave, known| slave.partial(known, |change| change.next(0, |it| it.next_impact)))
-        .get(|slave| slave.predicted(videg_model::Harvester::next_impact)),
-    V::output(
-        "pulse.nextKnot",
-        "s",
-        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is predicted",
-    )
-    .discrete()
-    .depends_on(&PREDICTED_FROM)
-    .initially_depends_on(&[IMPACT, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
-    .partial_derivative(|slave, known| slave.partial(known, |change| change.next(1, |it| it.next_knot)))
-        .get(|slave| slave.predicted(videg_model::Harvester::next_knot)),
-    V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
-        .discrete()
-        .depends_on(&[])
-        .initially_depends_on(&[IMPACT, FILM, FORCE_LAW, &["biasVoltage"]])
-        .partial_derivative(change!(voltage_gain))
-        .get(|slave| slave.read(|model| model.totals().voltage_gain)),
-    V::output("gain.energyEq13", "J", "Sum of W over all impacts, Eqs. (13) and (14)")
-        .discrete()
-        .nominal(1e-6)
-        .depends_on(&[])
-        .initially_depends_on(&[IMPACT, FILM, FORCE_LAW, &["biasVoltage"]])
-        .partial_derivative(change!(energy))
-        .get(|slave| slave.read(|model| model.totals().energy)),
-    V::boolean_output("contact.resting", "The ball rests on a membrane, pressed by the acceleration of the cylinder")
-        .local()
-        .get(|slave| slave.model().is_some_and(|model| model.resting().is_some())),
-    V::integer_output("solver.events", "Number of events computed since the start: impacts and releases")
-        .width(IntegerWidth::UInt64)
-        .local()
-        .get(|slave| slave.model().map_or(0, |model| as_count(model.totals().events()))),
 ];
 
 /// Books of the mechanical energy: name, what is read of the model's, typical magnitude, dependencies at a communication point and
@@ -380,38 +326,6 @@ static DERIVATIVES: [V; 4] = [
     .get(|slave| slave.read(videg_model::Harvester::ball_acceleration)),
 ];
 
-/// Twins of variables that are no Reals. Many importers read every output as a Real, and connect nothing else: so these are the
-/// outputs, and the variables of the types that fit are local.
-static TWINS: [V; 2] = [
-    V::output("impact.countReal", "1", "impact.count as a Real, for connections and tools that read Reals alone")
-        .discrete()
-        .depends_on(&[])
-        .initially_depends_on(&[IMPACT])
-        .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
-        .get(|slave| slave.model().map_or(0.0, |model| as_real(model.totals().impacts))),
-    V::output(
-        "contact.restingReal",
-        "1",
-        "contact.resting as a Real, for connections and tools that read Reals alone: 1 or 0",
-    )
-    .discrete()
-    .depends_on(&[])
-    .initially_depends_on(&[IMPACT])
-    .partial_derivative(|slave, known| slave.partial(known, |_| 0.0))
-    .get(|slave| slave.model().map_or(0.0, |model| f64::from(u8::from(model.resting().is_some())))),
-];
-
-/// A count as an Integer.
-fn as_count(count: u64) -> i64 {
-    i64::try_from(count).unwrap_or(i64::MAX)
-}
-
-/// A count as a Real: exact up to 2^53, which no run reaches.
-#[allow(clippy::cast_precision_loss)]
-const fn as_real(count: u64) -> f64 {
-    count as f64
-}
-
 /// Parameters of the paper and of contacts that last.
 const PARAMETERS: &[V] = reals("cylinder.mass", "biasVoltage");
 const CHOICES: &[V] = choices("excitation.seed", "contact.reaction");
@@ -444,16 +358,6 @@ const FILM_PARAMETERS: &[V] = reals("membrane.shearModulus", "membrane.ogdenExpo
 
 /// The viscosity of a film, and what follows from it.
 const VISCOUS_PARAMETERS: &[V] = reals("membrane.viscousModulus", "membrane.relaxationTime");
-static EFFECTIVE_RESTITUTION: [V; 1] = [V::output(
-    "impact.effectiveRestitution",
-    "1",
-    "Rebound speed over impact speed of the last impact that is over: membrane.restitution under the impulsive law, under the compliant law that of the contact, of wall and viscous film; 0 before the first",
-)
-.discrete()
-.depends_on(&[])
-.initially_depends_on(&[IMPACT])
-.partial_derivative(change!(rebound))
-.get(|slave| slave.read(videg_model::Harvester::effective_restitution))];
 static VISCOUS_ENERGY: [V; 1] = energies! {
     "energy.viscous" viscous 1e-5 [] []
         "Energy lost in viscous films (membrane.viscousModulus) since the start";
@@ -467,41 +371,6 @@ static DAMPING_POWER: [V; 1] = [V::output("der(energy.damping)", "W", "c z_M'^2:
     .initially_depends_on(&[IMPACT])
     .partial_derivative(change!(damping_power))
     .get(|slave| slave.read(videg_model::Harvester::damping_power))];
-
-/// The name of the clock of impacts.
-const CLOCK: &str = "impact.clock";
-
-static IMPACT_SIDE: EnumerationType = EnumerationType {
-    name: "ImpactSide",
-    description: "Membrane that the ball hits",
-    items: &[("none", "No impact yet"), ("left", "The left one"), ("right", "The right one")],
-};
-
-/// Impacts as FMI 3.0 tells of them.
-static IMPACTS: [V; 4] = [
-    V::output_clock(CLOCK, "Ticks at each impact; under the compliant law at the begin of each contact")
-        .depends_on(&[])
-        .get(|slave| slave.has_hit),
-    V::enumeration_output("impact.side", &IMPACT_SIDE, "Membrane that the ball hits")
-        .clocked_by(&[CLOCK])
-        .depends_on(&[CLOCK])
-        .get(|slave| slave.last_impact.map_or(1, |(side, _)| if side == Side::Left { 2 } else { 3 })),
-    V::output("impact.speed", "m/s", "abs(v_m - v_M) before the impact, Eq. (10)")
-        .discrete()
-        .clocked_by(&[CLOCK])
-        .depends_on(&[CLOCK])
-        .partial_derivative(change!(last_speed))
-        .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| speed)),
-    V::output("impact.energy", "J", "W: energy gain of the impact, Eq. (13) at the deflection of Eq. (10)")
-        .discrete()
-        .clocked_by(&[CLOCK])
-        .depends_on(&[CLOCK])
-        .nominal(1e-6)
-        .partial_derivative(|slave, known| {
-            slave.partial(known, |change| change.shown(|changes| changes.last_speed)) * slave.energy_slope()
-        })
-        .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| slave.impact_energy(speed))),
-];
 
 /// Number of variables.
 const COUNT: usize = PARAMETERS.len()

@@ -54,6 +54,15 @@ impl Harvester {
         self.noise.limit().map_or(ahead, |end| if end > self.time { end } else { next }.min(ahead))
     }
 
+    /// End, s, of the stretch that begins at the present time and on which both capacitances are smooth as far as is known: the
+    /// first [`Harvester::next_knot`] later than the present time, or [`Harvester::known_until`], or `time`. Whether it is
+    /// that knot.
+    pub fn smooth_until(&self, time: f64) -> (f64, bool) {
+        let knot = self.next_knot().filter(|knot| *knot > self.time).unwrap_or(f64::INFINITY);
+        let end = knot.min(self.known_until()).min(time);
+        (end, end == knot)
+    }
+
     /// Up to where the contact is predicted, s: to where the membrane's force changes its branch, if that is within a period.
     /// With phase noise a contact is followed hold interval by hold interval, whose ends are no knots.
     fn contact_knot(&self) -> Option<f64> {

@@ -5,8 +5,6 @@
 //!
 //! writes every Real output at the end of each step into a CSV file for each FMU. What the FMUs warn of goes to stderr.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
@@ -14,9 +12,7 @@ use fmi::fmi2::import::Fmi2Import;
 use fmi::fmi2::instance::{CoSimulation, Common, InstanceCS};
 use fmi::fmi2::schema::{Causality, ScalarVariableElement};
 use fmi::traits::{FmiImport, FmiStatus};
-
-/// Outputs of the harvester and inputs of the circuit.
-const CONNECTED: [&str; 2] = ["left.capacitance", "right.capacitance"];
+use videg_fmi_crate::{CONNECTED, Rows, write};
 
 fn main() -> Result<()> {
     log::set_logger(&Complaints)?;
@@ -61,9 +57,6 @@ impl log::Log for Complaints {
 
     fn flush(&self) {}
 }
-
-/// Values of the outputs, row by row.
-type Rows = Vec<Vec<f64>>;
 
 /// The harvester, whose capacitances are those of the circuit from the start of each step on.
 struct Pair {
@@ -169,16 +162,7 @@ impl Slave {
         Ok(values)
     }
 
-    /// Writes `FOLDER/MODEL.csv`.
     fn write(&self, folder: &Path, rows: &Rows) -> Result<()> {
-        let path = folder.join(&self.import.model_description().model_name).with_extension("csv");
-        let mut file = BufWriter::new(File::create(&path).with_context(|| path.display().to_string())?);
-        let names: Vec<&str> = self.outputs.iter().map(|(name, _)| name.as_str()).collect();
-        writeln!(file, "{}", names.join(","))?;
-        for row in rows {
-            let row: Vec<String> = row.iter().map(|value| format!("{value:e}")).collect();
-            writeln!(file, "{}", row.join(","))?;
-        }
-        Ok(file.flush()?)
+        write(folder, &self.import.model_description().model_name, &self.outputs, rows)
     }
 }

@@ -87,7 +87,7 @@ functions! {
     ) |i| i.directional_derivative(
         array(unknown, unknown_count, "vUnknown_ref")?,
         array(known, known_count, "vKnown_ref")?,
-        array(known_seed, known_count, "dvKnown")?,
+        array(known_seed, known_count, i.seed_argument())?,
         array_out(unknown_sensitivity, unknown_count, "dvUnknown")?,
     );
 }

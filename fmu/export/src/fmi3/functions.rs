@@ -157,17 +157,17 @@ functions! {
     };
     fmi3GetIntervalDecimal GetIntervalDecimal(
         vr: References, nvr: usize, intervals: *mut fmi3Float64, qualifiers: *mut fmi3IntervalQualifier
-    ) |_i| {
+    ) |i| {
         let mut write = array_out(intervals, nvr, "intervals")?;
         let mut qualify = array_out(qualifiers, nvr, "qualifiers")?;
-        Instance::<S>::get_intervals(array(vr, nvr, "valueReferences")?, |k, [interval, _]| {
+        i.get_intervals(array(vr, nvr, "valueReferences")?, |k, [interval, _]| {
             write(k, interval);
             qualify(k, fmu_abi::fmi3::fmi3IntervalUnchanged);
         })
     };
-    fmi3GetShiftDecimal GetShiftDecimal(vr: References, nvr: usize, shifts: *mut fmi3Float64) |_i| {
+    fmi3GetShiftDecimal GetShiftDecimal(vr: References, nvr: usize, shifts: *mut fmi3Float64) |i| {
         let mut write = array_out(shifts, nvr, "shifts")?;
-        Instance::<S>::get_intervals(array(vr, nvr, "valueReferences")?, |k, [_, shift]| write(k, shift))
+        i.get_intervals(array(vr, nvr, "valueReferences")?, |k, [_, shift]| write(k, shift))
     };
     fmi3GetIntervalFraction GetIntervalFraction(
         _vr: References, _nvr: usize, _counters: *mut fmi3UInt64, _resolutions: *mut fmi3UInt64,
@@ -241,7 +241,7 @@ functions! {
         i.directional_derivative(
             array(unknowns, unknown_count, "unknowns")?,
             array(knowns, known_count, "knowns")?,
-            array(seed, known_count, "seed")?,
+            array(seed, known_count, i.seed_argument())?,
             array_out(sensitivity, unknown_count, "sensitivity")?,
         )
     };
@@ -254,7 +254,7 @@ functions! {
         i.adjoint_derivative(
             array(unknowns, unknown_count, "unknowns")?,
             array(knowns, known_count, "knowns")?,
-            array(seed, unknown_count, "seed")?,
+            array(seed, unknown_count, i.seed_argument())?,
             array_out(sensitivity, known_count, "sensitivity")?,
         )
     };

@@ -2,7 +2,7 @@
 
 use super::Function;
 use crate::ffi::{check_array, enter, showing, with};
-use crate::instance::{Call, Instance, Progress, StepOutcome};
+use crate::instance::{Call, Instance, Progress, StepOutcome, UnderWay};
 use crate::slave::Slave;
 use fmu_abi::fmi3::{
     fmi3Boolean, fmi3False, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback,
@@ -47,7 +47,7 @@ impl Outputs {
 
 /// What the importer is called with.
 struct Update {
-    time: f64,
+    step: UnderWay,
     callback: fmi3IntermediateUpdateCallback,
     environment: fmi3InstanceEnvironment,
     can_return_early: bool,
@@ -55,13 +55,13 @@ struct Update {
 
 impl Update {
     /// Lets the importer look. A step that may end early does so here, whether it is asked to or not.
-    unsafe fn show(self) {
+    unsafe fn show(&self) {
         let Some(callback) = self.callback else { return };
-        let (mut wants, mut time) = (fmi3False, self.time);
+        let (mut wants, mut time) = (fmi3False, self.step.time());
         let (set, get, finished, can_return_early) = (fmi3False, fmi3True, fmi3True, self.can_return_early.into());
         // SAFETY: the callback came from the importer with this environment.
         unsafe {
-            callback(self.environment, self.time, set, get, finished, can_return_early, &raw mut wants, &raw mut time);
+            callback(self.environment, time, set, get, finished, can_return_early, &raw mut wants, &raw mut time);
         }
     }
 }
@@ -109,7 +109,7 @@ unsafe fn step_in_parts<S: Slave>(instance: fmi3Instance, t: f64, h: f64, output
     while let Some(shown) = update.take() {
         unsafe { showing::<S>(instance, || shown.show()) };
         let resume = |i: &mut Instance<S>| {
-            let progress = i.resume_step()?;
+            let progress = i.resume_step(shown.step)?;
             update = follow(i, progress, outputs);
             Ok(())
         };
@@ -127,10 +127,10 @@ fn follow<S: Slave>(i: &Instance<S>, progress: Progress, outputs: Outputs) -> Op
             unsafe { outputs.write(outcome) };
             None
         }
-        Progress::Update(time) => {
+        Progress::Update(step) => {
             let session = i.session();
             let (callback, environment) = (session.intermediate_update, session.environment);
-            Some(Update { time, callback, environment, can_return_early: session.early_return })
+            Some(Update { step, callback, environment, can_return_early: session.early_return })
         }
     }
 }

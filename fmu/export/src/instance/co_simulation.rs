@@ -128,7 +128,7 @@ impl<S: Slave> Instance<S> {
         for ((&reference, &order), &value) in rows() {
             let variable = variable::<S>(reference)?;
             let Kind::Real(spec) = variable.kind() else {
-                return Err(not_real(variable, reference));
+                return Err(self.wrong_type(reference, <AsReal as Transfer<S>>::NAME));
             };
             let Some((highest, set)) = spec.input_derivatives else {
                 return Err(no_derivatives(variable));
@@ -193,15 +193,6 @@ impl<S: Slave> Instance<S> {
             fmi2Terminated => Ok(self.core.last_step.terminated),
             _ => Err(CallError::NoStatus(kind)),
         }
-    }
-}
-
-fn not_real<S: Slave>(variable: &Variable<S>, reference: u32) -> CallError {
-    CallError::WrongType {
-        name: variable.name(),
-        reference,
-        actual: variable.kind().type_name(),
-        wanted: <AsReal as Transfer<S>>::NAME,
     }
 }
 

@@ -12,15 +12,6 @@ use crate::slave::Slave;
 use crate::standard::Standard;
 use crate::variable::{Causality, Kind, Variability, Variable};
 
-fn check_seeds<S: Slave>(seeds: &[f64], argument: &'static str) -> Call {
-    if !S::INFO.directional_derivatives {
-        return Err(CallError::Unsupported("directional derivatives"));
-    }
-    let Some(seed) = seeds.iter().find(|seed| !seed.is_finite()) else { return Ok(()) };
-    let bound = "it must be finite".into();
-    Err(CallError::BadArgument { argument, value: seed.to_string(), bound })
-}
-
 /// The sum, unless the model knows none.
 fn known_sum<S>(sum: f64, of: &Variable<S>) -> Call<f64> {
     if !sum.is_nan() {
@@ -30,24 +21,41 @@ fn known_sum<S>(sum: f64, of: &Variable<S>) -> Call<f64> {
     Err(SlaveError::error(message).into())
 }
 
+/// For each of `rows` the sum of `partial` of it and each of `columns` times the seed of that column.
+fn sums<S>(
+    rows: &[&Variable<S>],
+    columns: &[&Variable<S>],
+    seeds: &[f64],
+    partial: impl Fn(&Variable<S>, &Variable<S>) -> f64,
+    mut write: impl FnMut(usize, f64),
+) -> Call {
+    for (i, row) in rows.iter().enumerate() {
+        let terms = columns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
+        let sum: f64 = terms.map(|(column, seed)| partial(row, column) * seed).sum();
+        write(i, known_sum(sum, row)?);
+    }
+    Ok(())
+}
+
 impl<S: Slave> Instance<S> {
+    /// The argument of the C functions that holds the seeds.
+    pub(crate) const fn seed_argument(&self) -> &'static str {
+        match self.session.standard {
+            Standard::Fmi2 => "dvKnown",
+            Standard::Fmi3 => "seed",
+        }
+    }
+
     /// `fmi2GetDirectionalDerivative`: for each unknown the sum of its partial derivatives times the seeds.
     pub(crate) fn directional_derivative(
         &mut self,
         unknowns: &[u32],
         knowns: &[u32],
         seeds: &[f64],
-        mut write: impl FnMut(usize, f64),
+        write: impl FnMut(usize, f64),
     ) -> Call {
-        let argument = if self.session.standard == Standard::Fmi2 { "dvKnown" } else { "seed" };
-        check_seeds::<S>(seeds, argument)?;
-        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns)?;
-        for (i, unknown) in unknowns.into_iter().enumerate() {
-            let terms = knowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
-            let sum: f64 = terms.map(|(known, seed)| self.partial_derivative(unknown, known) * seed).sum();
-            write(i, known_sum(sum, unknown)?);
-        }
-        Ok(())
+        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns, seeds)?;
+        sums(&unknowns, &knowns, seeds, |unknown, known| self.partial_derivative(unknown, known), write)
     }
 
     /// `fmi3GetAdjointDerivative`: for each known the sum of the partial derivatives with respect to it times the seeds.
@@ -56,24 +64,33 @@ impl<S: Slave> Instance<S> {
         unknowns: &[u32],
         knowns: &[u32],
         seeds: &[f64],
-        mut write: impl FnMut(usize, f64),
+        write: impl FnMut(usize, f64),
     ) -> Call {
-        check_seeds::<S>(seeds, "seed")?;
-        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns)?;
-        for (i, known) in knowns.into_iter().enumerate() {
-            let terms = unknowns.iter().zip(seeds).filter(|(_, seed)| **seed != 0.0);
-            let sum: f64 = terms.map(|(unknown, seed)| self.partial_derivative(unknown, known) * seed).sum();
-            write(i, known_sum(sum, known)?);
-        }
-        Ok(())
+        let [unknowns, knowns] = self.unknowns_and_knowns(unknowns, knowns, seeds)?;
+        sums(&knowns, &unknowns, seeds, |known, unknown| self.partial_derivative(unknown, known), write)
     }
 
-    /// The rows of both, as values that are set have them.
-    fn unknowns_and_knowns(&mut self, unknowns: &[u32], knowns: &[u32]) -> Call<[Vec<&'static Variable<S>>; 2]> {
+    /// The rows of both, as values that are set have them, once the seeds are found usable.
+    fn unknowns_and_knowns(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seeds: &[f64],
+    ) -> Call<[Vec<&'static Variable<S>>; 2]> {
+        self.check_seeds(seeds)?;
         self.update()?;
         let knowns = knowns.iter().map(|&reference| self.known(reference)).collect::<Call<Vec<_>>>()?;
         let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Call<Vec<_>>>()?;
         Ok([unknowns, knowns])
+    }
+
+    fn check_seeds(&self, seeds: &[f64]) -> Call {
+        if !S::INFO.directional_derivatives {
+            return Err(CallError::Unsupported("directional derivatives"));
+        }
+        let Some(seed) = seeds.iter().find(|seed| !seed.is_finite()) else { return Ok(()) };
+        let bound = "it must be finite".into();
+        Err(CallError::BadArgument { argument: self.seed_argument(), value: seed.to_string(), bound })
     }
 
     /// Between events discrete variables are constant: their derivatives are zero. In model exchange, after initialisation, an

@@ -62,7 +62,7 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn get_clocks(&mut self, references: &[u32], mut write: impl FnMut(usize, bool)) -> Call {
         self.update()?;
         for (k, &reference) in references.iter().enumerate() {
-            let (variable, clock) = clock::<S>(reference)?;
+            let (variable, clock) = self.clock(reference)?;
             let may_tick = self.core.ticking || variable.causality() == Causality::Input;
             write(k, may_tick && clock.get.get(&self.core.model));
         }
@@ -73,7 +73,7 @@ impl<S: Slave> Instance<S> {
     pub(crate) fn set_clocks(&mut self, references: &[u32], values: &[bool]) -> Call {
         let mut checked = Vec::with_capacity(references.len());
         for (&reference, &ticks) in references.iter().zip(values) {
-            let (variable, clock) = clock::<S>(reference)?;
+            let (variable, clock) = self.clock(reference)?;
             let refuse = |bound: &str| CallError::BadValue {
                 name: variable.name(),
                 value: if ticks { "active" } else { "inactive" }.to_owned(),
@@ -92,9 +92,9 @@ impl<S: Slave> Instance<S> {
     }
 
     /// `fmi3GetIntervalDecimal` and `fmi3GetShiftDecimal`: interval and shift of a periodic clock, s.
-    pub(crate) fn get_intervals(references: &[u32], mut write: impl FnMut(usize, [f64; 2])) -> Call {
+    pub(crate) fn get_intervals(&self, references: &[u32], mut write: impl FnMut(usize, [f64; 2])) -> Call {
         for (k, &reference) in references.iter().enumerate() {
-            let (variable, clock) = clock::<S>(reference)?;
+            let (variable, clock) = self.clock(reference)?;
             let ClockInterval::Periodic { interval, shift } = clock.interval else {
                 return Err(CallError::BadValue {
                     name: variable.name(),
@@ -106,14 +106,12 @@ impl<S: Slave> Instance<S> {
         }
         Ok(())
     }
-}
 
-fn clock<S: Slave>(reference: u32) -> Call<(&'static Variable<S>, &'static ClockSpec<S>)> {
-    let variable = variable::<S>(reference)?;
-    match variable.kind() {
-        Kind::Clock(spec) => Ok((variable, spec)),
-        other => {
-            Err(CallError::WrongType { name: variable.name(), reference, actual: other.type_name_3(), wanted: "Clock" })
+    fn clock(&self, reference: u32) -> Call<(&'static Variable<S>, &'static ClockSpec<S>)> {
+        let variable = variable::<S>(reference)?;
+        match variable.kind() {
+            Kind::Clock(spec) => Ok((variable, spec)),
+            _ => Err(self.wrong_type(reference, "Clock")),
         }
     }
 }

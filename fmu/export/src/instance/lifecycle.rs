@@ -82,7 +82,6 @@ impl<S: Slave> Instance<S> {
     /// `fmi2Reset`: a fresh model. Saved FMU states and log settings stay.
     pub(crate) fn reset(&mut self) {
         *self.core = Core::new(self.core.exchange, self.resources.as_deref());
-        self.under_way = None;
         self.logger.forget_given();
         self.strings.clear();
     }

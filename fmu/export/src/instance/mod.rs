@@ -24,8 +24,7 @@ use fmu_abi::{fmi2Error, fmi2Fatal, fmi2OK, fmi2Status, fmi2Warning};
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use stepping::UnderWay;
-pub(crate) use stepping::{Progress, Session, StepOutcome};
+pub(crate) use stepping::{Progress, Session, StepOutcome, UnderWay};
 
 /// Outcome of a call.
 pub(crate) type Call<T = ()> = Result<T, CallError>;
@@ -53,8 +52,6 @@ pub(crate) struct Core<S> {
 pub(crate) struct Instance<S: Slave> {
     core: Cores<S>,
     session: Session,
-    /// FMI 3.0: a step within which the importer is looking at intermediate values.
-    under_way: Option<UnderWay>,
     logger: Logger,
     guid: Guid,
     /// Folder `resources` of the unpacked FMU.
@@ -91,7 +88,7 @@ impl<S: Slave> Instance<S> {
     /// A fresh instance.
     pub(crate) fn new(session: Session, resources: Option<PathBuf>, logger: Logger, guid: Guid) -> Self {
         let core = Cores::new(Core::new(session.exchange, resources.as_deref()));
-        Self { core, session, under_way: None, logger, guid, resources, strings: Vec::new() }
+        Self { core, session, logger, guid, resources, strings: Vec::new() }
     }
 
     /// How it was made.

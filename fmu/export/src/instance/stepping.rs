@@ -75,8 +75,8 @@ impl Session {
 }
 
 /// A step that is not at its end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct UnderWay {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct UnderWay {
     start: f64,
     /// Where it is.
     at: f64,
@@ -91,13 +91,18 @@ impl UnderWay {
     const fn new(start: f64, end: f64) -> Self {
         Self { start, at: start, end, had_event: false, may_stop: false }
     }
+
+    /// Where it is, s.
+    pub(crate) const fn time(&self) -> f64 {
+        self.at
+    }
 }
 
 /// What a step has come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Progress {
-    /// The importer may look, at this time, s.
-    Update(f64),
+    /// The importer may look, where this step is; it is resumed after that.
+    Update(UnderWay),
     Ended(StepOutcome),
 }
 
@@ -132,65 +137,56 @@ impl<S: Slave> Instance<S> {
     #[inline(never)]
     pub(crate) fn begin_step(&mut self, t: f64, h: f64) -> Call<Progress> {
         self.check_step(t, h)?;
-        self.under_way = Some(UnderWay::new(t, t + h));
-        self.go_on()
+        self.go_on(UnderWay::new(t, t + h))
     }
 
-    /// Goes on with the step that is under way, after the importer has looked. One that may end early does so wherever there is
-    /// something to look at, whether it is asked to or not.
-    pub(crate) fn resume_step(&mut self) -> Call<Progress> {
+    /// Goes on with `step`, after the importer has looked. One that may end early does so wherever there is something to look at,
+    /// whether it is asked to or not.
+    pub(crate) fn resume_step(&mut self, step: UnderWay) -> Call<Progress> {
         if self.core.state != CallState::IntermediateUpdateMode {
             return Err(CallError::Unsupported("a step whose instance failed within intermediateUpdate"));
         }
         self.core.state = CallState::StepMode;
-        let Some(step) = self.under_way else {
-            return Err(CallError::Unsupported("an intermediate update without a step"));
-        };
-        if step.at >= step.end || step.may_stop && self.session.early_return {
-            return Ok(Progress::Ended(self.end_step(step)));
-        }
-        self.go_on()
+        if self.is_over(step) { Ok(Progress::Ended(self.outcome(step))) } else { self.go_on(step) }
     }
 
     /// From point to point.
-    fn go_on(&mut self) -> Call<Progress> {
+    fn go_on(&mut self, mut step: UnderWay) -> Call<Progress> {
         loop {
-            let Some(mut step) = self.under_way else {
-                return Err(CallError::Unsupported("a step that is not under way"));
-            };
             let stop = match self.core.model.do_step_to_event(step.at, step.end, &self.logger) {
                 Ok(stop) => stop,
-                Err(error) => {
-                    self.under_way = None;
-                    return self.stopped(&error, step).map(Progress::Ended);
-                }
+                Err(error) => return self.stopped(&error, step).map(Progress::Ended),
             };
             step.at = stop.map_or(step.end, |stop: Stop| stop.time.min(step.end));
             step.had_event |= stop.is_some_and(|stop| stop.is_event);
             step.may_stop = stop.is_some();
             (self.core.time, self.core.ticking) = (step.at, step.had_event);
-            self.under_way = Some(step);
             if self.session.intermediate_update.is_some() {
                 self.core.state = CallState::IntermediateUpdateMode;
-                return Ok(Progress::Update(step.at));
+                return Ok(Progress::Update(step));
             }
-            if step.at >= step.end || step.may_stop && self.session.early_return {
-                return Ok(Progress::Ended(self.end_step(step)));
+            if self.is_over(step) {
+                return Ok(Progress::Ended(self.outcome(step)));
             }
         }
     }
 
-    fn end_step(&mut self, step: UnderWay) -> StepOutcome {
-        self.under_way = None;
-        let time = step.at;
-        StepOutcome { event: step.had_event && self.session.event_mode, terminate: false, early: time < step.end, time }
+    /// Whether a step ends where it is.
+    const fn is_over(&self, step: UnderWay) -> bool {
+        step.at >= step.end || step.may_stop && self.session.early_return
+    }
+
+    /// Of a step that ends where it is.
+    const fn outcome(&self, step: UnderWay) -> StepOutcome {
+        let event = step.had_event && self.session.event_mode;
+        StepOutcome { event, terminate: false, early: step.at < step.end, time: step.at }
     }
 
     /// A step that its model ended. It may ask for the end of the simulation, and it may have gone a part of the way; a step that is
     /// discarded as a whole leaves all as it was.
     #[cold]
     fn stopped(&mut self, error: &SlaveError, step: UnderWay) -> Call<StepOutcome> {
-        let UnderWay { start, at, end, had_event, .. } = step;
+        let UnderWay { start, at, end, .. } = step;
         let time = error.last_successful_time().unwrap_or(at).max(at).min(end);
         if error.wants_to_terminate() {
             self.logger.event(error);
@@ -208,6 +204,6 @@ impl<S: Slave> Instance<S> {
         }
         self.logger.event(error);
         self.core.time = time;
-        Ok(StepOutcome { event: had_event && self.session.event_mode, terminate: false, early: time < end, time })
+        Ok(self.outcome(UnderWay { at: time, ..step }))
     }
 }

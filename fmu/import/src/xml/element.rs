@@ -161,12 +161,18 @@ impl<'a> Element<'a> {
     }
 
     pub fn boolean(&self, place: &str, name: &str) -> Result<Option<bool>> {
-        let read = |text: &str| match text.trim() {
-            "true" | "1" => Some(true),
-            "false" | "0" => Some(false),
-            _ => None,
-        };
-        self.read(place, name, read, "true or false")
+        self.read(place, name, truth, TRUTHS)
+    }
+}
+
+/// What [`truth`] reads, as errors say it.
+pub(super) const TRUTHS: &str = "true or false";
+
+pub(super) fn truth(text: &str) -> Option<bool> {
+    match text.trim() {
+        "true" | "1" => Some(true),
+        "false" | "0" => Some(false),
+        _ => None,
     }
 }
 

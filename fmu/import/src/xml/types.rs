@@ -17,6 +17,15 @@ pub(super) struct SimpleType {
     pub is_enumeration: bool,
 }
 
+impl SimpleType {
+    /// Unit and bounds of a Real.
+    fn read_real(&mut self, it: &Element<'_>, place: &str) -> Result<()> {
+        self.real = [it.real(place, "min")?, it.real(place, "max")?];
+        self.unit = it.attribute("unit")?.map(|unit| shared(place, "unit", unit)).transpose()?.map(Arc::from);
+        Ok(())
+    }
+}
+
 /// Type definitions by name; of those that share one, the first.
 pub(super) struct Types(HashMap<String, SimpleType>);
 
@@ -32,9 +41,7 @@ impl Types {
             let mut simple =
                 SimpleType { is_enumeration: element.child("Enumeration")?.is_some(), ..SimpleType::default() };
             if let Some(it) = element.child("Real")? {
-                simple.real = [it.real(&place, "min")?, it.real(&place, "max")?];
-                simple.unit =
-                    it.attribute("unit")?.map(|unit| shared(&place, "unit", unit)).transpose()?.map(Arc::from);
+                simple.read_real(it, &place)?;
             }
             if let Some(it) = element.child("Integer")? {
                 simple.integer = [it.whole(&place, "min")?, it.whole(&place, "max")?];
@@ -54,9 +61,7 @@ impl Types {
             let place = format!("type \"{name}\"");
             let mut simple = SimpleType { is_enumeration: type_name == "Enumeration", ..SimpleType::default() };
             if type_name.starts_with("Float") {
-                simple.real = [it.real(&place, "min")?, it.real(&place, "max")?];
-                simple.unit =
-                    it.attribute("unit")?.map(|unit| shared(&place, "unit", unit)).transpose()?.map(Arc::from);
+                simple.read_real(it, &place)?;
             } else if type_name.contains("Int") {
                 simple.integer = [it.integer(&place, "min")?, it.integer(&place, "max")?];
             }
@@ -69,8 +74,17 @@ impl Types {
         self.0.get(name?)
     }
 
+    /// An error unless `name`, which the variable at `place` declares, is an enumeration.
+    pub fn check_enumeration(&self, place: &str, name: &str) -> Result<()> {
+        if self.get(Some(name)).is_some_and(|simple| simple.is_enumeration) {
+            return Ok(());
+        }
+        let allowed = format!("an enumeration of TypeDefinitions ({})", self.enumerations().join(", "));
+        Err(not_allowed(place, "declaredType", name, &allowed))
+    }
+
     /// Names of the enumerations, sorted.
-    pub fn enumerations(&self) -> Vec<&str> {
+    fn enumerations(&self) -> Vec<&str> {
         let enumerations = self.0.iter().filter(|(_, simple)| simple.is_enumeration);
         let mut names: Vec<_> = enumerations.map(|(name, _)| name.as_str()).collect();
         names.sort_unstable();

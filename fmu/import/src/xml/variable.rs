@@ -4,8 +4,8 @@
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::element::{Element, missing, not_allowed};
-use super::types::Types;
+use super::element::{Element, TRUTHS, missing, truth};
+use super::types::{SimpleType, Types};
 use super::{Causality, Initial, Kind, Result, Variability, Variable};
 
 /// The types of FMI 3.0.
@@ -75,11 +75,7 @@ fn kind(element: &Element<'_>, place: &str, types: &Types) -> Result<(Kind, Opti
     let declared = |own: &Element<'_>| own.attribute("declaredType");
     if let Some(own) = element.child("Real")? {
         let declared = declared(own)?;
-        let inherited = types.get(declared.as_deref());
-        let [least, most] = inherited.map_or([None; 2], |it| it.real);
-        let unit = own.attribute("unit")?.map(Arc::from).or_else(|| inherited.and_then(|it| it.unit.clone()));
-        let (min, max) = (own.real(place, "min")?.or(least), own.real(place, "max")?.or(most));
-        Ok((Kind::Real { unit, start: own.real(place, "start")?, min, max }, declared))
+        Ok((real(own, place, types.get(declared.as_deref()), || own.real(place, "start"))?, declared))
     } else if let Some(own) = element.child("Integer")? {
         let declared = declared(own)?;
         let [least, most] = types.get(declared.as_deref()).map_or([None; 2], |it| it.integer);
@@ -91,10 +87,7 @@ fn kind(element: &Element<'_>, place: &str, types: &Types) -> Result<(Kind, Opti
         Ok((Kind::String { start: own.attribute("start")? }, declared(own)?))
     } else if let Some(own) = element.child("Enumeration")? {
         let declared = own.required(place, "declaredType")?;
-        if !types.get(Some(&declared)).is_some_and(|simple| simple.is_enumeration) {
-            let allowed = format!("an enumeration of TypeDefinitions ({})", types.enumerations().join(", "));
-            return Err(not_allowed(place, "declaredType", &declared, &allowed));
-        }
+        types.check_enumeration(place, &declared)?;
         Ok((Kind::Enumeration { start: own.integer(place, "start")? }, Some(declared)))
     } else {
         Err(missing(place, "type element (Real, Integer, Boolean, String or Enumeration)"))
@@ -107,29 +100,15 @@ fn kind_3(type_name: &str, own: &Element<'_>, place: &str, types: &Types) -> Res
     let inherited = types.get(declared.as_deref());
     let kind = match type_name {
         "Float64" | "Float32" => {
-            let [least, most] = inherited.map_or([None; 2], |it| it.real);
-            let unit = own.attribute("unit")?.map(Arc::from).or_else(|| inherited.and_then(|it| it.unit.clone()));
-            let (min, max) = (own.real(place, "min")?.or(least), own.real(place, "max")?.or(most));
-            Kind::Real { unit, start: first(own, place, "a number", |text| text.parse().ok())?, min, max }
+            real(own, place, inherited, || first(own, place, "a number", |text| text.parse().ok()))?
         }
-        "Boolean" => {
-            let read = |text: &str| match text {
-                "true" | "1" => Some(true),
-                "false" | "0" => Some(false),
-                _ => None,
-            };
-            Kind::Boolean { start: first(own, place, "true or false", read)? }
-        }
+        "Boolean" => Kind::Boolean { start: first(own, place, TRUTHS, truth)? },
         "String" => {
             let start = own.children("Start").next();
             Kind::String { start: start.map(|start| start.required(place, "value")).transpose()? }
         }
         "Enumeration" => {
-            let name = declared.as_deref().unwrap_or_default();
-            if !types.get(Some(name)).is_some_and(|simple| simple.is_enumeration) {
-                let allowed = format!("an enumeration of TypeDefinitions ({})", types.enumerations().join(", "));
-                return Err(not_allowed(place, "declaredType", name, &allowed));
-            }
+            types.check_enumeration(place, declared.as_deref().unwrap_or_default())?;
             Kind::Enumeration { start: first(own, place, "an integer of 32 bits", |text| text.parse().ok())? }
         }
         "Clock" | "Binary" => Kind::Other,
@@ -142,6 +121,19 @@ fn kind_3(type_name: &str, own: &Element<'_>, place: &str, types: &Types) -> Res
         }
     };
     Ok((kind, declared))
+}
+
+/// A Real, whose type gives what it does not say itself.
+fn real(
+    own: &Element<'_>,
+    place: &str,
+    inherited: Option<&SimpleType>,
+    start: impl FnOnce() -> Result<Option<f64>>,
+) -> Result<Kind> {
+    let [least, most] = inherited.map_or([None; 2], |it| it.real);
+    let unit = own.attribute("unit")?.map(Arc::from).or_else(|| inherited.and_then(|it| it.unit.clone()));
+    let (min, max) = (own.real(place, "min")?.or(least), own.real(place, "max")?.or(most));
+    Ok(Kind::Real { unit, start: start()?, min, max })
 }
 
 /// The first value of `start`.

@@ -1,7 +1,5 @@
 //! As `main.rs`, of FMI 3.0, of which the crate has no FMU states: a fixed-step master.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
@@ -10,9 +8,7 @@ use fmi::fmi3::instance::InstanceCS;
 use fmi::fmi3::{CoSimulation, Common, Fmi3Model, GetSet};
 use fmi::schema::fmi3::{Causality, VariableType};
 use fmi::traits::FmiImport;
-
-/// Outputs of the harvester and inputs of the circuit.
-const CONNECTED: [&str; 2] = ["left.capacitance", "right.capacitance"];
+use videg_fmi_crate::{CONNECTED, Rows, write};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -43,9 +39,6 @@ fn main() -> Result<()> {
     }
     Ok(())
 }
-
-/// Values of the outputs, row by row.
-type Rows = Vec<Vec<f64>>;
 
 fn connect([harvester, circuit]: &mut [Slave<'_>; 2]) -> Result<()> {
     let capacitances = harvester.get(&CONNECTED)?;
@@ -121,16 +114,7 @@ impl<'a> Slave<'a> {
         Ok(values)
     }
 
-    /// Writes `FOLDER/MODEL.csv`.
     fn write(&self, folder: &Path, rows: &Rows) -> Result<()> {
-        let path = folder.join(&self.import.model_description().model_name).with_extension("csv");
-        let mut file = BufWriter::new(File::create(&path).with_context(|| path.display().to_string())?);
-        let names: Vec<&str> = self.outputs.iter().map(|(name, _)| name.as_str()).collect();
-        writeln!(file, "{}", names.join(","))?;
-        for row in rows {
-            let row: Vec<String> = row.iter().map(|value| format!("{value:e}")).collect();
-            writeln!(file, "{}", row.join(","))?;
-        }
-        Ok(file.flush()?)
+        write(folder, &self.import.model_description().model_name, &self.outputs, rows)
     }
 }
