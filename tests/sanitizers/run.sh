@@ -21,7 +21,7 @@ build() {
 # host SANITIZER FMU SEQUENCES [WORD]
 host() {
     local built="target/sanitizers/$1/$platform/debug"
-    "$built/fmu-host" "$built/lib$2.so" "modelDescription/$2.xml" 0 "${@:3}"
+    "$built/fmu-host" "$built/lib$2.so" "modelDescription/${folder:-}$2.xml" 0 "${@:3}"
 }
 
 # That a fault on purpose is reported: seen SANITIZER WORD REPORT
@@ -39,6 +39,7 @@ export ASAN_OPTIONS=detect_leaks=1 TSAN_OPTIONS=halt_on_error=1
 build address
 for name in "${names[@]}"; do
     host address "$name" "$sequences"
+    folder=fmi3/ host address "$name" "$sequences"
 done
 echo "no memory errors, no leaks"
 seen address leak "LeakSanitizer: detected memory leaks"

@@ -14,12 +14,14 @@ cargo build --quiet --profile "$profile" -p fmu-host -p videg-fmu-harvester -p v
 watched() {
     local name=$1
     shift
+    local description=modelDescription/${folder:-}$name.xml
     valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect \
-        --show-leak-kinds=definite,indirect "$built/fmu-host" "$built/lib$name.so" "modelDescription/$name.xml" "$@"
+        --show-leak-kinds=definite,indirect "$built/fmu-host" "$built/lib$name.so" "$description" "$@"
 }
 
 for name in VibroImpactHarvester HarvestingCircuit; do
     watched "$name" 0 "$sequences"
+    folder=fmi3/ watched "$name" 0 "$sequences"
 done
 echo "no memory errors, no leaks"
 

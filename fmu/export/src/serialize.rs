@@ -11,7 +11,7 @@ use crate::fnv::fnv64;
 use crate::guid::Guid;
 
 const MAGIC: [u8; 8] = *b"FMI2RsSt";
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 const HEADER: usize = 8 + 4 + 16 + 8;
 const CHECKSUM: usize = 8;
 

@@ -192,9 +192,9 @@ fn damaged_truncated_and_foreign_bytes_are_refused() {
     assert_eq!(host.deserialize(&good, &mut state), fmi2OK);
 }
 
-/// What the exporter keeps about a model: call state, model exchange, time, whether something was set, experiment, and
-/// status, time and end of the last step.
-type Record = (CallState, bool, f64, bool, Option<Experiment>, (fmi2Status, Option<f64>, bool));
+/// What the exporter keeps about a model: call state, model exchange, time and that of the last event, whether something was set,
+/// experiment, and status, time and end of the last step.
+type Record = (CallState, bool, [f64; 2], bool, Option<Experiment>, (fmi2Status, Option<f64>, bool));
 
 /// A serialised state with `change` made to its record, and length and checksum that are right again.
 fn changed(good: &[fmi2Byte], change: impl FnOnce(&mut Record)) -> Vec<fmi2Byte> {
@@ -226,10 +226,13 @@ fn bytes_that_are_intact_but_tell_of_no_possible_state_are_refused() {
     };
     let experiment = Experiment { start_time: 0.0, stop_time: None, tolerance: None };
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        refused(&format!("time = {value}"), &|record| record.2 = value);
+        refused(&format!("time = {value}"), &|record| record.2[0] = value);
         let start = Experiment { start_time: value, ..experiment };
         refused(&format!("startTime = {value}"), &|record| record.4 = Some(start));
         refused(&format!("last successful time = {value}"), &|record| record.5.1 = Some(value));
+    }
+    for value in [f64::NAN, f64::INFINITY] {
+        refused(&format!("the last event was at {value} s"), &|record| record.2[1] = value);
     }
     for value in [f64::NAN, -1.0] {
         let stop = Experiment { stop_time: Some(value), ..experiment };

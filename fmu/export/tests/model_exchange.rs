@@ -101,6 +101,25 @@ fn an_integrator_may_look_beyond_the_stop_time() {
 }
 
 #[test]
+fn only_a_restored_state_leads_back_behind_an_event() {
+    let host = Host::exchanging();
+    assert_eq!(place(&host, 0.5, 0.25), fmi2OK);
+    assert_eq!(place(&host, 0.25, 0.25), fmi2OK, "an integrator looks for the event");
+    assert_eq!(place(&host, 0.5, 0.25), fmi2OK);
+    let before = host.save();
+    unsafe { assert_eq!(fmi2EnterEventMode(host.component), fmi2OK) };
+    assert_eq!(host.enter_continuous_time_mode(), fmi2OK);
+    assert_eq!(place(&host, 0.5_f64.next_down(), 0.25), fmi2OK, "rounding");
+    assert_eq!(host.real(common::toy::TIME), 0.5);
+    host.refused(
+        unsafe { fmi2SetTime(host.component, 0.25) },
+        "fmi2SetTime: time = 0.25 s: it must not lie before the last event, at 0.5 s",
+    );
+    assert_eq!(host.restore(before), fmi2OK);
+    assert_eq!(place(&host, 0.25, 0.25), fmi2OK);
+}
+
+#[test]
 fn counts_and_values_that_make_no_sense_are_refused() {
     let mut values = [0.0; 3];
     let host = Host::exchanging();

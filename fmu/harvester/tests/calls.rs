@@ -2,8 +2,11 @@
 
 mod common;
 
+use fmu_export::abi::fmi3::*;
 use fmu_export::{Logger, Severity, Slave};
-use fmu_host::{Fmu, hostile, linked_functions, run};
+use fmu_host::{Fmu, fmi3, hostile, linked_functions, linked_functions3, run};
+
+fmu_host::linked_names3!();
 
 /// Random sequences of up to 32 calls each; some seconds without optimisation.
 const SEQUENCES: u64 = 50_000;
@@ -65,4 +68,13 @@ fn random_call_sequences_go_as_the_tables_say() {
     let census = run(&fmu(), 0..SEQUENCES).unwrap();
     let [ok, warning, discard, error, fatal] = census.statuses;
     assert!(ok > 1000 && warning > 0 && error > 1000 && fatal == 0 && discard > 0, "{:?}", census.statuses);
+}
+
+#[test]
+fn random_call_sequences_of_fmi_3_go_as_the_table_says() {
+    let description = include_str!("../../../modelDescription/fmi3/VibroImpactHarvester.xml");
+    let fmu = fmi3::Fmu::new(linked_functions3!(), description).unwrap();
+    let fmi3::Census { statuses: [ok, _, _, error, fatal], cells, restored } = fmi3::run(&fmu, 0..SEQUENCES);
+    assert!(ok > 1000 && error > 1000 && fatal == 0 && restored > 1000, "{ok}, {error}, {fatal}, {restored}");
+    assert_eq!(cells.len(), 70 * (6 + 5), "every function in every state but the fatal one");
 }

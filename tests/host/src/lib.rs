@@ -13,6 +13,7 @@ mod book {}
 mod arguments;
 mod call;
 pub mod experiment;
+pub mod fmi3;
 mod functions;
 mod host;
 pub mod hostile;

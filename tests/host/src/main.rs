@@ -1,6 +1,7 @@
 //! Random calls on the shared library of an FMU, for tools that watch a program from outside, such as valgrind.
 //!
-//! `fmu-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [threads | leak | overrun | race]`
+//! `fmu-host LIBRARY MODEL_DESCRIPTION FIRST_SEED SEQUENCES [threads | leak | overrun | race]`; the version of FMI is that of the
+//! description, and the words are for FMI 2.0.
 //!
 //! With `threads`, so many sequences run on each of several threads at once. The other words break a rule on purpose, to show
 //! that the tool sees it: an instance that is never freed, an array shorter than the call says, or two instances that write
@@ -8,7 +9,7 @@
 
 use fmu_export::Interface;
 use fmu_export::abi::{fmi2Component, fmi2ValueReference};
-use fmu_host::{Fmu, Functions, Instance, run};
+use fmu_host::{Fmu, Functions, Instance, fmi3, run};
 use libloading::Library;
 use std::mem::ManuallyDrop;
 
@@ -26,9 +27,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // It stays loaded to the end, so that valgrind knows the names of its functions.
     // SAFETY: the library is one of this project, whose loading runs no code of its own.
     let loaded = ManuallyDrop::new(unsafe { Library::new(library)? });
+    let description = std::fs::read_to_string(description)?;
+    if description.contains(" fmiVersion=\"3.0\"") {
+        // SAFETY: it exports the functions of FMI 3.0.
+        let functions = unsafe { fmi3::Functions::load(&loaded)? };
+        let census = fmi3::run(&fmi3::Fmu::new(functions, &description)?, first..first + count);
+        println!("{library}: {count} sequences of FMI 3.0, statuses {:?}", census.statuses);
+        return if fault.is_empty() { Ok(()) } else { Err("a fault is one of FMI 2.0".into()) };
+    }
     // SAFETY: it exports the functions of FMI 2.0.
     let functions = unsafe { Functions::load(&loaded)? };
-    let fmu = Fmu::new(functions, &std::fs::read_to_string(description)?)?;
+    let fmu = Fmu::new(functions, &description)?;
     if *fault == ["threads"] {
         return on_threads(&fmu, first, count);
     }

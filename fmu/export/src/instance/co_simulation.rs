@@ -38,7 +38,7 @@ const PART_OF_STEP: f64 = 0.1;
 /// How far two communication points may differ and still be the same, s: by 2.4e-7 of the time or of 1 s, if that is more,
 /// but at most by a tenth of the step. Masters count time as `n * h`, as a sum, in integer nanoseconds or in single
 /// precision; a difference that could be a step of its own is never accepted, unless it is rounding in double precision.
-fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
+pub(super) fn time_tolerance(a: f64, b: f64, step: f64) -> f64 {
     let magnitude = a.abs().max(b.abs());
     (TIME_ROUNDING * magnitude).max((SINGLE_PRECISION * magnitude.max(1.0)).min(PART_OF_STEP * step))
 }

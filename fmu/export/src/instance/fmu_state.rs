@@ -70,29 +70,34 @@ impl<S: Slave> Clone for Core<S> {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Self { ref model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed } = *source;
+        let Self { ref model, state, exchange, time, experiment, dirty, .. } = *source;
+        let Self { last_step, event_time, ticking, states_changed, .. } = *source;
         self.model.clone_from(model);
         (self.state, self.exchange, self.time) = (state, exchange, time);
         (self.experiment, self.dirty, self.last_step) = (experiment, dirty, last_step);
+        self.event_time = event_time;
         (self.ticking, self.states_changed) = (ticking, states_changed);
     }
 }
 
 /// What the exporter knows about a model, as it is serialised: all of [`Core`] but the model.
-type Record = (CallState, bool, f64, bool, Option<Experiment>, LastStep, [bool; 2]);
+type Record = (CallState, bool, [f64; 2], bool, Option<Experiment>, LastStep, [bool; 2]);
 
 impl<S: Slave> Core<S> {
     fn write(&self, out: &mut StateWriter) -> Result<(), StateError> {
-        let Self { ref model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed } = *self;
-        let record: Record = (state, exchange, time, dirty, experiment, last_step, [ticking, states_changed]);
+        let Self { ref model, state, exchange, time, event_time, experiment, dirty, last_step, .. } = *self;
+        let flags = [self.ticking, self.states_changed];
+        let record: Record = (state, exchange, [time, event_time], dirty, experiment, last_step, flags);
         out.write(&record)?;
         model.write_state(out)
     }
 
     fn read(from: &mut StateReader<'_>, present: &S, session: &Session) -> Result<Self, StateError> {
-        let (state, exchange, time, dirty, experiment, last_step, [ticking, states_changed]): Record = from.take()?;
+        let (state, exchange, [time, event_time], dirty, experiment, last_step, flags): Record = from.take()?;
+        let [ticking, states_changed] = flags;
         let model = S::read_state(from, present)?;
-        let core = Self { model, state, exchange, time, experiment, dirty, last_step, ticking, states_changed };
+        let core =
+            Self { model, state, exchange, time, experiment, dirty, last_step, event_time, ticking, states_changed };
         core.check(session)?;
         Ok(core)
     }
@@ -109,6 +114,9 @@ impl<S: Slave> Core<S> {
         }
         if !self.time.is_finite() {
             return invalid(format!("time = {} s: it must be finite", self.time));
+        }
+        if self.event_time.is_nan() || self.event_time == f64::INFINITY {
+            return invalid(format!("the last event was at {} s: it must be finite", self.event_time));
         }
         if let Some((argument, value, bound)) = self.experiment.as_ref().and_then(fault) {
             return invalid(format!("{argument} = {value}: {bound}"));

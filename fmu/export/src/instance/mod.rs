@@ -42,6 +42,8 @@ pub(crate) struct Core<S> {
     /// Something was set since calculated values were brought up to date.
     dirty: bool,
     last_step: LastStep,
+    /// Model exchange: when event mode was left last, s.
+    event_time: f64,
     /// FMI 3.0: an event has happened at the present time, and output clocks may tick.
     ticking: bool,
     /// FMI 3.0, model exchange: that event has changed continuous states, which nobody has been told yet.
@@ -78,6 +80,7 @@ impl<S: Slave> Core<S> {
             experiment: None,
             dirty: true,
             last_step: LastStep::NONE,
+            event_time: f64::NEG_INFINITY,
             ticking: false,
             states_changed: false,
         }

@@ -1,5 +1,6 @@
 //! Model exchange: modes, continuous states and what follows from them.
 
+use super::co_simulation::time_tolerance;
 use super::values::variable;
 use super::{Call, Instance};
 use crate::call_state::CallState;
@@ -47,12 +48,13 @@ impl<S: Slave> Instance<S> {
     /// `fmi2EnterContinuousTimeMode`
     pub(crate) fn enter_continuous_time_mode(&mut self) -> Call {
         self.update()?;
+        self.core.event_time = self.core.time;
         self.leave_event(CallState::ContinuousTimeMode);
         Ok(())
     }
 
     /// `fmi2SetTime`. A time behind the stop time is taken: integrators that choose their own steps go past the end and
-    /// interpolate back.
+    /// interpolate back. One before the last event is not: what the event did was not yet then. Only a restored state leads back.
     pub(crate) fn set_time(&mut self, time: f64) -> Call {
         if !time.is_finite() {
             return Err(CallError::BadArgument {
@@ -61,7 +63,15 @@ impl<S: Slave> Instance<S> {
                 bound: "it must be finite".into(),
             });
         }
-        self.core.time = time;
+        let event = self.core.event_time;
+        if time < event - time_tolerance(time, event, f64::INFINITY) {
+            return Err(CallError::BadArgument {
+                argument: "time",
+                value: format!("{time} s"),
+                bound: format!("it must not lie before the last event, at {event} s"),
+            });
+        }
+        self.core.time = time.max(event);
         self.core.dirty = true;
         Ok(())
     }
