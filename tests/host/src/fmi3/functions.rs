@@ -57,7 +57,7 @@ macro_rules! __linked3 {
         other { $($other:ident $other_type:ident($($c:ident: $c_type:ty)?) $(-> $ret:ty)?;)* }
         status { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
     ) => {
-        #[allow(dead_code)]
+        #[allow(dead_code, missing_docs)]
         unsafe extern "C" {
             $(pub fn $create($($part: $part_type),*) -> $component;)*
             $(pub fn $other($($c: $c_type)?) $(-> $ret)?;)*
