@@ -1,5 +1,7 @@
 //! Libraries of this project's FMUs that were built elsewhere.
 
+use fmu_package::FmiVersion;
+
 use super::FMUS;
 use super::error::{PackageError, Result};
 
@@ -19,7 +21,7 @@ impl AddedBinary {
     /// # Errors
     /// When the platform is unknown, the name tells no FMU, or the file is no such library.
     pub fn parse(text: &str) -> Result<Self> {
-        let binary = fmu_package::AddedBinary::parse(text)?;
+        let binary = fmu_package::AddedBinary::parse(text, FmiVersion::Fmi2)?;
         let name = binary.path.file_name().unwrap_or_default().to_string_lossy();
         let identifier = FMUS.iter().map(|fmu| fmu.identifier).find(|identifier| name.contains(identifier));
         let identifier = identifier.ok_or_else(|| PackageError::AddedName { path: binary.path.clone() })?;

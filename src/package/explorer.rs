@@ -28,7 +28,7 @@ pub fn explorer(options: &Options) -> Result<String> {
     if options.build {
         let file = page.display().to_string();
         let arguments = ["run", "--release", "-p", "videg-explorer-bundle", "--", &file];
-        fmu_package::cargo::run(&workspace, &arguments, options.progress)?;
+        fmu_package::cargo::run(&workspace, &arguments, fmu_package::Messages::Taken(options.progress))?;
     }
     read(&page)
 }

@@ -1,19 +1,29 @@
 //! Whether a library is as new as its sources, so that Cargo need not run.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// True if no source in the dep-info file that Cargo leaves beside `library`, nor the workspace's manifest or lock file, is newer.
-/// In doubt, false.
+/// True if no source in the dep-info file that Cargo leaves beside `library`, nor a manifest of theirs, the lock file or Cargo's
+/// configuration, is newer. In doubt, false.
 pub(super) fn is_fresh(library: &Path, workspace: &Path) -> bool {
     let check = || {
         let built = modified(library)?;
         let sources = sources(&std::fs::read_to_string(library.with_extension("d")).ok()?)?;
         let manifests = ["Cargo.toml", "Cargo.lock"].map(|name| workspace.join(name));
         let mut all = sources.iter().chain(&manifests);
-        Some(all.all(|path| modified(path).is_some_and(|changed| changed <= built)))
+        let is_old = |path: &Path| modified(path).is_some_and(|changed| changed <= built);
+        let settings = settings(&sources, workspace);
+        Some(all.all(|path| is_old(path)) && settings.iter().all(|path| !path.exists() || is_old(path)))
     };
     check().unwrap_or(false)
+}
+
+/// Files that may be there: the manifests of the packages that the sources belong to, and Cargo's configuration.
+fn settings(sources: &[PathBuf], workspace: &Path) -> BTreeSet<PathBuf> {
+    let folders = sources.iter().flat_map(|source| source.ancestors().skip(1));
+    let manifests = folders.filter(|folder| folder.starts_with(workspace)).map(|folder| folder.join("Cargo.toml"));
+    manifests.chain([workspace.join(".cargo").join("config.toml")]).collect()
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {
@@ -36,22 +46,23 @@ mod tests {
     fn a_library_older_than_one_of_its_sources_is_not_fresh() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
-        for name in ["Cargo.toml", "Cargo.lock", "a b.rs", "c.rs", "libx.so"] {
+        std::fs::create_dir(path("x")).unwrap();
+        for name in ["Cargo.toml", "Cargo.lock", "a b.rs", "x/c.rs", "x/Cargo.toml", "libx.so"] {
             std::fs::write(path(name), "").unwrap();
         }
         let escaped = path("a b.rs").display().to_string().replace(' ', "\\ ");
-        let dep_info = format!("{}: {escaped} {}\n", path("libx.so").display(), path("c.rs").display());
+        let dep_info = format!("{}: {escaped} {}\n", path("libx.so").display(), path("x/c.rs").display());
         assert!(!is_fresh(&path("libx.so"), folder.path()), "no dep-info");
         std::fs::write(path("libx.d"), dep_info).unwrap();
         assert!(is_fresh(&path("libx.so"), folder.path()));
-        for name in ["a b.rs", "Cargo.lock"] {
+        for name in ["a b.rs", "Cargo.lock", "x/Cargo.toml"] {
             let old = modified(&path(name)).unwrap();
             let file = std::fs::File::options().write(true).open(path(name)).unwrap();
             file.set_modified(SystemTime::now() + std::time::Duration::from_secs(5)).unwrap();
             assert!(!is_fresh(&path("libx.so"), folder.path()), "{name} is newer");
             file.set_modified(old).unwrap();
         }
-        std::fs::remove_file(path("c.rs")).unwrap();
+        std::fs::remove_file(path("x/c.rs")).unwrap();
         assert!(!is_fresh(&path("libx.so"), folder.path()), "a source is gone");
     }
 }

@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use fmu_package::cargo::{self, Build};
-use fmu_package::{Platform, Target};
+use fmu_package::{Messages, Platform, Target};
 
 use super::error::{PackageError, Result};
 use super::{FMUS, FmuPackage, NO_BUILD, Options, fresh};
@@ -88,7 +88,8 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
 fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_package::Result<Vec<PathBuf>> {
     let packages = FMUS.iter().flat_map(|fmu| ["-p", fmu.package]);
     let arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
-    let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, progress })?;
+    let messages = Messages::Taken(progress);
+    let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, messages })?;
     FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect()
 }
 

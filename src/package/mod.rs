@@ -212,7 +212,8 @@ fn write(archives: &[Vec<u8>], folder: &Path) -> Result<Vec<PathBuf>> {
 /// The libraries of each platform, in the order of [`FMUS`].
 fn binaries(options: &Options, workspace: Option<&Path>) -> Result<Vec<(Platform, Vec<PathBuf>)>> {
     // Checked before the first library is built, which may take minutes.
-    let targets = targets(&options.targets)?;
+    // FMUs of FMI 3.0 are made of those of FMI 2.0.
+    let targets = targets(&options.targets, FmiVersion::Fmi2)?;
     for fmu in &FMUS {
         fmu_package::AddedBinary::check_all(fmu.identifier, &added::of(fmu.identifier, &options.added), &targets)?;
     }

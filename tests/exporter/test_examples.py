@@ -189,7 +189,7 @@ def test_a_random_table_makes_its_own_fmu(user, reader, seed):
         ("time,a\n0,1\n0,2\n", "line 3: time 0 is not behind 0"),
         ("time,a\n0,x\n", 'line 2: "x" is no finite number'),
         ("time,a\n0\n", "line 2 has 1 cells, the first line 2"),
-        ("time,a,a\n0,1,2\n", "a"),
+        ("time,a,a\n0,1,2\n", "its name occurs twice"),
     ],
 )
 def test_a_table_that_is_none_is_refused_when_it_is_packaged(user, reader, text, said):

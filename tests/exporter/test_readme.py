@@ -1,7 +1,15 @@
 """The README of fmu-export, followed by somebody who has nothing else."""
 
 import re
+import shutil
+import subprocess
 import time
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
 
 import harness
 
@@ -75,6 +83,115 @@ def test_what_cannot_be_packaged_is_refused_with_what_is_needed(user):
     with (plain / "Cargo.toml").open("a") as manifest:
         manifest.write('\n[lib]\ncrate-type = ["cdylib"]\n')
     failed = user.run("cargo", "fmu", "build", folder=plain, check=False)
-    assert failed.returncode == 1 and "fmu-export" in failed.stdout, failed.stdout
+    assert failed.returncode == 1 and "does not contain this feature: fmu-export" in failed.stdout, failed.stdout
     failed = user.run("cargo", "fmu", "build", check=False)
     assert failed.returncode == 1 and "could not find `Cargo.toml`" in failed.stdout, failed.stdout
+
+
+MODEL = """
+use fmu_export::{Choice, Logger, ModelInfo, Slave, SlaveError, Variable, Variables, export_fmu};
+
+/// Items in an order of their own.
+#[derive(Clone, Copy, Default, Choice)]
+enum Law { #[default] Soft, Hard }
+
+#[derive(Clone, Default, Variables)]
+struct Model { FIELDS }
+
+impl Slave for Model {
+    const INFO: ModelInfo = ModelInfo::new("Own");
+    fn variables() -> &'static [Variable<Self>] { &Self::VARIABLES }
+    fn new() -> Self { Self::default() }
+    fn do_step(&mut self, _t: f64, _h: f64, _log: &Logger) -> Result<(), SlaveError> { Ok(()) }
+}
+export_fmu!(Model);
+"""
+
+
+@pytest.fixture(scope="module")
+def own(user):
+    """Builds a model with these fields: its FMU, or what was said."""
+    user.run("cargo", "fmu", "new", "own")
+    folder = user.home / "own"
+
+    def own(fields: str, *arguments: str) -> Path | str:
+        (folder / "src" / "lib.rs").write_text(MODEL.replace("FIELDS", fields))
+        made = user.run("cargo", "fmu", "build", *arguments, folder=folder, check=False, stderr=subprocess.PIPE)
+        return folder / made.stdout.strip() if made.returncode == 0 else made.stderr
+
+    own.folder = folder
+    return own
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ("#[parameter(start = 300)] x: u8", "literal out of range for `u8`"),
+        ("#[parameter(start = 2.5)] x: i32", "mismatched types"),
+        ("#[parameter(max = 1000)] x: u8", "its bounds 0 and 1000 are beyond UInt8"),
+        ("#[parameter(start = u64::MAX)] x: u64", "the start is beyond the largest i64"),
+        ("#[parameter(start = Medium)] x: Law", "the enumeration has no such item"),
+        ('#[parameter(start = "a")] x: f64', "mismatched types"),
+        ("#[parameter] x: Option<f64>", "is no type of a variable"),
+        ("#[parameter(colour = 3)] x: f64", "no method named `colour`"),
+        ("#[output] x: f64, #[output(name = \"x\")] y: f64", "its name occurs twice"),
+        ("#[output(unit = \"s\")] time: f64", "FMI 3.0 adds a variable of this name"),
+        ("#[output(depends_on = &[\"z\"])] y: f64", "depends on z, which is not in the table"),
+    ],
+)
+def test_a_mistake_in_a_model_is_told_where_it_is(own, fields, said):
+    told = own(fields)
+    assert isinstance(told, str) and said in told, told
+    assert "no associated item named `VARIABLES`" not in told
+
+
+def test_values_beyond_a_type_are_refused_and_names_are_as_they_are_written(own):
+    fields = """
+        #[parameter(start = 7, tunable)] byte: u8,
+        #[parameter] single: f32,
+        #[input] r#type: f64,
+        #[parameter(start = Hard)] law: Law,
+        #[output] wide: i64,
+    """
+    fmu = own(fields)
+    description = fmpy.read_model_description(str(fmu))
+    variables = {variable.name: variable for variable in description.modelVariables}
+    assert list(variables) == ["byte", "single", "type", "law", "wide"]
+    assert (variables["byte"].min, variables["byte"].max, variables["law"].start) == ("0", "255", "2")
+    for name, value in [("byte", 256), ("single", 1e39)]:
+        with pytest.raises(Exception, match="fmi2Set"):
+            fmpy.simulate_fmu(str(fmu), start_values={name: value})
+    assert fmpy.simulate_fmu(str(fmu), start_values={"byte": 255, "single": 1e38}) is not None
+    assert validate_fmu(str(own(fields, "--fmi", "3"))) == []
+
+
+def test_what_lies_beside_the_manifest_is_in_the_fmu_once(own):
+    (own.folder / "LICENSE.txt").write_text("mine")
+    (own.folder / "documentation").mkdir()
+    (own.folder / "documentation" / "Index.html").write_text("<html></html>")
+    (own.folder / "resources" / "curves").mkdir(parents=True)
+    (own.folder / "resources" / "curves" / "a.csv").write_text("1")
+    (own.folder / "resources" / ".hidden").write_text("1")
+    with zipfile.ZipFile(own("#[output] y: f64")) as archive:
+        names = archive.namelist()
+    assert sorted(name for name in names if name.startswith(("documentation", "resources"))) == [
+        "documentation/Index.html",
+        "documentation/licenses/LICENSE.txt",
+        "resources/curves/a.csv",
+    ]
+    (own.folder / "resources" / "Curves").mkdir()
+    (own.folder / "resources" / "Curves" / "a.csv").write_text("1")
+    told = own("#[output] y: f64")
+    assert "resources/Curves/a.csv is in the FMU already" in told, told
+    shutil.rmtree(own.folder / "resources")
+
+
+def test_a_manifest_may_be_named_and_arguments_go_on_to_cargo(user, own):
+    own("#[output] y: f64")
+    build = ("cargo", "fmu", "build", "--manifest-path")
+    assert user.run(*build, "Cargo.toml", folder=own.folder, stderr=None).stdout == "target/fmu/Own.fmu\n"
+    assert user.run(*build, "own/Cargo.toml", stderr=None).stdout == "own/target/fmu/Own.fmu\n"
+    failed = user.run(*build, "own/Nope.toml", check=False)
+    assert failed.returncode == 1 and "Nope.toml" in failed.stdout, failed.stdout
+    failed = user.run("cargo", "fmu", "build", "--", "--features", "fast", folder=own.folder, check=False)
+    assert failed.returncode == 1 and "does not contain this feature: fast" in failed.stdout, failed.stdout

@@ -2,6 +2,7 @@
 
 mod new;
 
+use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -27,7 +28,8 @@ enum Task {
     /// Build the FMU of a package and print its path
     ///
     /// In it are the libraries of all platforms named, the model description, a page about the variables, and from beside Cargo.toml:
-    /// files whose names begin with LICENSE, the folders documentation, extra and resources, and the picture model.png.
+    /// licences (LICENSE*, COPYING*), the folders documentation, extra and resources without hidden files, and the picture model.png.
+    /// Cargo builds the library twice, once to ask it for its model description.
     Build {
         #[command(flatten)]
         what: What,
@@ -35,7 +37,7 @@ enum Task {
         /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
         #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
         targets: Vec<String>,
-        /// Add a library built elsewhere, e.g. darwin64=libmodel.dylib. May be repeated
+        /// Add a library of the same model built elsewhere, e.g. darwin64=libmodel.dylib. May be repeated
         #[arg(long = "add-binary", value_name = "PLATFORM=FILE")]
         added: Vec<String>,
         /// Folder for the FMU [default: fmu in the folder in which Cargo builds, for FMI 3.0 fmu/fmi3]
@@ -64,6 +66,9 @@ struct What {
     /// Cargo.toml of the package or its workspace [default: that around the working folder]
     #[arg(long, value_name = "FILE")]
     manifest_path: Option<PathBuf>,
+    /// Further arguments of cargo build: -- --features fast --locked
+    #[arg(last = true, value_name = "ARGUMENTS")]
+    cargo: Vec<String>,
 }
 
 /// A version of FMI.
@@ -78,14 +83,14 @@ enum Fmi {
 impl What {
     fn request(self) -> Request {
         Request {
-            folder: self.manifest_path.map(|file| file.parent().map(PathBuf::from).unwrap_or_default()),
+            manifest: self.manifest_path,
             package: self.package,
             example: self.example,
             fmi: match self.fmi {
                 Fmi::Two => FmiVersion::Fmi2,
                 Fmi::Three => FmiVersion::Fmi3,
             },
-            progress: Some(|line| eprintln!("{line}")),
+            cargo: self.cargo,
             ..Request::default()
         }
     }
@@ -94,15 +99,19 @@ impl What {
 fn main() -> ExitCode {
     let Cargo::Fmu { task } = Cargo::parse();
     match run(task) {
-        Ok(printed) => {
-            println!("{}", printed.trim_end());
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
+        Ok(printed) => match writeln!(std::io::stdout(), "{}", printed.trim_end()) {
+            // Nobody reads on.
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => failed(&format!("cannot write to stdout: {error}")),
+            _ => ExitCode::SUCCESS,
+        },
+        Err(error) => failed(&error.to_string()),
     }
+}
+
+fn failed(why: &str) -> ExitCode {
+    // Without stderr there is nobody to tell.
+    let _ = writeln!(std::io::stderr(), "error: {why}");
+    ExitCode::FAILURE
 }
 
 /// Does the task, and gives what to print.
@@ -110,8 +119,9 @@ fn run(task: Task) -> Result<String, PackageError> {
     match task {
         Task::New(arguments) => new::run(&arguments),
         Task::Build { what, targets, added, output } => {
-            let added = added.iter().map(|text| AddedBinary::parse(text)).collect::<Result<_, _>>()?;
-            let fmu = Project::find(&Request { targets, added, output, ..what.request() })?.build()?;
+            let request = what.request();
+            let added = added.iter().map(|text| AddedBinary::parse(text, request.fmi)).collect::<Result<_, _>>()?;
+            let fmu = Project::find(&Request { targets, added, output, ..request })?.build()?;
             // As a user would name it from here.
             let here = std::env::current_dir().ok();
             let shown = here.as_deref().and_then(|here| fmu.strip_prefix(here).ok()).unwrap_or(&fmu);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fmu_package::{PackageError, cargo};
+use fmu_package::{Messages, PackageError, cargo};
 
 /// The model.
 const MODEL: &str = include_str!("../template/lib.rs");
@@ -34,11 +34,16 @@ pub fn run(arguments: &Arguments) -> Result<String, PackageError> {
             format!("{{ path = {:?} }}", path.display().to_string())
         }
     };
+    let Some(named) = folder.to_str() else {
+        return Err(PackageError::File {
+            path: folder.clone(),
+            reason: "the name of the folder is not UTF-8".to_owned(),
+        });
+    };
     // Cargo knows which names are none, and whether the folder lies in a workspace.
-    let shown = folder.display().to_string();
-    let mut command = vec!["new", "--lib", "--quiet", &shown];
+    let mut command = vec!["new", "--lib", "--quiet", named];
     command.extend(arguments.name.iter().flat_map(|name| ["--name", name]));
-    cargo::run(Path::new("."), &command, |_| {})?;
+    cargo::run(Path::new("."), &command, Messages::Shown)?;
     let [manifest, library] = ["Cargo.toml", "src/lib.rs"].map(|file| folder.join(file));
     let mut text = std::fs::read_to_string(&manifest).map_err(PackageError::io("read", &manifest))?;
     let name = arguments.name.clone().unwrap_or_else(|| file_name(folder));
@@ -69,7 +74,11 @@ fn identifier(name: &str) -> String {
     let words = name.split(|character: char| !character.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let capital = |word: &str| word[..1].to_ascii_uppercase() + &word[1..];
     let identifier: String = words.map(capital).collect();
-    if identifier.is_empty() { "Model".to_owned() } else { identifier }
+    match identifier.chars().next() {
+        None => "Model".to_owned(),
+        Some(first) if first.is_ascii_digit() => format!("_{identifier}"),
+        Some(_) => identifier,
+    }
 }
 
 #[cfg(test)]
@@ -78,7 +87,9 @@ mod tests {
 
     #[test]
     fn names_become_identifiers() {
-        for (name, wanted) in [("heat-pump", "HeatPump"), ("lag", "Lag"), ("a_2b", "A2b"), ("\u{e9}", "Model")] {
+        for (name, wanted) in
+            [("heat-pump", "HeatPump"), ("lag", "Lag"), ("a_2b", "A2b"), ("_2b", "_2b"), ("\u{e9}", "Model")]
+        {
             assert_eq!(identifier(name), wanted);
         }
     }

@@ -2,6 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
+use syn::ext::IdentExt as _;
 use syn::{Data, DeriveInput, Error, Fields, Result};
 
 use crate::documentation;
@@ -23,7 +24,7 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         if let Some((_, number)) = &variant.discriminant {
             return Err(Error::new_spanned(number, "items are numbered from 1 in their order"));
         }
-        items.push((&variant.ident, variant.ident.to_string(), documentation(&variant.attrs)));
+        items.push((&variant.ident, variant.ident.unraw().to_string(), documentation(&variant.attrs)));
     }
     if items.is_empty() {
         return Err(Error::new_spanned(name, "a choice has at least one item"));
@@ -31,7 +32,7 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let table = items.iter().map(|(_, item, text)| quote!((#item, #text)));
     let variants: Vec<_> = items.iter().map(|(variant, ..)| variant).collect();
     let numbers: Vec<_> = (1_i32..).take(variants.len()).collect();
-    let (type_name, text) = (name.to_string(), documentation(&input.attrs));
+    let (type_name, text) = (name.unraw().to_string(), documentation(&input.attrs));
     Ok(quote! {
         impl ::fmu_export::Choice for #name {
             const TYPE: &'static ::fmu_export::EnumerationType = &::fmu_export::EnumerationType {

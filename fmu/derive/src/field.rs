@@ -1,7 +1,8 @@
 //! A row of the table, from a field and its attribute.
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, quote_spanned};
+use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
 use syn::{Attribute, Error, Field, LitStr, Meta, Result, Token, Type};
@@ -11,6 +12,10 @@ use crate::documentation;
 /// What an attribute is called, and the constructor of Real variables of that name; others put their type in front.
 const ATTRIBUTES: [&str; 7] =
     ["parameter", "calculated_parameter", "input", "output", "local", "input_clock", "output_clock"];
+
+/// Why a type is none of a variable.
+pub(crate) const NO_TYPE: &str =
+    "the type of a variable is f64, f32, an integer from i8 to u64, bool, String or an enum with derive(Choice)";
 
 /// The row of a field; none without an attribute of ours.
 pub(crate) fn row(field: &Field) -> Result<Option<TokenStream>> {
@@ -76,7 +81,7 @@ impl Settings {
 
     fn row(self, role: &str, field: &Field, access: &Access) -> Result<TokenStream> {
         let span = field.span();
-        let own = field.ident.as_ref().map(ToString::to_string).unwrap_or_default();
+        let own = field.ident.as_ref().map(|name| name.unraw().to_string()).unwrap_or_default();
         let name = self.name.as_ref().map_or(own, LitStr::value);
         let text = documentation(&field.attrs);
         let text = if text.is_empty() { name.clone() } else { text };
@@ -162,9 +167,13 @@ struct Access {
 
 impl Access {
     fn of(field: &Field) -> Result<Self> {
-        let Type::Path(path) = &field.ty else {
-            return Err(Error::new_spanned(&field.ty, "no variable of FMI has this type"));
-        };
+        let mut of = &field.ty;
+        // A macro hands types on in groups.
+        while let Type::Group(syn::TypeGroup { elem, .. }) | Type::Paren(syn::TypeParen { elem, .. }) = of {
+            of = elem;
+        }
+        let refused = || Error::new_spanned(of, NO_TYPE);
+        let Type::Path(path) = of else { return Err(refused()) };
         let type_name = path.path.segments.last().map(|it| it.ident.to_string()).unwrap_or_default();
         let kind = match type_name.as_str() {
             "f64" | "f32" => Kind::Real,
@@ -172,12 +181,12 @@ impl Access {
             "bool" => Kind::Boolean,
             "String" => Kind::Text,
             "isize" | "usize" | "i128" | "u128" | "char" => {
-                return Err(Error::new_spanned(&field.ty, "no variable of FMI has this type"));
+                return Err(refused());
             }
             _ => Kind::Enumeration,
         };
         let name = field.ident.clone().unwrap_or_else(|| Ident::new("field", Span::call_site()));
-        Ok(Self { kind, type_name, of: field.ty.clone(), field: name })
+        Ok(Self { kind, type_name, of: of.clone(), field: name })
     }
 
     /// The constructor of a row: `integer_parameter` for an integer where a Real has `parameter`.
@@ -215,9 +224,21 @@ impl Access {
             (Kind::Boolean, None) => quote!(false),
             (Kind::Text, None) => quote!(""),
             (Kind::Enumeration, None) => quote!(1),
-            (Kind::Enumeration, Some(item)) => quote!(#of::#item as i32 + 1),
-            (Kind::Integer, Some(number)) => quote!((#number) as i64),
-            (Kind::Real, Some(number)) => quote!((#number) as f64),
+            (Kind::Enumeration, Some(item)) => {
+                let name = item.to_string();
+                let name = name.strip_prefix("r#").unwrap_or(&name);
+                quote_spanned!(item.span()=> <#of as ::fmu_export::Choice>::TYPE.number_of(#name))
+            }
+            // What the type cannot hold is an error there.
+            (Kind::Integer, Some(number)) => quote_spanned!(number.span()=> {
+                const START: #of = #number;
+                ::core::assert!(START as i128 <= i64::MAX as i128, "the start is beyond the largest i64");
+                START as i64
+            }),
+            (Kind::Real, Some(number)) => quote_spanned!(number.span()=> {
+                const START: #of = #number;
+                START as f64
+            }),
             (_, Some(value)) => value,
         }
     }
@@ -235,13 +256,13 @@ impl Access {
         }
     }
 
-    /// The accessors; what is read and written is as large as the type allows, which the row sees to.
+    /// The accessors. What is written is within the bounds of the type: the exporter checks it before.
     fn accessors(&self, settable: bool) -> TokenStream {
         let (field, of) = (&self.field, &self.of);
         let (get, set) = match self.kind {
             Kind::Real => (quote!(m.#field as f64), quote!(v as #of)),
             Kind::Integer if self.type_name == "u64" => {
-                (quote!(i64::try_from(m.#field).unwrap_or(i64::MAX)), quote!(v as #of))
+                (quote!(if m.#field > i64::MAX as u64 { i64::MAX } else { m.#field as i64 }), quote!(v as #of))
             }
             Kind::Integer => (quote!(m.#field as i64), quote!(v as #of)),
             Kind::Boolean => (quote!(m.#field), quote!(v)),

@@ -6,8 +6,33 @@ use syn::{Data, DeriveInput, Error, Fields, Result};
 
 use crate::field;
 
-/// The associated constant `VARIABLES`: a row for each field that has an attribute, in the order of the fields.
-pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
+/// The associated constant `VARIABLES`, and with it the errors of all fields that make none.
+pub(crate) fn expand(input: &DeriveInput) -> TokenStream {
+    let name = &input.ident;
+    let (rows, error) = match rows(input) {
+        Ok(rows) => (rows, None),
+        // The table is there all the same, lest its use is another error.
+        Err(error) => (Vec::new(), Some(error.into_compile_error())),
+    };
+    let count = rows.len();
+    let (generics, types, bounds) = input.generics.split_for_impl();
+    quote! {
+        #error
+
+        // Values are within their types: the exporter checks them before.
+        #[allow(
+            clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_lossless, clippy::unnecessary_cast,
+            trivial_numeric_casts
+        )]
+        impl #generics #name #types #bounds {
+            /// The variables in the order of the fields; the value reference of each is its place here.
+            pub(crate) const VARIABLES: [::fmu_export::Variable<Self>; #count] = [#(#rows),*];
+        }
+    }
+}
+
+/// A row for each field that has an attribute, in the order of the fields.
+fn rows(input: &DeriveInput) -> Result<Vec<TokenStream>> {
     let name = &input.ident;
     let fields = match &input.data {
         Data::Struct(data) => match &data.fields {
@@ -19,19 +44,15 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
     if let Some(generic) = input.generics.params.first() {
         return Err(Error::new_spanned(generic, "a model has no generic parameters"));
     }
-    let rows = fields.iter().filter_map(|it| field::row(it).transpose()).collect::<Result<Vec<_>>>()?;
-    let count = rows.len();
-    Ok(quote! {
-        // The table sees to it that values are within their types.
-        #[allow(
-            clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_lossless, clippy::unnecessary_cast,
-            trivial_numeric_casts
-        )]
-        impl #name {
-            /// The variables in the order of the fields; the value reference of each is its place here.
-            pub(crate) const VARIABLES: [::fmu_export::Variable<Self>; #count] = [#(#rows),*];
+    let (mut rows, mut errors) = (Vec::new(), None::<Error>);
+    for made in fields.iter().map(field::row) {
+        match (made, &mut errors) {
+            (Ok(row), _) => rows.extend(row),
+            (Err(error), Some(errors)) => errors.combine(error),
+            (Err(error), none) => *none = Some(error),
         }
-    })
+    }
+    errors.map_or(Ok(rows), Err)
 }
 
 #[cfg(test)]
@@ -39,9 +60,10 @@ mod tests {
     use syn::parse_quote;
 
     use super::*;
+    use crate::field::NO_TYPE;
 
     fn refused(input: &DeriveInput) -> String {
-        expand(input).unwrap_err().to_string()
+        rows(input).unwrap_err().to_string()
     }
 
     #[test]
@@ -49,8 +71,8 @@ mod tests {
         let of = |field: TokenStream| -> String { refused(&parse_quote!(struct Model { #field })) };
         for (field, said) in [
             (quote!(#[input] #[output] x: f64), "a field is one variable"),
-            (quote!(#[input] x: [f64; 2]), "no variable of FMI has this type"),
-            (quote!(#[input] x: usize), "no variable of FMI has this type"),
+            (quote!(#[input] x: [f64; 2]), NO_TYPE),
+            (quote!(#[input] x: usize), NO_TYPE),
             (quote!(#[input(unit = "s")] x: i32), "only f64 and f32 have a unit"),
             (quote!(#[input(unit = "s", unit = "m")] x: f64), "unit is given twice"),
             (quote!(#[input(max = 1.0, max = 2.0)] x: f64), "max is given twice"),

@@ -14,6 +14,9 @@ pub(crate) enum Added {
 }
 
 impl Added {
+    /// The name of the independent variable that is added.
+    pub(crate) const TIME: &str = "time";
+
     /// All of them with their value references, in the order of these.
     pub(crate) fn all<S: Slave>() -> impl Iterator<Item = (u32, Self)> {
         let table = S::variables();

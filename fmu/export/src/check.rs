@@ -1,6 +1,7 @@
 //! Checks of a table and its [`ModelInfo`] as a whole, once per process: a mistake in it would otherwise surface
 //! as an FMU that some importers refuse.
 
+use crate::added::Added;
 use crate::info::{ModelInfo, Terminal};
 use crate::slave::Slave;
 use crate::variable::{
@@ -38,7 +39,9 @@ fn check_info(info: &ModelInfo) -> Check {
     let name = info.model_identifier;
     let identifier = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    ensure(identifier, name, || "the model identifier is no C identifier".into())?;
+    ensure(identifier, name, || {
+        "the model identifier is no C identifier: letters, digits and _, no digit in front".into()
+    })?;
     let texts = [
         info.model_name,
         info.description,
@@ -79,8 +82,12 @@ fn check_table<M>(table: &[Variable<M>]) -> Check {
     }
     let clash = types.keys().find(|name| names.contains(*name));
     ensure(clash.is_none(), clash.unwrap_or(&""), || "a variable and an enumeration share this name".into())?;
-    let times = table.iter().filter(|v| v.causality == Causality::Independent);
-    ensure(times.count() <= 1, "table", || "there are two independent variables".into())?;
+    let times = table.iter().filter(|v| v.causality == Causality::Independent).count();
+    ensure(times <= 1, "table", || "there are two independent variables".into())?;
+    let is_free = times == 1 || !names.contains(Added::TIME);
+    ensure(is_free, Added::TIME, || {
+        "FMI 3.0 adds a variable of this name; take another, or Variable::independent".into()
+    })?;
     table.iter().try_for_each(|v| check_dependencies(v, &names))?;
     table.iter().try_for_each(|v| check_clocks(v, table).and_then(|()| check_alias(v, table)))?;
     table.iter().try_for_each(|v| check_initial_dependencies(v, table))
@@ -135,6 +142,9 @@ fn check_kind<M>(variable: &Variable<M>) -> Check {
         Kind::Real(spec) => check_real(variable, spec),
         Kind::Integer(spec) => {
             ensure(spec.min <= spec.max, name, || "its min is above its max".into())?;
+            let (low, high) = spec.width.bounds();
+            let fits = low <= spec.min && spec.max <= high;
+            ensure(fits, name, || format!("its bounds {} and {} are beyond {:?}", spec.min, spec.max, spec.width))?;
             check_start(name, spec.start, |start| spec.complaint(start))
         }
         Kind::Enumeration(spec) => {

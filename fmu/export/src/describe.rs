@@ -14,13 +14,13 @@ use crate::panics::panic_message;
 use crate::slave::Slave;
 use crate::standard::Standard;
 
-/// `fmu_export_describe`
-pub unsafe fn fmu_export_describe<S: Slave>(resources: *const c_char, icon: c_int, take: Take, context: *mut c_void) {
+/// `fmu_export_describe_1`
+pub unsafe fn fmu_export_describe_1<S: Slave>(resources: *const c_char, icon: c_int, take: Take, context: *mut c_void) {
     // SAFETY: by contract it is NULL or zero-terminated.
     let resources = unsafe { text(resources) }.ok().map(PathBuf::from);
     let described = catch_unwind(|| texts::<S>(resources.as_deref(), icon != 0));
     let give = |name: &core::ffi::CStr, text: String| {
-        // No text that was checked has a zero.
+        // An error text may hold a zero.
         let text = CString::new(text.replace('\0', " ")).unwrap_or_default();
         // SAFETY: by contract `take` takes two texts and its context.
         unsafe { take(context, name.as_ptr(), text.as_ptr()) };

@@ -96,14 +96,14 @@ macro_rules! __export_fmu3 {
 macro_rules! __export_description {
     ($slave:ty) => {
         #[unsafe(no_mangle)]
-        unsafe extern "C" fn fmu_export_describe(
+        unsafe extern "C" fn fmu_export_describe_1(
             resources: *const ::core::ffi::c_char,
             icon: ::core::ffi::c_int,
             take: $crate::abi::describe::Take,
             context: *mut ::core::ffi::c_void,
         ) {
             // SAFETY: the packager keeps the contract.
-            unsafe { $crate::describe::fmu_export_describe::<$slave>(resources, icon, take, context) }
+            unsafe { $crate::describe::fmu_export_describe_1::<$slave>(resources, icon, take, context) }
         }
     };
 }

@@ -23,7 +23,10 @@ struct Derived {
     /// Law of the contact.
     #[parameter(start = Compliant, tunable)]
     law: Law,
-    /// A file.
+    /** A file.
+     *
+     * Of the user.
+     */
     #[parameter(start = "a.csv", longest = 80)]
     file: String,
     /// Whether it rests.
@@ -31,7 +34,7 @@ struct Derived {
     rests: bool,
     /// Steps.
     #[input(start = 3, max = 7)]
-    steps: u8,
+    r#steps: u8,
     #[input(unit = "V", input_derivatives(1, |m, _, v| m.rate = v))]
     voltage: f64,
     /// 1/T.

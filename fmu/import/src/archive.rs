@@ -16,7 +16,7 @@ mod directory;
 mod names;
 
 use names::Names;
-pub use names::check_name;
+pub use names::{check_name, check_names};
 
 const DESCRIPTION: &str = "modelDescription.xml";
 /// An entry may always unpack to this size, however well it is compressed.

@@ -58,7 +58,7 @@ mod xml;
 #[cfg(test)]
 mod fake;
 
-pub use archive::{Archive, Limits, check_name};
+pub use archive::{Archive, Limits, check_name, check_names};
 pub use description::{
     BaseUnit, Causality, CoSimulation, DefaultExperiment, EnumerationItem, EnumerationType, Initial, Kind,
     ModelDescription, Unit, Variability, Variable,

@@ -9,9 +9,15 @@ use object::{Architecture, BinaryFormat};
 use super::error::PackageError;
 use super::platform::Platform;
 use super::target::Target;
+use super::version::FmiVersion;
 
-/// The function that makes a library an FMU's.
-const ENTRY_POINT: &str = "fmi2Instantiate";
+/// The function that makes a library that of an FMU for co-simulation.
+fn entry_point(version: FmiVersion) -> &'static str {
+    match version {
+        FmiVersion::Fmi2 => "fmi2Instantiate",
+        FmiVersion::Fmi3 => "fmi3InstantiateCoSimulation",
+    }
+}
 
 /// A library that was built elsewhere, and where it belongs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,11 +29,12 @@ pub struct AddedBinary {
 }
 
 impl AddedBinary {
-    /// Reads `PLATFORM=PATH`, such as `darwin64=libLag.dylib`, and checks that the file is what it is said to be.
+    /// Reads `PLATFORM=PATH`, such as `darwin64=libLag.dylib`, and checks that the file is what it is said to be: a library of some FMU
+    /// of this version. Whether it is that of the same model shows at instantiation only.
     ///
     /// # Errors
     /// When the platform is unknown, or the file is no such library.
-    pub fn parse(text: &str) -> Result<Self, PackageError> {
+    pub fn parse(text: &str, version: FmiVersion) -> Result<Self, PackageError> {
         let Some((platform, path)) = text.split_once('=').filter(|(_, path)| !path.is_empty()) else {
             return Err(PackageError::AddedForm { found: text.to_owned() });
         };
@@ -37,10 +44,10 @@ impl AddedBinary {
         })?;
         let path = PathBuf::from(path);
         let data = videg_input::read(&path).map_err(PackageError::io("read", &path))?;
-        match check(&data, platform) {
+        match check(&data, platform, entry_point(version)) {
             Ok(()) => Ok(Self { platform, path }),
             Err(Fault::Is(found)) => Err(PackageError::AddedLibrary { path, found, platform }),
-            Err(Fault::NoEntryPoint) => Err(PackageError::AddedExport { path, symbol: ENTRY_POINT }),
+            Err(Fault::NoEntryPoint) => Err(PackageError::AddedExport { path, symbol: entry_point(version) }),
         }
     }
 
@@ -76,27 +83,27 @@ impl From<object::read::Error> for Fault {
 }
 
 /// Checks that `data` is a shared library of the platform with the functions of an FMU.
-fn check(data: &[u8], platform: Platform) -> Result<(), Fault> {
+fn check(data: &[u8], platform: Platform, symbol: &str) -> Result<(), Fault> {
     let kind = FileKind::parse(data).map_err(|_| Fault::Is("no library at all".to_owned()))?;
     match kind {
-        FileKind::MachOFat32 => check_parts(MachOFatFile32::parse(data)?.arches(), data, platform),
-        FileKind::MachOFat64 => check_parts(MachOFatFile64::parse(data)?.arches(), data, platform),
+        FileKind::MachOFat32 => check_parts(MachOFatFile32::parse(data)?.arches(), data, platform, symbol),
+        FileKind::MachOFat64 => check_parts(MachOFatFile64::parse(data)?.arches(), data, platform, symbol),
         FileKind::Elf32 | FileKind::Elf64 | FileKind::MachO32 | FileKind::MachO64 | FileKind::Pe32 | FileKind::Pe64 => {
-            check_file(&File::parse(data)?, platform)
+            check_file(&File::parse(data)?, platform, symbol)
         }
         other => Err(Fault::Is(format!("a file of another kind ({other:?})"))),
     }
 }
 
 /// One file for several machines: each part counts.
-fn check_parts<Arch: FatArch>(parts: &[Arch], data: &[u8], platform: Platform) -> Result<(), Fault> {
+fn check_parts<Arch: FatArch>(parts: &[Arch], data: &[u8], platform: Platform, symbol: &str) -> Result<(), Fault> {
     if parts.is_empty() {
         return Err(Fault::Is("a Mach-O file of no machine".to_owned()));
     }
-    parts.iter().try_for_each(|part| check_file(&File::parse(part.data(data)?)?, platform))
+    parts.iter().try_for_each(|part| check_file(&File::parse(part.data(data)?)?, platform, symbol))
 }
 
-fn check_file(file: &File<'_>, platform: Platform) -> Result<(), Fault> {
+fn check_file(file: &File<'_>, platform: Platform, symbol: &str) -> Result<(), Fault> {
     let (format, machine) = (file.format(), file.architecture());
     if format != format_of(platform) || !machines_of(platform).contains(&machine) {
         let bits = if file.is_64() { 64 } else { 32 };
@@ -105,13 +112,13 @@ fn check_file(file: &File<'_>, platform: Platform) -> Result<(), Fault> {
     if file.kind() != ObjectKind::Dynamic {
         return Err(Fault::Is(format!("no shared library ({:?})", file.kind())));
     }
-    let is_there = file.exports()?.any(|export| export.is_ok_and(|export| is_entry_point(export.name())));
+    let is_there = file.exports()?.any(|export| export.is_ok_and(|export| is_named(export.name(), symbol)));
     if is_there { Ok(()) } else { Err(Fault::NoEntryPoint) }
 }
 
-fn is_entry_point(name: NameOrOrdinal<&[u8]>) -> bool {
+fn is_named(name: NameOrOrdinal<&[u8]>, symbol: &str) -> bool {
     // C names begin with an underscore on macOS.
-    matches!(name, NameOrOrdinal::Name(name) if name.strip_prefix(b"_").unwrap_or(name) == ENTRY_POINT.as_bytes())
+    matches!(name, NameOrOrdinal::Name(name) if name.strip_prefix(b"_").unwrap_or(name) == symbol.as_bytes())
 }
 
 fn format_of(platform: Platform) -> BinaryFormat {

@@ -50,7 +50,7 @@ fn add(platform: &str, name: &str, content: &[u8]) -> std::result::Result<AddedB
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, content).unwrap();
-    AddedBinary::parse(&format!("{platform}={}", path.display())).map_err(|error| error.to_string())
+    AddedBinary::parse(&format!("{platform}={}", path.display()), FmiVersion::Fmi2).map_err(|error| error.to_string())
 }
 
 const NAME: &str = "libLag.dylib";
@@ -95,7 +95,7 @@ fn the_argument_names_platform_and_file() {
     let library = mach_o(X86_64, LIBRARY, "_fmi2Instantiate");
     let error = add("macos", NAME, &library).unwrap_err();
     assert!(error.starts_with("no platform of FMI 2.0 is called \"macos\"; allowed are linux32, "), "{error}");
-    let error = AddedBinary::parse("libLag.dylib").unwrap_err().to_string();
+    let error = AddedBinary::parse("libLag.dylib", FmiVersion::Fmi2).unwrap_err().to_string();
     assert_eq!(error, "--add-binary wants PLATFORM=FILE, found \"libLag.dylib\"");
 }
 

@@ -40,8 +40,19 @@ pub struct Build<'a> {
     pub arguments: &'a [String],
     /// For which machine; none means this one.
     pub target: Option<&'a Target>,
-    /// Takes the lines about work.
-    pub progress: fn(&str),
+    /// What becomes of Cargo's messages.
+    pub messages: Messages,
+}
+
+/// What becomes of Cargo's messages.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Messages {
+    /// Cargo writes them to stderr, and a signal from the terminal reaches it.
+    #[default]
+    Shown,
+    /// Lines about work are handed on; if Cargo fails, the last of the others stand in the error. Cargo runs in a process group of its
+    /// own, which [`videg_system::processes`] can end.
+    Taken(fn(&str)),
 }
 
 /// The libraries that a build has made.
@@ -82,7 +93,7 @@ pub fn libraries(build: &Build<'_>) -> Result<Libraries> {
     let shown = format!("cargo {}", arguments.join(" "));
     let mut command = command(build.folder);
     command.args(arguments).arg("--message-format=json-render-diagnostics");
-    let found = execute(command, &shown, build.progress, |stdout| read_artifacts(stdout, platform))?;
+    let found = execute(command, &shown, build.messages, |stdout| read_artifacts(stdout, platform))?;
     Ok(Libraries { found, command: shown })
 }
 
@@ -90,21 +101,21 @@ pub fn libraries(build: &Build<'_>) -> Result<Libraries> {
 ///
 /// # Errors
 /// When it fails.
-pub fn run(folder: &Path, arguments: &[&str], progress: fn(&str)) -> Result<()> {
-    output_of(folder, arguments, progress).map(drop)
+pub fn run(folder: &Path, arguments: &[&str], messages: Messages) -> Result<()> {
+    output_of(folder, arguments, messages).map(drop)
 }
 
 /// The same, and gives what it prints.
 pub(crate) fn output(folder: &Path, arguments: &[&str]) -> Result<Vec<u8>> {
-    output_of(folder, arguments, |_| {})
+    output_of(folder, arguments, Messages::Taken(|_| {}))
 }
 
-fn output_of(folder: &Path, arguments: &[&str], progress: fn(&str)) -> Result<Vec<u8>> {
+fn output_of(folder: &Path, arguments: &[&str], messages: Messages) -> Result<Vec<u8>> {
     let mut command = command(folder);
     command.args(arguments);
-    execute(command, &format!("cargo {}", arguments.join(" ")), progress, |mut stdout| {
+    execute(command, &format!("cargo {}", arguments.join(" ")), messages, |mut stdout| {
         let mut text = Vec::new();
-        // Of a program that ends too early, the status tells.
+        // If the program ends early, its status reports it.
         let _ = stdout.read_to_end(&mut text);
         text
     })
@@ -114,19 +125,29 @@ fn output_of(folder: &Path, arguments: &[&str], progress: fn(&str)) -> Result<Ve
 fn execute<T: Default>(
     mut command: Command,
     shown: &str,
-    progress: fn(&str),
+    messages: Messages,
     read: impl FnOnce(ChildStdout) -> T,
 ) -> Result<T> {
     let program = PathBuf::from(command.get_program());
     let failed = |cause| PackageError::Cargo { program: program.clone(), cause };
-    let mut cargo = ProcessGroup::start(&mut command).map_err(failed)?;
-    let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
-    let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
-    let messages = Builder::new().spawn(messages).map_err(failed)?;
-    let found = stdout.map(read).unwrap_or_default();
-    let tail = messages.join().unwrap_or_default();
-    let status = cargo.wait(None).and_then(|_| cargo.end()).map_err(failed)?;
+    let (found, status, tail) = match messages {
+        Messages::Shown => {
+            let mut cargo = command.stderr(Stdio::inherit()).spawn().map_err(failed)?;
+            let found = cargo.stdout.take().map(read).unwrap_or_default();
+            (found, cargo.wait().map_err(failed)?, String::new())
+        }
+        Messages::Taken(progress) => {
+            let mut cargo = ProcessGroup::start(&mut command).map_err(failed)?;
+            let (stdout, stderr) = (cargo.child.stdout.take(), cargo.child.stderr.take());
+            let messages = move || stderr.map(|stderr| follow(stderr, progress)).unwrap_or_default();
+            let messages = Builder::new().spawn(messages).map_err(failed)?;
+            let found = stdout.map(read).unwrap_or_default();
+            let tail = messages.join().unwrap_or_default();
+            (found, cargo.wait(None).and_then(|_| cargo.end()).map_err(failed)?, tail)
+        }
+    };
     if !status.success() {
+        let tail = if tail.is_empty() { tail } else { format!(":\n{tail}") };
         return Err(PackageError::Build { command: shown.to_owned(), status: status.to_string(), tail });
     }
     Ok(found)

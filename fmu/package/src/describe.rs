@@ -27,8 +27,14 @@ impl Descriptions {
             Some(_) => return Err(undescribed("the name of the folder of its resources is not UTF-8".to_owned())),
         };
         let mut texts: Vec<(String, String)> = Vec::new();
+        // A copy, since one that stays loaded would stand for the next build under the same name.
+        let copied = tempfile::tempdir().and_then(|folder| {
+            let copy = folder.path().join(library.file_name().unwrap_or_default());
+            std::fs::copy(library, &copy).map(|_| (folder, copy))
+        });
+        let (_folder, copy) = copied.map_err(PackageError::io("copy", library))?;
         // SAFETY: it was built for this; what its code does at loading is as trusted as its build script.
-        let library = unsafe { Library::new(library) }.map_err(failed)?;
+        let library = unsafe { Library::new(&copy) }.map_err(failed)?;
         // SAFETY: nothing else has this name.
         let describe = unsafe { library.get::<Describe>(SYMBOL.to_bytes()) }.map_err(failed)?;
         let resources = resources.as_ref().map_or(core::ptr::null(), |folder| folder.as_ptr());

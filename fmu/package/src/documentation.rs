@@ -11,7 +11,7 @@ const GROUPS: [(Causality, &str); 5] = [
     (Causality::CalculatedParameter, "Calculated parameters"),
     (Causality::Input, "Inputs"),
     (Causality::Output, "Outputs"),
-    (Causality::Local, "Local variables: derivatives of the states (model exchange), and what is no Real"),
+    (Causality::Local, "Local variables"),
 ];
 
 #[derive(Template)]
@@ -39,7 +39,7 @@ struct Row {
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn page(description: &ModelDescription, text: &str) -> Result<String> {
+pub(crate) fn page(description: &ModelDescription, text: &str) -> Result<String> {
     let groups = GROUPS.iter().filter_map(|(causality, heading)| group(description, *causality, heading)).collect();
     let page = Page { description, groups, text };
     page.render().map_err(|cause| {

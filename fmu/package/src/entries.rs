@@ -43,6 +43,13 @@ impl Entries {
         self.0.insert(name.to_owned(), bytes.into());
     }
 
+    /// Adds an entry unless there is one of this name, in whatever case.
+    pub fn add_new(&mut self, name: &str, bytes: impl Into<Vec<u8>>) {
+        if self.names().all(|other| other.to_lowercase() != name.to_lowercase()) {
+            self.add(name, bytes);
+        }
+    }
+
     /// The same with the bytes of a file.
     ///
     /// # Errors
@@ -68,8 +75,10 @@ impl Entries {
     /// The bytes of the archive; errors name it.
     ///
     /// # Errors
-    /// When they cannot be packed.
+    /// When two names are one on some system, or the entries cannot be packed.
     pub fn packed(&self, archive: &Path) -> Result<Vec<u8>> {
+        let names = fmu_import::check_names(self.names());
+        names.map_err(|reason| PackageError::Names { archive: archive.to_owned(), reason })?;
         let packed = || {
             let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
             for (name, bytes) in &self.0 {

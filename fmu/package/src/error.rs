@@ -22,10 +22,13 @@ pub enum PackageError {
     #[error("cannot run {}: {cause}", program.display())]
     Cargo { program: PathBuf, cause: io::Error },
     /// Cargo failed.
-    #[error("{command} failed ({status}):\n{tail}")]
+    #[error("{command} failed ({status}){tail}")]
     Build { command: String, status: String, tail: String },
     /// Cargo was content, but made no library.
-    #[error("{command} made no shared library of {identifier}")]
+    #[error(
+        "{command} made no shared library of {identifier} for this machine; does CARGO_BUILD_TARGET or .cargo/config.toml name another \
+         target?"
+    )]
     NotBuilt { command: String, identifier: String },
     /// What Cargo says about packages cannot be read.
     #[error("cannot read what cargo metadata says: {cause}")]
@@ -37,7 +40,7 @@ pub enum PackageError {
     #[error("{package} has no {wanted} of crate-type cdylib; {} needs {needed}", manifest.display())]
     NoLibraryTarget { package: String, wanted: String, manifest: PathBuf, needed: String },
     /// A library does not describe itself.
-    #[error("cannot ask {} for its model description: {cause}; is export_fmu! in it?", library.display())]
+    #[error("cannot ask {} for its model description: {cause}; is export_fmu! in it, and fmu-export as new as this program?", library.display())]
     NoDescribe { library: PathBuf, cause: libloading::Error },
     /// A model has no description.
     #[error("{package} has no model description: {reason}")]
@@ -81,9 +84,12 @@ pub enum PackageError {
     /// A library is for no machine.
     #[error("the library of {identifier} for {} is broken: {cause}", platform.folder)]
     Machine { identifier: String, platform: Platform, cause: object::read::Error },
-    /// A file cannot be a resource under its name.
-    #[error("resource {}: {reason}", path.display())]
-    Resource { path: PathBuf, reason: String },
+    /// A file cannot be in an FMU under its name.
+    #[error("file {}: {reason}", path.display())]
+    File { path: PathBuf, reason: String },
+    /// No system could unpack an archive.
+    #[error("{}: {reason}", archive.display())]
+    Names { archive: PathBuf, reason: String },
     /// Two targets would share a folder of the archive.
     #[error("two targets for the platform {}: {first} and {second}; an FMU holds one", platform.folder)]
     SamePlatform { platform: Platform, first: String, second: String },

@@ -36,13 +36,13 @@ mod tools;
 mod version;
 
 pub use binary::AddedBinary;
-pub use documentation::page;
+pub use cargo::Messages;
 pub use entries::Entries;
 pub use error::{PackageError, Result};
 pub use fmu::Fmu;
 pub use platform::Platform;
 pub use project::{Project, Request};
-pub use resources::{LARGEST, add_resources, resource_name};
+pub use resources::add_resources;
 pub use shared_file::write_shared;
 pub use target::{Target, targets};
 pub use version::FmiVersion;

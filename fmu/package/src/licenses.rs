@@ -8,8 +8,8 @@ use super::error::{PackageError, Result};
 /// How names of files with licences begin, in small letters.
 const BEGINNINGS: [&str; 4] = ["license", "licence", "copying", "unlicense"];
 
-/// Adds the files with licences of the first of `folders` that has some, under their names; `license.txt`, where FMI has importers
-/// look first; and the SPDX expression, if there is one.
+/// Adds the files with licences of the first of `folders` that has some, under their names, and the one that is `named`;
+/// `license.txt`, where FMI has importers look first; and the SPDX expression, if there is one. Entries that are there stay.
 ///
 /// # Errors
 /// When a file cannot be read.
@@ -21,24 +21,23 @@ pub(crate) fn add(folders: &[&Path], named: Option<&Path>, spdx: Option<&str>, e
             break;
         }
     }
-    files.extend(named.map(Path::to_path_buf));
+    let named = named.map(Path::to_path_buf).filter(|named| !files.contains(named));
+    files.extend(named);
     let mut names = Vec::new();
     for file in &files {
         let name = super::resources::resource_name(file)
-            .map_err(|reason| PackageError::Resource { path: file.clone(), reason })?;
+            .map_err(|reason| PackageError::File { path: file.clone(), reason })?;
         let text = videg_input::read(file).map_err(PackageError::io("read", file))?;
-        entries.add(&format!("documentation/licenses/{name}"), text);
+        entries.add_new(&format!("documentation/licenses/{name}"), text);
         names.push(name);
     }
     if let Some(spdx) = spdx {
-        entries.add("documentation/licenses/spdx.txt", format!("SPDX-License-Identifier: {spdx}\n"));
+        entries.add_new("documentation/licenses/spdx.txt", format!("SPDX-License-Identifier: {spdx}\n"));
     }
     if !names.is_empty() || spdx.is_some() {
         let licence = spdx.map_or_else(|| "Licence".to_owned(), |spdx| format!("Licence: {spdx}"));
         let texts = if names.is_empty() { String::new() } else { format!(". Its text: {}", names.join(", ")) };
-        if entries.bytes("documentation/licenses/license.txt").is_none() {
-            entries.add("documentation/licenses/license.txt", format!("{licence}{texts}\n"));
-        }
+        entries.add_new("documentation/licenses/license.txt", format!("{licence}{texts}\n"));
     }
     Ok(())
 }
@@ -91,7 +90,7 @@ mod tests {
                 pair("spdx.txt", "SPDX-License-Identifier: MIT OR Apache-2.0\n"),
             ]
         );
-        std::fs::write(package.join("license.txt"), "mine").unwrap();
-        assert_eq!(added(None), [pair("license.txt", "mine")]);
+        std::fs::write(package.join("LICENSE.txt"), "mine").unwrap();
+        assert_eq!(added(None), [pair("LICENSE.txt", "mine")], "license.txt would be the same file on Windows");
     }
 }

@@ -32,12 +32,15 @@ pub(crate) struct Target {
 }
 
 impl Metadata {
-    /// Of the workspace around a folder.
+    /// Reads the metadata of the workspace that contains `folder`, or that of a manifest.
     ///
     /// # Errors
     /// When there is none, or Cargo fails.
-    pub(crate) fn of(folder: &Path) -> Result<Self> {
-        let text = cargo::output(folder, &["metadata", "--no-deps", "--format-version=1"])?;
+    pub(crate) fn of(folder: &Path, manifest: Option<&Path>) -> Result<Self> {
+        let named = manifest.map(|path| path.display().to_string());
+        let mut arguments = vec!["metadata", "--no-deps", "--format-version=1"];
+        arguments.extend(named.iter().flat_map(|path| ["--manifest-path", path]));
+        let text = cargo::output(folder, &arguments)?;
         serde_json::from_slice(&text).map_err(|cause| PackageError::Metadata { cause })
     }
 

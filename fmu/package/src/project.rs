@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::binary::AddedBinary;
-use super::cargo::{self, Build};
+use super::cargo::{self, Build, Messages};
 use super::describe::Descriptions;
+use super::documentation::page;
 use super::error::{PackageError, Result};
 use super::fmu::{Fmu, picture};
 use super::licenses;
@@ -24,8 +25,8 @@ const FOLDERS: [&str; 3] = ["documentation", "extra", "resources"];
 /// What to package, and how. The default is FMI 2.0 of the package in the working folder for this machine.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
-    /// Folder inside a Cargo workspace; without one, the working folder.
-    pub folder: Option<PathBuf>,
+    /// Manifest of the package or its workspace; without one, that around the working folder.
+    pub manifest: Option<PathBuf>,
     /// Name of the package; without one, that around the folder.
     pub package: Option<String>,
     /// One of its examples in place of its library.
@@ -38,8 +39,10 @@ pub struct Request {
     pub added: Vec<AddedBinary>,
     /// Folder of the archive: without one, `fmu` in the folder in which Cargo builds, for FMI 3.0 `fmu/fmi3`.
     pub output: Option<PathBuf>,
-    /// Takes the lines of Cargo's progress.
-    pub progress: Option<fn(&str)>,
+    /// Further arguments of Cargo, for all libraries that it builds: features, profiles.
+    pub cargo: Vec<String>,
+    /// What becomes of Cargo's messages.
+    pub messages: Messages,
 }
 
 /// A package that becomes an FMU.
@@ -66,10 +69,14 @@ impl Project {
     /// # Errors
     /// When there is none, it has no shared library, or a target cannot be built for.
     pub fn find(request: &Request) -> Result<Self> {
-        let folder = request.folder.clone().unwrap_or_else(|| PathBuf::from("."));
-        let folder = std::fs::canonicalize(&folder).map_err(PackageError::io("read", &folder))?;
-        let targets = targets(&request.targets)?;
-        let metadata = Metadata::of(&folder)?;
+        let targets = targets(&request.targets, request.fmi)?;
+        let here = std::path::absolute(".").map_err(PackageError::io("read", Path::new(".")))?;
+        let manifest = request.manifest.as_deref();
+        let metadata = Metadata::of(&here, manifest)?;
+        let folder = match manifest.map(std::fs::canonicalize) {
+            Some(Ok(manifest)) => manifest.parent().map(Path::to_owned).unwrap_or_default(),
+            _ => std::fs::canonicalize(&here).unwrap_or(here),
+        };
         let package = metadata.package(request.package.as_deref(), &folder)?;
         let library = package.library(request.example.as_deref())?;
         let folder = package.folder().to_owned();
@@ -121,17 +128,16 @@ impl Project {
             fmu.entries_mut().add(name, text);
         }
         self.add_libraries(&mut fmu)?;
-        let license = self.license.as_deref();
-        licenses::add(&[&self.folder, &self.workspace], self.license_file.as_deref(), license, fmu.entries_mut())?;
         for folder in self.files.iter().flat_map(|files| FOLDERS.map(|folder| (files.join(folder), folder))) {
             add_folder(&folder.0, folder.1, fmu.entries_mut())?;
         }
+        let license = self.license.as_deref();
+        licenses::add(&[&self.folder, &self.workspace], self.license_file.as_deref(), license, fmu.entries_mut())?;
         if let Some(icon) = self.icon() {
             fmu.entries_mut().add_file(picture(self.request.fmi), &icon)?;
         }
-        if fmu.entries().bytes("documentation/index.html").is_none() {
-            fmu.add_page("")?;
-        }
+        let page = page(fmu.description(), "")?;
+        fmu.entries_mut().add_new("documentation/index.html", page);
         Ok(fmu)
     }
 
@@ -149,7 +155,9 @@ impl Project {
         let feature = if self.package == EXPORTER { FEATURE.to_owned() } else { format!("{EXPORTER}/{FEATURE}") };
         let mut arguments = self.selection();
         let folder = self.target_folder.join("fmu").join("description");
-        arguments.extend(["--features".to_owned(), feature, "--target-dir".to_owned(), folder.display().to_string()]);
+        let folder = folder.display().to_string();
+        // With the same profile, whatever a model makes of it.
+        arguments.extend(["--features".to_owned(), feature, "--target-dir".to_owned(), folder]);
         let library = self.built(&arguments, None)?;
         let resources = self.files.as_ref().map(|files| files.join("resources")).filter(|folder| folder.is_dir());
         Descriptions::of(&self.package, &library, resources.as_deref(), self.icon().is_some())
@@ -158,8 +166,7 @@ impl Project {
     fn add_libraries(&self, fmu: &mut Fmu) -> Result<()> {
         let added = &self.request.added;
         AddedBinary::check_all(fmu.identifier(), added, &self.targets)?;
-        let mut arguments = self.selection();
-        arguments.push("--release".to_owned());
+        let arguments = self.selection();
         let is_added = added.iter().any(|binary| binary.platform == Platform::HOST);
         if self.targets.is_empty() && !is_added {
             fmu.add_library_file(Platform::HOST, &self.built(&arguments, None)?)?;
@@ -172,8 +179,7 @@ impl Project {
 
     /// The library that Cargo makes with these arguments.
     fn built(&self, arguments: &[String], target: Option<&Target>) -> Result<PathBuf> {
-        let progress = self.request.progress.unwrap_or(|_| {});
-        let build = Build { folder: &self.folder, arguments, target, progress };
+        let build = Build { folder: &self.folder, arguments, target, messages: self.request.messages };
         cargo::libraries(&build)?.named(&self.library)
     }
 
@@ -183,7 +189,8 @@ impl Project {
             None => vec!["--lib"],
             Some(example) => vec!["--example", example],
         };
-        ["-p", &self.package].into_iter().chain(what).map(str::to_owned).collect()
+        let arguments = ["--release", "-p", &self.package].into_iter().chain(what).map(str::to_owned);
+        arguments.chain(self.request.cargo.clone()).collect()
     }
 
     /// The picture beside the sources, if there is one.

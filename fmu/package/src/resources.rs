@@ -6,7 +6,7 @@ use super::entries::Entries;
 use super::error::{PackageError, Result};
 
 /// Largest file, in bytes.
-pub const LARGEST: u64 = 256 << 20;
+const LARGEST: u64 = 256 << 20;
 
 /// Deepest folder within a folder.
 const DEEPEST: usize = 16;
@@ -27,7 +27,7 @@ pub(crate) fn add_folder(folder: &Path, into: &str, entries: &mut Entries) -> Re
     if !folder.is_dir() {
         return Ok(());
     }
-    let refuse = |reason: String| PackageError::Resource { path: folder.to_owned(), reason };
+    let refuse = |reason: String| PackageError::File { path: folder.to_owned(), reason };
     if into.split('/').count() > DEEPEST {
         return Err(refuse(format!("it is more than {DEEPEST} folders deep")));
     }
@@ -38,7 +38,7 @@ pub(crate) fn add_folder(folder: &Path, into: &str, entries: &mut Entries) -> Re
             continue;
         }
         if path.is_dir() {
-            let name = resource_name(&path).map_err(|reason| PackageError::Resource { path: path.clone(), reason })?;
+            let name = resource_name(&path).map_err(|reason| PackageError::File { path: path.clone(), reason })?;
             add_folder(&path, &format!("{into}/{name}"), entries)?;
         } else {
             add_into(into, &path, entries)?;
@@ -49,7 +49,7 @@ pub(crate) fn add_folder(folder: &Path, into: &str, entries: &mut Entries) -> Re
 
 /// Adds a file to a folder of the archive.
 fn add_into(folder: &str, path: &Path, entries: &mut Entries) -> Result<()> {
-    let refuse = |reason: String| PackageError::Resource { path: path.to_owned(), reason };
+    let refuse = |reason: String| PackageError::File { path: path.to_owned(), reason };
     let name = format!("{folder}/{}", resource_name(path).map_err(refuse)?);
     let is_twin = |other: &str| other.to_lowercase() == name.to_lowercase();
     if entries.names().any(is_twin) {
@@ -67,7 +67,7 @@ fn add_into(folder: &str, path: &Path, entries: &mut Entries) -> Result<()> {
 ///
 /// # Errors
 /// A name that is none on some system.
-pub fn resource_name(path: &Path) -> std::result::Result<&str, String> {
+pub(crate) fn resource_name(path: &Path) -> std::result::Result<&str, String> {
     let name = path.file_name().and_then(|name| name.to_str()).ok_or("its name is not UTF-8, or it has none")?;
     fmu_import::check_name(name).map_err(|reason| format!("{reason}; rename the file"))?;
     Ok(name)

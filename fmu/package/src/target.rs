@@ -2,6 +2,7 @@
 
 use super::error::{PackageError, Result};
 use super::platform::Platform;
+use super::version::FmiVersion;
 
 /// The C library that `linux64` must run with: that of the oldest distributions which simulation tools still support.
 const OLDEST_GLIBC: &str = "2.17";
@@ -54,14 +55,18 @@ impl Target {
     }
 }
 
-/// Reads the targets; each platform may be named once.
+/// Reads the targets. Each may be named once; FMI 2.0, which does not tell machines apart, has one for each system.
 ///
 /// # Errors
-/// As [`Target::parse`], and when two are for one platform.
-pub fn targets(asked: &[String]) -> Result<Vec<Target>> {
+/// As [`Target::parse`], and when two are for one folder of the archive.
+pub fn targets(asked: &[String], version: FmiVersion) -> Result<Vec<Target>> {
     let targets = asked.iter().map(|asked| Target::parse(asked)).collect::<Result<Vec<_>>>()?;
     for (index, target) in targets.iter().enumerate() {
-        if let Some(first) = targets.iter().take(index).find(|first| first.platform == target.platform) {
+        let same = |first: &&Target| match version {
+            FmiVersion::Fmi2 => first.platform == target.platform,
+            FmiVersion::Fmi3 => first.triple == target.triple,
+        };
+        if let Some(first) = targets.iter().take(index).find(same) {
             let (first, second) = (first.argument(), target.argument());
             return Err(PackageError::SamePlatform { platform: target.platform, first, second });
         }
@@ -90,6 +95,16 @@ mod tests {
         let plain = "aarch64-unknown-linux-gnu";
         assert_eq!(commands(plain), (plain.to_owned(), "build", "linux64"));
         assert_eq!(commands("win64"), ("x86_64-pc-windows-gnu".to_owned(), "build", "win64"));
+    }
+
+    #[test]
+    fn an_archive_of_fmi_3_takes_two_machines_of_one_system() {
+        let asked = |names: [&str; 2]| names.map(str::to_owned);
+        let both = asked(["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"]);
+        assert_eq!(targets(&both, FmiVersion::Fmi3).unwrap().len(), 2);
+        let error = targets(&both, FmiVersion::Fmi2).unwrap_err().to_string();
+        assert!(error.starts_with("two targets for the platform linux64: "), "{error}");
+        assert!(targets(&asked(["win64", "win64"]), FmiVersion::Fmi3).is_err());
     }
 
     #[test]

@@ -52,7 +52,7 @@ fn scalar_variable<M>(xml: &mut Xml, table: &[Variable<M>], index: usize, variab
     attributes.push(("variability", variable.variability().as_str().to_owned()));
     attributes.extend(variable.initial().map(|i| ("initial", i.as_str().to_owned())));
     element(xml, "ScalarVariable", &attributes, |xml| {
-        let mut attributes = type_attributes(variable.kind());
+        let mut attributes = type_attributes(variable.kind(), Standard::Fmi2);
         attributes.extend(variable.derivative_of().map(|state| ("derivative", positions(table, &[state]))));
         attributes.extend(variable.reinit().then(|| ("reinit", true.to_string())));
         empty(xml, variable.kind().type_name(), &attributes)

@@ -4,6 +4,7 @@ use super::{Attribute, Written, Xml, derivative_orders, double, element, empty, 
 use crate::added::{Added, has_events};
 use crate::fmi3::is_intermediate;
 use crate::slave::Slave;
+use crate::standard::Standard;
 use crate::variable::{Causality, ClockInterval, Kind, Variable, value_reference};
 
 /// The interfaces, with their capabilities; those that are left out are false. There is no scheduled execution.
@@ -43,7 +44,7 @@ pub(super) fn variables<S: Slave>(xml: &mut Xml) -> Written {
 /// One that the exporter adds.
 fn added_attributes(reference: u32, added: Added) -> Vec<Attribute> {
     let (name, description, causality) = match added {
-        Added::Time => ("time".to_owned(), "Time, s", Causality::Independent),
+        Added::Time => (Added::TIME.to_owned(), "Time, s", Causality::Independent),
         Added::Indicator(k) => (
             format!("eventIndicator[{}]", k + 1),
             "A change of its sign is an event of model exchange",
@@ -73,7 +74,7 @@ fn variable<S: Slave>(xml: &mut Xml, reference: u32, row: &Variable<S>) -> Writt
     let derived = alias.unwrap_or(row).derivative_of();
     attributes.extend(derived.map(|state| ("derivative", references(table, &[state]))));
     attributes.extend(row.reinit().then(|| ("reinit", true.to_string())));
-    let mut own = type_attributes(row.kind());
+    let mut own = type_attributes(row.kind(), Standard::Fmi3);
     let mut start = None;
     match row.kind() {
         Kind::String(spec) => {

@@ -15,7 +15,7 @@ use crate::logger::LogCategory;
 use crate::slave::Slave;
 use crate::standard::Standard;
 use crate::units::{BaseUnit, base_unit};
-use crate::variable::{EnumerationType, Kind, Variable};
+use crate::variable::{EnumerationType, IntegerWidth, Kind, Variable};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
 use std::io;
@@ -247,8 +247,8 @@ fn default_experiment(xml: &mut Xml, info: &ModelInfo) -> Written {
     empty(xml, "DefaultExperiment", &attributes)
 }
 
-/// Unit, bounds, nominal and start value.
-fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
+/// Unit, bounds, nominal and start value. FMI 2.0 has one Integer, of 32 bits: what can be set tells the bounds of its width.
+fn type_attributes<M>(kind: &Kind<M>, standard: Standard) -> Vec<Attribute> {
     let mut attributes = Vec::new();
     match kind {
         Kind::Real(s) => {
@@ -259,10 +259,15 @@ fn type_attributes<M>(kind: &Kind<M>) -> Vec<Attribute> {
             attributes.extend(s.start.map(|v| ("start", double(v))));
         }
         Kind::Integer(s) => {
-            let (min, max) = s.width.bounds();
-            attributes.extend((s.min != min).then(|| ("min", s.min.to_string())));
-            attributes.extend((s.max != max).then(|| ("max", s.max.to_string())));
-            attributes.extend(s.start.map(|v| ("start", v.to_string())));
+            let in_2 = standard == Standard::Fmi2;
+            let of_type = if in_2 && s.set.is_some() { IntegerWidth::Int32 } else { s.width };
+            let (min, max) = of_type.bounds();
+            let (low, high) = IntegerWidth::Int32.bounds();
+            // What is too large for 32 bits shows as the nearest one.
+            let shown = |value: i64| if in_2 { value.clamp(low, high) } else { value };
+            attributes.extend((shown(s.min) != min).then(|| ("min", shown(s.min).to_string())));
+            attributes.extend((shown(s.max) != max).then(|| ("max", shown(s.max).to_string())));
+            attributes.extend(s.start.map(|v| ("start", shown(v).to_string())));
         }
         Kind::Boolean(s) => attributes.extend(s.start.map(|v| ("start", v.to_string()))),
         Kind::String(s) => attributes.extend(s.start.map(|v| ("start", v.to_owned()))),

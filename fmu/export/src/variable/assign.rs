@@ -288,6 +288,8 @@ impl<M> RealSpec<M> {
         let unit = if self.unit == "1" { "" } else { self.unit };
         if value.is_nan() || (value.is_infinite() && !self.infinity_allowed) {
             Some("it must be finite".to_owned())
+        } else if self.single && value.is_finite() && value.abs() > f64::from(f32::MAX) {
+            Some(format!("beyond {:e}, the largest number in single precision", f32::MAX))
         } else if value < self.min {
             Some(format!("below its min {} {unit}", self.min).trim_end().to_owned())
         } else if value > self.max {

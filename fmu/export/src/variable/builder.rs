@@ -359,10 +359,16 @@ impl<M> Declaration<RealSpec<M>, ReadOnly> {
 
 /// Refinements of an Integer.
 impl<M, A> Declaration<IntegerSpec<M>, A> {
-    /// Its type in FMI 3.0, with the bounds of that; without, it is an Int32.
+    /// Its type in FMI 3.0, whose bounds it has if it has no others; without, it is an Int32.
     pub const fn width(mut self, width: IntegerWidth) -> Self {
+        let (before, bounds) = (self.spec.width.bounds(), width.bounds());
+        if self.spec.min == before.0 {
+            self.spec.min = bounds.0;
+        }
+        if self.spec.max == before.1 {
+            self.spec.max = bounds.1;
+        }
         self.spec.width = width;
-        (self.spec.min, self.spec.max) = width.bounds();
         self
     }
 

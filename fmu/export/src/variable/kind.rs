@@ -225,6 +225,22 @@ pub struct EnumerationType {
 }
 
 impl EnumerationType {
+    /// The number of the item with this name, counted from 1.
+    ///
+    /// # Panics
+    /// If there is none; in a table, that is at compile time.
+    #[allow(clippy::panic)]
+    pub const fn number_of(&self, name: &str) -> i32 {
+        let (mut index, mut number) = (0, 1);
+        while index < self.items.len() {
+            if same(self.items[index].0.as_bytes(), name.as_bytes()) {
+                return number;
+            }
+            (index, number) = (index + 1, number + 1);
+        }
+        panic!("the enumeration has no such item");
+    }
+
     /// Name of the item with this number, counted from 1.
     pub fn item(&self, number: i32) -> Option<&'static str> {
         let index = usize::try_from(number).ok()?.checked_sub(1)?;
@@ -232,8 +248,20 @@ impl EnumerationType {
     }
 }
 
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    let mut k = 0;
+    while k < a.len() && k < b.len() && a[k] == b[k] {
+        k += 1;
+    }
+    k == a.len() && k == b.len()
+}
+
 /// A type of a model whose values are the items of an enumeration. With the feature `derive`, `#[derive(Choice)]` makes an `enum`
 /// one: name and documentation of each item are those of the enumeration.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no type of a variable",
+    label = "none of f64, f32, i8 to u64, bool and String, each under this very name, and no enum with #[derive(Choice)]"
+)]
 pub trait Choice: Sized {
     /// The enumeration.
     const TYPE: &'static EnumerationType;

@@ -70,6 +70,15 @@ pub fn check_name(name: &str) -> Result<(), &'static str> {
     if name.contains('/') { Err("its name holds a slash") } else { fault(name).map_or(Ok(()), Err) }
 }
 
+/// Checks the `names` of all entries of an archive: each stays inside the folder, and no two are one file, on any system.
+///
+/// # Errors
+/// The first that is none, or takes the place of another.
+pub fn check_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<(), String> {
+    let mut known = Names::new(usize::MAX);
+    names.into_iter().try_for_each(|name| known.add(name))
+}
+
 /// Why a name does not stay inside the folder, or is not a name everywhere.
 fn fault(name: &str) -> Option<&'static str> {
     let bytes = name.as_bytes();
