@@ -18,7 +18,7 @@ use crate::{GOLDEN, has_ngspice, links, patch, python, root};
 const FILES: [&str; 6] = ["c", "spice", "toml", "json", "xml", "csv"];
 
 /// Where chapters with Rust in them become documentation tests.
-const DOCUMENTATION_TESTS: [&str; 2] = ["src/book.rs", "fmu/export/src/lib.rs"];
+const DOCUMENTATION_TESTS: [&str; 2] = ["src/book.rs", "tests/host/src/lib.rs"];
 
 /// At most one of so many blocks has a line that does not run.
 const LEFT_OUT: usize = 6;
