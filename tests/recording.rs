@@ -112,5 +112,5 @@ fn a_resource_is_in_the_harvester_alone_and_its_archive_is_reproducible() {
     videg(folder.path(), &["fmu", "check", "first/VibroImpactHarvester.fmu"]).unwrap();
     let twice = ["fmu", "build", "--resource", "shaker.csv", "--resource", "shaker.csv", "--output", "third"];
     let error = videg(folder.path(), &twice).unwrap_err();
-    assert!(error.contains("resource shaker.csv: resources/shaker.csv is in the FMU already"), "{error}");
+    assert!(error.contains("file shaker.csv: resources/shaker.csv is in the FMU already"), "{error}");
 }
