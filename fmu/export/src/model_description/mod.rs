@@ -260,11 +260,11 @@ fn type_attributes<M>(kind: &Kind<M>, standard: Standard) -> Vec<Attribute> {
         }
         Kind::Integer(s) => {
             let in_2 = standard == Standard::Fmi2;
-            let of_type = if in_2 && s.set.is_some() { IntegerWidth::Int32 } else { s.width };
-            let (min, max) = of_type.bounds();
-            let (low, high) = IntegerWidth::Int32.bounds();
             // What is too large for 32 bits shows as the nearest one.
+            let (low, high) = IntegerWidth::Int32.bounds();
             let shown = |value: i64| if in_2 { value.clamp(low, high) } else { value };
+            let (min, max) = s.width.bounds();
+            let (min, max) = if in_2 && s.set.is_some() { (low, high) } else { (shown(min), shown(max)) };
             attributes.extend((shown(s.min) != min).then(|| ("min", shown(s.min).to_string())));
             attributes.extend((shown(s.max) != max).then(|| ("max", shown(s.max).to_string())));
             attributes.extend(s.start.map(|v| ("start", shown(v).to_string())));
