@@ -67,7 +67,7 @@ Only when named:
   miri         unit tests of the model, and the tests of the exporter, in the interpreter Miri, which sees undefined behaviour; needs a
                nightly compiler
   release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
-               licences of the dependencies; installs mingw and builds cargo-deny
+               licences of the dependencies, every library from its package; installs mingw and builds cargo-deny
   coverage     lines of model, circuit and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
