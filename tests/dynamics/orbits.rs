@@ -39,7 +39,8 @@ fn on_orbit(p: &Parameters, orbit: &Orbit, moved: [f64; 2]) -> Parameters {
 
 /// Trace and determinant of the derivative of the return map, by central differences of runs.
 fn by_differences(p: &Parameters, orbit: &Orbit) -> [f64; 2] {
-    const STEP: f64 = 1e-7;
+    // The error of the differences is least about here: of second order in the step, and rounding over it.
+    const STEP: f64 = 1e-6;
     let end = |moved: [f64; 2]| {
         let p = on_orbit(p, orbit, moved);
         let mut harvester = Harvester::new(&p, 0.0).unwrap();

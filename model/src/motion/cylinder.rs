@@ -100,7 +100,7 @@ impl Harmonic {
     /// Sine and cosine of the angle of the force at `time`, s.
     #[inline]
     pub fn sine(&self, time: f64) -> [f64; 2] {
-        sin_cos(4.0 * (cycle_fraction(self.frequency, time) + self.own_turns))
+        sin_cos(cycle_fraction(self.frequency, time) + self.own_turns)
     }
 }
 
@@ -218,7 +218,7 @@ impl CylinderMotion {
     #[inline(always)]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
         let turns = self.turns(time);
-        self.at_angle(time, turns, sin_cos(4.0 * turns))
+        self.at_angle(time, turns, sin_cos(turns))
     }
 
     /// The same at its start.
@@ -285,7 +285,7 @@ impl CylinderMotion {
         let speed = self.amplitude / omega;
         let speed_change = self.load.share * drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
-        let [sin, cos] = sin_cos(4.0 * self.turns(time));
+        let [sin, cos] = sin_cos(self.turns(time));
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
         let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
         let drift = speed_change * self.sin_start + speed * self.cos_start * from;
@@ -295,7 +295,7 @@ impl CylinderMotion {
 
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
-        let [sin, cos] = sin_cos(4.0 * self.turns(time));
+        let [sin, cos] = sin_cos(self.turns(time));
         self.load.share * drive.amplitude * cos - self.amplitude * sin * drive.angle(time)
     }
 
@@ -365,7 +365,7 @@ impl CylinderMotion {
             .fold([0.0; 2], |[value, slope], (n, term)| [value + term, slope + n as f64 * term]);
         let velocity = if elapsed > 0.0 { sums[1] / elapsed } else { self.velocity };
         let [external, rate] = self.external;
-        let [sin, cos] = sin_cos(4.0 * cycle_fraction(self.drive.frequency, elapsed));
+        let [sin, cos] = sin_cos(cycle_fraction(self.drive.frequency, elapsed));
         let cosine = self.cos_start * cos - self.sin_start * sin;
         excitation::acceleration(self.amplitude, cosine, external)
             + rate * elapsed

@@ -8,11 +8,11 @@
 //! another.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use core::f64::consts::{FRAC_2_PI, PI};
+use core::f64::consts::{PI, TAU};
 
 use super::block::{BLOCK, Block};
 use super::normal::{self, Aligned};
-use crate::numerics::elementary::sin_cos;
+use crate::numerics::elementary::ReducedAngle;
 use crate::numerics::product::{cycle_fraction, product_error};
 use crate::paper::excitation::noisy_phase;
 use crate::parameters::Parameters;
@@ -31,12 +31,13 @@ static NUMBERS: Aligned<[f64; BLOCK]> = {
 #[derive(Clone, Copy, PartialEq)]
 struct Force {
     seed: i32,
+    /// Of the noise, and the phase, in turns.
     intensity: f64,
     phase: f64,
     frequency: f64,
     hold: f64,
-    /// Quarter turns of the force in one hold interval, without whole turns.
-    quarters: f64,
+    /// Turns of the force in one hold interval, without whole ones.
+    turns: f64,
     /// Change of velocity, m/s, at cos a = 1.
     push: f64,
     /// Changes of position, m, at cos a = 1 and at sin a = 1.
@@ -49,21 +50,21 @@ impl Force {
         let push = p.harmonic_acceleration() * hold;
         Self {
             seed: p.seed,
-            intensity: p.phase_noise,
-            phase: p.phase,
+            intensity: p.phase_noise / TAU,
+            phase: p.phase / TAU,
             frequency: p.frequency,
             hold,
-            quarters: 4.0 * cycle_fraction(p.frequency, hold),
+            turns: cycle_fraction(p.frequency, hold),
             push: push * x.sin() / x,
             shift: [0.5 * push * hold * x.sin() / x, push * hold * lag(x)],
         }
     }
 
-    /// Angle in the middle of hold interval `sample`, in quarter turns, without phase and noise.
+    /// Angle in the middle of hold interval `sample`, in turns, without phase and noise.
     fn carrier(&self, sample: u64) -> f64 {
         let middle = sample as f64 + 0.5;
         let time = middle * self.hold;
-        4.0 * (cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time))
+        cycle_fraction(self.frequency, time) + self.frequency * product_error(middle, self.hold, time)
     }
 
     /// Works out block `number`, with the widest vectors that this machine has.
@@ -98,13 +99,14 @@ impl Force {
     #[inline(always)]
     fn fill_plainly(&self, block: &mut Block, number: u64) {
         block.number = number;
-        let carrier = self.carrier(number * BLOCK as u64);
+        let carrier = self.phase + self.carrier(number * BLOCK as u64);
         normal::normals(self.seed, number, &mut block.samples.0);
         for k in 0..BLOCK {
-            let phase = noisy_phase(self.phase, self.intensity, block.samples.0[k]);
-            let [sin, cos] = sin_cos(carrier + (NUMBERS.0[k] * self.quarters + phase * FRAC_2_PI));
+            let turns = noisy_phase(carrier + NUMBERS.0[k] * self.turns, self.intensity, block.samples.0[k]);
+            let angle = ReducedAngle::of(turns);
+            let cos = angle.cos();
             block.velocity.0[k] = self.push * cos;
-            block.position.0[k] = self.shift[0] * cos + self.shift[1] * sin;
+            block.position.0[k] = self.shift[0] * cos + self.shift[1] * angle.short_sin();
         }
         block.sum(self.hold);
     }

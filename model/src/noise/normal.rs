@@ -2,7 +2,7 @@
 //! whether it is made alone or with others.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use crate::numerics::elementary::{ln, turned, unit};
+use crate::numerics::elementary::{ReducedAngle, in_binade, ln};
 
 const LOW: u64 = 0xFFFF_FFFF;
 
@@ -56,10 +56,12 @@ fn bits(seed: i32, counter: u64) -> [u64; 2] {
 /// of the radius.
 #[inline(always)]
 fn pair(bits: u64) -> [f64; 2] {
-    // 1 - u lies in (0, 1]: its logarithm is finite.
-    let radius = (-2.0 * ln::<6>(1.0 - unit(bits & !0xFF_FFFF))).sqrt();
-    let [sin, cos] = turned::<6>(unit(bits << 42) - 0.5, bits >> 22);
-    [radius * cos, radius * sin]
+    // In (0, 1]: the logarithm is finite.
+    let uniform = 2.0 - in_binade(1.0, bits & !0xFF_FFFF);
+    let radius = (-2.0 * ln(uniform)).sqrt();
+    let eighths = bits.wrapping_add(1 << 21);
+    let angle = ReducedAngle::new(in_binade(0.5, eighths << 41) - 0.75, eighths >> 23);
+    [radius * angle.short_cos(), radius * angle.short_sin()]
 }
 
 /// Begins where a cache line does: no vector lies across two.

@@ -60,7 +60,7 @@ impl Swept {
     /// The same for the angle `phi`, rad, that is `turns` but for whole ones.
     #[inline(always)]
     pub fn new(phi: f64, turns: f64) -> Self {
-        let [sin, cos] = sin_cos(2.0 * turns);
+        let [sin, cos] = sin_cos(0.5 * turns);
         let (sine, versine) = (2.0 * sin * cos, 2.0 * sin * sin);
         let lag = if phi.abs() < Angle::SMALL { small_lag(phi) } else { phi - sine };
         Self { sine, versine, lag }
@@ -120,7 +120,7 @@ mod tests {
         #[test]
         fn small_angles_keep_their_digits(exponent in -40.0..3.0_f64, sign in prop_oneof![Just(1.0), Just(-1.0)], start in 0.0..1.0_f64, step in -0.01..0.01_f64) {
             let phi = sign * exponent.exp2();
-            let start = sin_cos(4.0 * start);
+            let start = sin_cos(start);
             let Angle { sine, swept } = Angle::new(start, phi, phi / TAU);
             let rounding = if phi.abs() < 1.0 { 0.0 } else { 4.0 * f64::EPSILON * phi.abs() };
             close(swept.sine, phi.sin(), 4.0, rounding, "sine")?;
