@@ -6,35 +6,18 @@ Built without optimisation: compiling takes far longer than running.
 
 import re
 import tempfile
-import zipfile
 from pathlib import Path
 
 import harness
 import job
+import rust_reader
 
 NAME = "fmi (Rust)"
 PROVES = "loads and runs both FMUs, goes back to saved and serialised states (FMI 2.0) to the last bit"
 FMI_3 = True
 MANIFEST = harness.ROOT / "tests" / "fmi-crate" / "Cargo.toml"
 
-
-KNOWN = {
-    "no units": "its reader of FMI 3.0 refuses amperes in base units, `unit` and `nominal` of variables, all of them in the XSD; "
-    "it gets copies of the descriptions without units and nominal values"
-}
-
-
-def without_units(fmu: str, folder: Path) -> str:
-    """A copy without units and nominal values."""
-    copy = folder / Path(fmu).name
-    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(copy, "w") as target:
-        for entry in source.infolist():
-            content = source.read(entry)
-            if entry.filename == "modelDescription.xml":
-                content = re.sub(rb"<UnitDefinitions>.*</UnitDefinitions>", b"", content, flags=re.DOTALL)
-                content = re.sub(rb' (unit|nominal)="[^"]*"', b"", content)
-            target.writestr(entry, content)
-    return str(copy)
+KNOWN = rust_reader.KNOWN
 
 
 def version() -> str:
@@ -47,6 +30,5 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
     program = job.build_program(name, "--locked", "--manifest-path", str(MANIFEST))
     with tempfile.TemporaryDirectory() as folder:
         if is_fmi_3:
-            print("warning: no units")
-            fmus = {name: without_units(fmu, Path(folder)) for name, fmu in fmus.items()}
+            fmus = {name: rust_reader.copy(fmu, Path(folder)) for name, fmu in fmus.items()}
         return job.run_program(program, fmus, Path(folder))
