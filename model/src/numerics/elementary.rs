@@ -2,7 +2,7 @@
 //! becomes vector instructions, and every machine, with whatever vectors and mathematical library, gives the same bits.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use core::f64::consts::{LN_2, SQRT_2};
+use core::f64::consts::{LN_2, SQRT_2, TAU};
 
 /// Adding it to a double below 2^51 rounds that to the nearest integer, which then stands in the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
@@ -77,7 +77,7 @@ fn sum<const N: usize>(coefficients: &[f64; N], Powers([x, x2, x4]): Powers) -> 
 /// Coefficients of sin(2 pi x) / x in powers of x^2, for x from -1/4 to 1/4: least squares of the sine at Chebyshev points.
 /// The first is 2 pi, so that small angles keep their digits.
 const SINE: [f64; 8] = [
-    6.283_185_307_179_586,
+    TAU,
     -41.341_702_240_397_44,
     81.605_249_275_349_41,
     -76.705_859_668_530_22,
@@ -179,7 +179,7 @@ pub fn sin_cos(turns: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::f64::consts::TAU;
+
     use proptest::prelude::*;
 
     /// Few where Miri interprets them, which takes far longer.
