@@ -42,7 +42,7 @@ Runs the stages named, or those of these that have not passed yet on the same fi
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
 
 CI runs this one, too:
-  slow         all of the following, which run alone as well:
+  slow         all of the following, two at a time; each runs alone, too:
   unit-slow    those tests of the Rust packages that are marked #[ignore = "slow"]
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
@@ -238,7 +238,7 @@ stage_unit-slow() {
 }
 
 stage_slow() {
-    run_stages "${SLOW_STAGES[@]}"
+    run_side_by_side "${SLOW_STAGES[@]}"
 }
 
 stage_valgrind() {
@@ -405,6 +405,50 @@ run_stages() {
         [[ $(state) == "$before" ]] && echo "$before" >"$(record "$stage")"
         echo "=== $stage: passed in $((SECONDS - started)) s"
     done
+}
+
+# The stages that run now, by the number of their process, and the folder of what they print.
+declare -A running=()
+printed=
+
+end_running() {
+    local numbers=("${!running[@]}")
+    [[ ${#numbers[@]} -eq 0 ]] || kill -- "${numbers[@]/#/-}" 2>/dev/null || true
+    rm -rf "$printed"
+}
+
+# Waits for one of the stages that run and prints what it printed.
+await_stage() {
+    local number code=0 stage
+    wait -n -p number "${!running[@]}" || code=$?
+    stage=${running[$number]}
+    unset "running[$number]"
+    cat "$printed/$stage"
+    if [[ $code -ne 0 ]]; then
+        echo "=== $stage: FAILED" | tee -a "$printed/failed"
+    fi
+}
+
+# Runs stages two at a time, since most of them keep one core busy. After a failure no other begins.
+run_side_by_side() {
+    local stage
+    printed=$(mktemp -d)
+    trap end_running EXIT
+    trap 'exit 130' INT
+    trap 'exit 143' TERM
+    set -m # a process group each, which is ended as a whole
+    for stage in "$@"; do
+        [[ ${#running[@]} -lt 2 ]] || await_stage
+        [[ ! -e $printed/failed ]] || break
+        echo "=== $stage: begins"
+        run_stages "$stage" </dev/null >"$printed/$stage" 2>&1 &
+        running[$!]=$stage
+    done
+    while [[ ${#running[@]} -gt 0 ]]; do
+        await_stage
+    done
+    set +m
+    [[ ! -e $printed/failed ]] || exit 1
 }
 
 main() {
