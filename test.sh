@@ -25,8 +25,8 @@ export VIDEG_ALL_TOOLS=1
 # PROPTEST_RNG_SEED draw others.
 export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
 
-# What the stage slow is made of.
-readonly SLOW_STAGES=(unit-slow scale conformance exporter browser book python)
+# What the stage slow is made of, the longest first.
+readonly SLOW_STAGES=(unit-slow python book conformance scale browser exporter)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
 readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers miri release coverage)
 

@@ -7,7 +7,10 @@
 
 mod common;
 
+use core::ffi::{CStr, c_char, c_int, c_void};
+
 use common::toy::Toy;
+use fmu_export::abi::describe::Take;
 use fmu_export::{
     Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Standard, Variable,
     model_description, terminals_and_icons,
@@ -171,4 +174,35 @@ fn mistakes_in_a_table_are_found_and_named() {
     assert_eq!(mistake::<NoState>(), "the FMU is faulty: a: it jumps at events, but is no continuous state");
     slave!(NoUnit, V::output("a", "", "").get(|m| m.0));
     assert!(mistake::<NoUnit>().contains("its unit is empty"));
+}
+
+/// Names and texts that the library gives a packager.
+fn described(describe: impl FnOnce(*const c_char, c_int, Take, *mut c_void), icon: bool) -> Vec<(String, String)> {
+    unsafe extern "C" fn take(context: *mut c_void, name: *const c_char, text: *const c_char) {
+        let [name, text] = [name, text].map(|text| unsafe { CStr::from_ptr(text) }.to_str().expect("UTF-8").to_owned());
+        unsafe { &mut *context.cast::<Vec<(String, String)>>() }.push((name, text));
+    }
+    let mut texts = Vec::new();
+    describe(core::ptr::null(), icon.into(), take, (&raw mut texts).cast());
+    texts
+}
+
+#[test]
+fn the_library_gives_a_packager_the_same_texts_or_the_reason_why_not() {
+    unsafe extern "C" {
+        fn fmu_export_describe_1(resources: *const c_char, icon: c_int, take: Take, context: *mut c_void);
+    }
+    for icon in [false, true] {
+        let texts = described(|r, i, take, context| unsafe { fmu_export_describe_1(r, i, take, context) }, icon);
+        let expected = [
+            ("fmi2/modelDescription.xml", text()),
+            ("fmi3/modelDescription.xml", model_description::<Toy>(Standard::Fmi3).unwrap()),
+            ("fmi3/terminalsAndIcons/terminalsAndIcons.xml", terminals_and_icons::<Toy>(icon).unwrap()),
+        ];
+        assert_eq!(texts, expected.map(|(name, text)| (name.to_owned(), text)));
+    }
+    slave!(Twins, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
+    let of_twins = fmu_export::describe::fmu_export_describe_1::<Twins>;
+    let texts = described(|r, i, take, context| unsafe { of_twins(r, i, take, context) }, false);
+    assert_eq!(texts, [("error".to_owned(), "the FMU is faulty: a: its name occurs twice".to_owned())]);
 }

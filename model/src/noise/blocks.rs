@@ -242,6 +242,18 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_copy_of_other_blocks_works_out_its_own() {
+        let new = |seed| Blocks::new(&Parameters { phase_noise: 1.0, seed, ..Parameters::default() });
+        let [mut blocks, other, mut fresh] = [new(1), new(2), new(2)];
+        let bits = |block: &Block| (0..=BLOCK).map(|k| block.at(k, 1e-5).map(f64::to_bits)).collect::<Vec<_>>();
+        let first = bits(blocks.block(0));
+        blocks.clone_from(&other);
+        assert_eq!(bits(blocks.block(0)), bits(fresh.block(0)));
+        assert_ne!(bits(blocks.block(0)), first);
+        assert_eq!(format!("{blocks:?}"), "Blocks { .. }");
+    }
+
     fn fill_by_four_if_possible(force: &Force, block: &mut Block, number: u64) {
         #[cfg(target_arch = "x86_64")]
         #[allow(unsafe_code)] // as in Force::fill

@@ -7,6 +7,7 @@ use core::cell::RefCell;
 use core::ffi::CStr;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::fmi3::*;
+use std::rc::Rc;
 
 /// A message that the host was sent.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +56,8 @@ pub struct Host {
     pub functions: Functions,
     pub instance: fmi3Instance,
     pub session: Session,
-    environment: Box<Environment>,
+    /// Moving a `Box` would end what the pointer of the instance may do.
+    environment: Rc<Environment>,
 }
 
 unsafe extern "C" fn log(
@@ -145,7 +147,7 @@ pub struct Stepped {
 impl Host {
     /// In state `instantiated`, with these variables to be read within steps.
     pub fn requiring(fmu: &Fmu, session: Session, required: &[u32]) -> Self {
-        let environment = Box::<Environment>::default();
+        let environment = Rc::<Environment>::default();
         let instance = session.instantiate(&fmu.functions, c"host", &fmu.token, &environment, required);
         // That an FMU with clocks is made without event mode is logged.
         let lines = environment.lines();
