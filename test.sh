@@ -42,7 +42,7 @@ Runs the stages named, or those of these that have not passed yet on the same fi
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
 
 CI runs this one, too:
-  slow         all of the following, two at a time; each runs alone, too:
+  slow         all of the following, two at a time, and again alone what failed so; each runs alone, too:
   unit-slow    those tests of the Rust packages that are marked #[ignore = "slow"]
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
@@ -425,13 +425,15 @@ await_stage() {
     unset "running[$number]"
     cat "$printed/$stage"
     if [[ $code -ne 0 ]]; then
-        echo "=== $stage: FAILED" | tee -a "$printed/failed"
+        echo "=== $stage: failed beside others; runs again alone"
+        failed+=("$stage")
     fi
 }
 
-# Runs stages two at a time, since most of them keep one core busy. After a failure no other begins.
+# Runs stages two at a time, since most of them keep one core busy. What failed may have waited too long for a core that another stage
+# had: it runs again alone, and must pass.
 run_side_by_side() {
-    local stage
+    local stage failed=()
     printed=$(mktemp -d)
     trap end_running EXIT
     trap 'exit 130' INT
@@ -439,7 +441,6 @@ run_side_by_side() {
     set -m # a process group each, which is ended as a whole
     for stage in "$@"; do
         [[ ${#running[@]} -lt 2 ]] || await_stage
-        [[ ! -e $printed/failed ]] || break
         echo "=== $stage: begins"
         run_stages "$stage" </dev/null >"$printed/$stage" 2>&1 &
         running[$!]=$stage
@@ -448,7 +449,7 @@ run_side_by_side() {
         await_stage
     done
     set +m
-    [[ ! -e $printed/failed ]] || exit 1
+    [[ ${#failed[@]} -eq 0 ]] || run_stages "${failed[@]}"
 }
 
 main() {
