@@ -407,8 +407,9 @@ run_stages() {
     done
 }
 
-# The stages that run now, by the number of their process, and the folder of what they print.
+# The stages that run now, by the number of their process, those that failed, and the folder of what they print.
 declare -A running=()
+failed=()
 printed=
 
 end_running() {
@@ -433,7 +434,7 @@ await_stage() {
 # Runs stages two at a time, since most of them keep one core busy. What failed may have waited too long for a core that another stage
 # had: it runs again alone, and must pass.
 run_side_by_side() {
-    local stage failed=()
+    local stage
     printed=$(mktemp -d)
     trap end_running EXIT
     trap 'exit 130' INT

@@ -3,6 +3,8 @@
 import os
 import subprocess
 import sys
+import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import fmpy
@@ -40,6 +42,16 @@ def outputs(fmu: str) -> list[str]:
 
 def is_fmi_3(fmu: str) -> bool:
     return fmpy.read_model_description(fmu).fmiVersion == "3.0"
+
+
+def edited(fmu: str, folder: Path, edit: Callable[[bytes], bytes]) -> str:
+    """A copy of an FMU, in the folder, with an edited description."""
+    path = folder / Path(fmu).name
+    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(path, "w") as target:
+        for entry in source.infolist():
+            content = source.read(entry)
+            target.writestr(entry, edit(content) if entry.filename == "modelDescription.xml" else content)
+    return str(path)
 
 
 def build_program(name: str, *arguments: str) -> Path:

@@ -1,9 +1,6 @@
 """What the readers of descriptions of FMI 3.0 written in Rust (the crate fmi-schema) are given."""
 
 import re
-import zipfile
-from collections.abc import Callable
-from pathlib import Path
 
 KNOWN = {
     "no units": "its reader of FMI 3.0 refuses amperes in base units, `unit` and `nominal` of variables, all of them in the XSD; "
@@ -16,13 +13,3 @@ def without_units(description: bytes) -> bytes:
     print("warning: no units")
     description = re.sub(rb"<UnitDefinitions>.*</UnitDefinitions>", b"", description, flags=re.DOTALL)
     return re.sub(rb' (unit|nominal)="[^"]*"', b"", description)
-
-
-def copy(fmu: str, folder: Path, edit: Callable[[bytes], bytes] = without_units) -> str:
-    """A copy of an FMU with an edited description."""
-    path = folder / Path(fmu).name
-    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(path, "w") as target:
-        for entry in source.infolist():
-            content = source.read(entry)
-            target.writestr(entry, edit(content) if entry.filename == "modelDescription.xml" else content)
-    return str(path)

@@ -52,15 +52,17 @@ fn bits(seed: i32, counter: u64) -> [u64; 2] {
 }
 
 /// Two independent standard normal samples (Box-Muller): of the `bits`, 40 make the radius, which reaches 7.4, and 24
-/// the angle. Shorter series than double precision asks for leave an error below 1e-10
-/// of the radius.
+/// the angle, counted in 2^-24 of a turn from 1/8 before 0. Shorter series than double precision asks for leave an error
+/// below 1e-10 of the radius.
 #[inline(always)]
 fn pair(bits: u64) -> [f64; 2] {
     // In (0, 1]: the logarithm is finite.
     let uniform = 2.0 - in_binade(1.0, bits & !0xFF_FFFF);
     let radius = (-2.0 * ln(uniform)).sqrt();
-    let eighths = bits.wrapping_add(1 << 21);
-    let angle = ReducedAngle::new(in_binade(0.5, eighths << 41) - 0.75, eighths >> 23);
+    // Half turns begin 1/4 of a turn before their middle: the count goes on by 1/8. Its high bit is then the half turn, the
+    // others are the rest.
+    let count = bits.wrapping_add(1 << 21);
+    let angle = ReducedAngle::new(in_binade(0.5, count << 41) - 0.75, count >> 23);
     [radius * angle.short_cos(), radius * angle.short_sin()]
 }
 
@@ -94,6 +96,10 @@ pub fn normal(seed: i32, index: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::TAU;
+
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -106,6 +112,22 @@ mod tests {
         let counter = [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344];
         let pi = [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1];
         assert_eq!(philox4x32(counter, [0xa409_3822, 0x299f_31d0]), pi);
+    }
+
+    const CASES: u32 = if cfg!(miri) { 20 } else { 20_000 };
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn pairs_are_those_of_box_and_muller(bits: u64) {
+            let uniform = 1.0 - (bits >> 24) as f64 / 2_f64.powi(40);
+            let angle = TAU * ((bits & 0xFF_FFFF) as f64 / 2_f64.powi(24) - 0.125);
+            let radius = (-2.0 * uniform.ln()).sqrt();
+            let [cos, sin] = pair(bits);
+            prop_assert!((cos - radius * angle.cos()).abs() <= 1e-10 * radius, "{cos}");
+            prop_assert!((sin - radius * angle.sin()).abs() <= 1e-10 * radius, "{sin}");
+        }
     }
 
     /// Samples `from` to `to`, both multiples of [`GROUP`].

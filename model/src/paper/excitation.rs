@@ -9,7 +9,7 @@ pub fn acceleration(amplitude: f64, cosine: f64, external: f64) -> f64 {
     amplitude * cosine + external
 }
 
-/// Section 5.2: the phase, rad, of the force under phase noise, phi + sigma xi.
+/// Section 5.2: the phase of the force under phase noise, phi + sigma xi, in the unit of `phase` and `intensity`.
 #[inline(always)]
 #[allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 pub fn noisy_phase(phase: f64, intensity: f64, xi: f64) -> f64 {

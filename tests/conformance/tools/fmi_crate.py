@@ -30,5 +30,5 @@ def simulate(fmus: dict[str, str]) -> dict[str, job.Series]:
     program = job.build_program(name, "--locked", "--manifest-path", str(MANIFEST))
     with tempfile.TemporaryDirectory() as folder:
         if is_fmi_3:
-            fmus = {name: rust_reader.copy(fmu, Path(folder)) for name, fmu in fmus.items()}
+            fmus = {name: job.edited(fmu, Path(folder), rust_reader.without_units) for name, fmu in fmus.items()}
         return job.run_program(program, fmus, Path(folder))

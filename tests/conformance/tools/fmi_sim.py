@@ -8,6 +8,7 @@ import xml.etree.ElementTree as xml
 import zipfile
 from pathlib import Path
 
+import job
 import rust_reader
 
 NAME = "fmi-sim"
@@ -52,7 +53,7 @@ def check(fmu: str) -> None:
         description = xml.fromstring(archive.read("modelDescription.xml"))
     with tempfile.TemporaryDirectory() as folder:
         if description.get("fmiVersion") == "3.0":
-            fmu = rust_reader.copy(fmu, Path(folder), readable)
+            fmu = job.edited(fmu, Path(folder), readable)
         for element, verb in INTERFACES.items():
             if description.find(element) is not None:
                 run(fmu, verb)
