@@ -154,6 +154,7 @@ fn expected(function: Function, interface: Interface, letter: char) -> Legality 
 }
 
 #[test]
+#[cfg_attr(miri, ignore = "safe code that compares words, ten minutes long")]
 fn every_cell_of_the_table_is_as_in_the_standard() {
     assert_eq!(Function::ALL.len(), 71);
     let mut cells = 0;
@@ -201,10 +202,14 @@ fn functions() -> impl Iterator<Item = Function> {
     Function::ALL.iter().copied().filter(|function| *function != Function::FreeInstance)
 }
 
+/// Under Miri one, since each cell is an instance of its own; random calls reach the others there.
+const SESSIONS: &[Session] =
+    if cfg!(miri) { &[Session::EVENTS] } else { &[Session::EVENTS, Session::EXCHANGE, Session::PLAIN] };
+
 #[test]
 fn the_c_functions_follow_the_table_in_every_state() {
     let mut cells = 0;
-    for session in [Session::EXCHANGE, Session::PLAIN, Session::EVENTS] {
+    for &session in SESSIONS {
         let interface = if session.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
         for function in functions() {
             for letter in letters(interface).chars().filter(|letter| !"gun".contains(*letter)) {
@@ -224,7 +229,7 @@ fn the_c_functions_follow_the_table_in_every_state() {
         }
     }
     // Without event mode there is one state less, and one call that is refused.
-    assert_eq!(cells, 70 * (7 + 7 + 6) - 1);
+    assert_eq!(cells, if cfg!(miri) { 70 * 7 } else { 70 * (7 + 7 + 6) - 1 });
 }
 
 #[test]
