@@ -1,8 +1,8 @@
 //! Voltages of a circuit that were left out, and averages, by their definitions.
 
 use proptest::prelude::*;
-use videg_circuit::{Settings, Topology};
-use videg_coupled::{Averages, Gains, Given, best_release_voltage};
+use videg_circuit::{Ledger, Settings, Topology};
+use videg_coupled::{Averages, Gains, Given, Powers, best_release_voltage};
 
 const NAMES: [&str; 3] = ["supply.voltage", "zener.voltage", "storage.voltage"];
 
@@ -54,5 +54,18 @@ proptest! {
         prop_assert_eq!(averages.impacts, more);
         // An impact at the start of a run is in a window that begins there.
         prop_assert_eq!(Averages::over([0.0, window], &start, &end).impacts, impacts + more);
+    }
+
+    #[test]
+    fn powers_are_differences_over_the_window_and_count_what_is_stored(
+        from in 0.0..10.0_f64, window in 0.1..10.0_f64, before in prop::array::uniform3(0.0..1e3_f64),
+        after in prop::array::uniform3(1e3..1e4_f64),
+    ) {
+        let ledger = |[load, supply, stored]: [f64; 3]| Ledger { load, supply, stored, ..Ledger::default() };
+        let powers = Powers::over([from, from + window], &ledger(before), &ledger(after));
+        let [load, supply, stored] = [0, 1, 2].map(|k| after[k] - before[k]);
+        let close = |power: f64, energy: f64| (power * window - energy).abs() < 1e-8;
+        prop_assert!(close(powers.load_power, load) && close(powers.supply_power, supply));
+        prop_assert!(close(powers.net_power, load - supply + stored));
     }
 }
