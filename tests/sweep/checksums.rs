@@ -16,11 +16,13 @@ fn whole_and_shards(folder: &Path) -> (PathBuf, [PathBuf; 2]) {
     (whole, [one, other])
 }
 
-/// Turns the last bit of a digit in the middle of the file: it is as long as before, and reads as well.
+/// Turns the last bit of a digit in the middle of the file, and of a table not of a run's number: it is as long as before, and reads as well.
 fn flip(path: &Path) {
     let mut bytes = fs::read(path).unwrap();
     let middle = bytes.len() / 2;
-    let place = (middle..bytes.len()).find(|place| bytes[*place].is_ascii_digit()).unwrap();
+    let is_digit = |place: usize| bytes[place].is_ascii_digit();
+    let among_digits = (middle..bytes.len()).find(|place| (place - 2..=*place).all(is_digit));
+    let place = among_digits.or_else(|| (middle..bytes.len()).find(|place| is_digit(*place))).unwrap();
     bytes[place] ^= 1;
     fs::write(path, bytes).unwrap();
 }

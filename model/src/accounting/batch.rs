@@ -5,7 +5,7 @@
 
 use super::ledger::Ledger;
 use crate::membrane::Membrane;
-use crate::motion::pulse::{Pulse, PulseChange, Pulses};
+use crate::motion::pulse::Pulses;
 use crate::motion::side::Side;
 use crate::shared::Shared;
 
@@ -41,10 +41,7 @@ impl Batch {
             *excess = membrane.capacitance_excess(*peak);
         }
         excesses[..self.len].iter().for_each(|excess| ledger.credit(*excess));
-        let started = |(&(start, side, speed), &peak): (&(f64, Side, f64), &f64)| {
-            (side, Pulse { start, speed, peak, change: PulseChange::default() })
-        };
-        pulses.extend(membrane, impacts.iter().zip(&peaks).map(started));
+        pulses.extend(membrane, impacts, &peaks[..impacts.len()]);
         self.len = 0;
     }
 }

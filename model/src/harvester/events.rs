@@ -173,6 +173,7 @@ impl Harvester {
         }
     }
 
+    #[inline]
     fn end_of_bounces(&self, side: Side, rebound: f64, wall: &CylinderState) -> Option<Tail> {
         self.motion.end_of_bounces(side, rebound, wall, self.noise.limit().unwrap_or(f64::INFINITY))
     }

@@ -130,7 +130,7 @@ impl Harvester {
         harvester.motion.resume_search(snapshot.time);
         let (motion, forces, limit, ..) = harvester.parts();
         motion.plan_contact(forces, limit);
-        let due = harvester.motion.search_for_event(&mut harvester.noise, snapshot.time, true);
+        let due = harvester.motion.next_event(&mut harvester.noise, snapshot.time, true);
         if let Some(Prediction::Impact { time, .. } | Prediction::Release { time } | Prediction::Turn { time }) =
             due.filter(|event| event.time() <= snapshot.time)
         {

@@ -4,8 +4,8 @@ use core::f64::consts::TAU;
 
 use super::mount::Load;
 use super::suspended::{Oscillation, Suspension, change, damped_energy};
-use crate::numerics::elementary::{round, sin_cos};
-use crate::numerics::product::cycle_fraction;
+use crate::numerics::elementary::{ReducedAngle, round, sin_cos};
+use crate::numerics::product::{cycle_fraction, product_error};
 use crate::paper::excitation;
 use crate::parameters::Parameters;
 use crate::recording::Segment;
@@ -100,8 +100,21 @@ impl Harmonic {
     /// Sine and cosine of the angle of the force at `time`, s.
     #[inline]
     pub fn sine(&self, time: f64) -> [f64; 2] {
-        sin_cos(cycle_fraction(self.frequency, time) + self.own_turns)
+        angle_at(self.frequency, time, self.own_turns).1
     }
+}
+
+/// The angle at `time`, s, of a harmonic force of this `frequency`, Hz, and of so many turns at time 0: in turns but for whole ones, and its
+/// sine and cosine.
+#[allow(clippy::inline_always)] // at each event
+#[inline(always)]
+fn angle_at(frequency: f64, time: f64, own_turns: f64) -> (f64, [f64; 2]) {
+    let product = frequency * time;
+    // What rounding has taken is known later.
+    let about = (product - round(product)) + own_turns;
+    let turns = about + product_error(frequency, time, product);
+    let angle = ReducedAngle::near(turns, about);
+    (turns, [angle.sin(), angle.cos()])
 }
 
 /// Changes of a harmonic force.
@@ -207,24 +220,25 @@ impl CylinderMotion {
         }
     }
 
-    /// The angle of the harmonic force at `time`, s, in turns.
-    #[inline]
-    fn turns(&self, time: f64) -> f64 {
-        cycle_fraction(self.drive.frequency, time) + self.own_turns
+    /// The angle of the harmonic force at `time`, s, in turns, and its sine and cosine.
+    #[allow(clippy::inline_always)] // at each event
+    #[inline(always)]
+    fn angle(&self, time: f64) -> (f64, [f64; 2]) {
+        angle_at(self.drive.frequency, time, self.own_turns)
     }
 
     /// All of the motion at `time`, s.
     #[allow(clippy::inline_always)] // as a copy of what a call returns, sine and cosine would arrive late
     #[inline(always)]
     pub(crate) fn at(&self, time: f64) -> CylinderState {
-        let turns = self.turns(time);
-        self.at_angle(time, turns, sin_cos(turns))
+        let (turns, sine) = self.angle(time);
+        self.at_angle(time, turns, sine)
     }
 
     /// The same at its start.
     #[inline]
     pub(crate) fn at_start(&self) -> CylinderState {
-        self.at_angle(self.start, self.turns(self.start), [self.sin_start, self.cos_start])
+        self.at_angle(self.start, self.angle(self.start).0, [self.sin_start, self.cos_start])
     }
 
     /// The same where the angle of the harmonic force is so many `turns`, and has this `sine` and cosine.
@@ -285,7 +299,7 @@ impl CylinderMotion {
         let speed = self.amplitude / omega;
         let speed_change = self.load.share * drive.amplitude / omega - speed * stiffer;
         let swing_change = (speed_change - speed * stiffer) / omega;
-        let [sin, cos] = sin_cos(self.turns(time));
+        let (_, [sin, cos]) = self.angle(time);
         let [from, to] = [self.start, time].map(|time| drive.angle(time));
         let position = swing_change * (self.cos_start - cos) + speed / omega * (sin * to - self.sin_start * from);
         let drift = speed_change * self.sin_start + speed * self.cos_start * from;
@@ -295,7 +309,7 @@ impl CylinderMotion {
 
     /// First-order change of the acceleration, m/s^2, at `time`, s, with the harmonic force.
     pub fn acceleration_change(&self, time: f64, drive: &DriveChange) -> f64 {
-        let [sin, cos] = sin_cos(self.turns(time));
+        let (_, [sin, cos]) = self.angle(time);
         self.load.share * drive.amplitude * cos - self.amplitude * sin * drive.angle(time)
     }
 

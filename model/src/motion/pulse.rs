@@ -252,19 +252,28 @@ impl Pulses {
         list.insert(position, Running::new(membrane, pulse));
     }
 
-    /// Adds the pulses of impacts in their order, but for those that have ended when the next one on their side begins.
-    pub(crate) fn extend(&mut self, membrane: &Shared<Membrane>, pulses: impl Iterator<Item = (Side, Pulse)>) {
-        let mut last: [Option<Pulse>; 2] = [None; 2];
-        for (side, pulse) in pulses {
-            let Some(before) = last[side.index()].replace(pulse) else { continue };
-            let is_over = membrane.is_power() && self.shape.end_time(&before) <= pulse.start;
+    /// Adds the pulses of impacts in their order (time, s, side and relative speed, m/s) with these `peaks`, m, but for those that have
+    /// clearly ended when the next one on their side begins.
+    pub(crate) fn extend(&mut self, membrane: &Shared<Membrane>, impacts: &[(f64, Side, f64)], peaks: &[f64]) {
+        /// Of the duration: what may be rounding.
+        const CLEAR: f64 = 1e-9;
+        let longest = self.shape.loading * (1.0 + self.shape.stretch) * (1.0 + CLEAR);
+        let pulse = |k: usize| {
+            let (start, _, speed) = impacts[k];
+            Pulse { start, speed, peak: peaks[k], change: PulseChange::default() }
+        };
+        let mut last: [Option<usize>; 2] = [None; 2];
+        for (k, &(time, side, _)) in impacts.iter().enumerate() {
+            let Some(before) = last[side.index()].replace(k) else { continue };
+            let (start, _, speed) = impacts[before];
+            let is_over = membrane.is_power() && longest * peaks[before] < (time - start) * speed;
             if !is_over || self.under_way[side.index()].len() >= Self::CAPACITY {
-                self.push(membrane, side, before);
+                self.push(membrane, side, pulse(before));
             }
         }
-        for (side, pulse) in Side::BOTH.into_iter().zip(last) {
-            if let Some(pulse) = pulse {
-                self.push(membrane, side, pulse);
+        for (side, last) in Side::BOTH.into_iter().zip(last) {
+            if let Some(last) = last {
+                self.push(membrane, side, pulse(last));
             }
         }
     }
@@ -372,13 +381,14 @@ mod tests {
             let started = |k: u32| {
                 let speed = 0.05 + 0.03 * f64::from(k * 7 % 11);
                 let side = if k % 5 < 3 { Side::Left } else { Side::Right };
-                (side, pulse(spacing * f64::from(k), speed, membrane.deflection(speed)))
+                (spacing * f64::from(k), side, speed)
             };
             let (mut together, mut singly, all) = (none(), none(), (0..MANY).map(started).collect::<Vec<_>>());
             for some in all.chunks(16) {
-                together.extend(&membrane, some.iter().copied());
-                for &(side, pulse) in some {
-                    singly.push(&membrane, side, pulse);
+                let peaks: Vec<f64> = some.iter().map(|(_, _, speed)| membrane.deflection(*speed)).collect();
+                together.extend(&membrane, some, &peaks);
+                for (&(time, side, speed), &peak) in some.iter().zip(&peaks) {
+                    singly.push(&membrane, side, pulse(time, speed, peak));
                 }
                 assert_eq!(together, singly, "{spacing} s");
             }

@@ -60,7 +60,7 @@ impl Motion {
 
     /// The next event, whatever it is.
     #[inline(never)] // what a simple flight does stays small
-    pub fn search_for_event(&mut self, noise: &mut Noise, until: f64, follow: bool) -> Option<Prediction> {
+    fn search_for_event(&mut self, noise: &mut Noise, until: f64, follow: bool) -> Option<Prediction> {
         let limit = noise.limit();
         if let Ball::InContact(contact) = &self.ball {
             let end = contact.end();

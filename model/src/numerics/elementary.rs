@@ -129,7 +129,13 @@ impl ReducedAngle {
     /// So many `turns`, below 2^50 of them.
     #[inline(always)]
     pub fn of(turns: f64) -> Self {
-        let rounded = turns + HALVES_ROUNDER;
+        Self::near(turns, turns)
+    }
+
+    /// The same if they are `about` so many, which may be known sooner.
+    #[inline(always)]
+    pub fn near(turns: f64, about: f64) -> Self {
+        let rounded = about + HALVES_ROUNDER;
         Self::new(turns - (rounded - HALVES_ROUNDER), rounded.to_bits())
     }
 
@@ -147,13 +153,13 @@ impl ReducedAngle {
     /// Sine, with an error below 4e-16.
     #[inline(always)]
     pub fn sin(self) -> f64 {
-        self.signed(self.rest * sum(&SINE, self.powers))
+        self.signed(self.rest) * sum(&SINE, self.powers)
     }
 
     /// Cosine, with an error below 4e-16.
     #[inline(always)]
     pub fn cos(self) -> f64 {
-        self.signed(1.0 - self.powers.0[0] * sum(&COSINE, self.powers))
+        self.signed(1.0) - self.signed(self.powers.0[0]) * sum(&COSINE, self.powers)
     }
 
     /// Sine, with an error below 2e-11.

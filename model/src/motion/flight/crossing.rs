@@ -1,8 +1,8 @@
 //! Where dz crosses a membrane.
 //!
 //! One sine and cosine give all derivatives. So the gap is taken as its Taylor series about a place near the crossing, whose
-//! root costs no more sines; there the next series is taken, until one more step from its root, with the gap to all digits,
-//! is the last. The first place is one where sine and cosine are known beforehand.
+//! root costs no more sines; there the next series is taken, until a step to its root is so short that it is known to all digits. The
+//! first place is one where sine and cosine are known beforehand.
 
 #![allow(clippy::inline_always)] // what is taken at each event, and not inlined everywhere otherwise
 
@@ -17,11 +17,11 @@ const MAX_SERIES: u32 = 200;
 /// Most steps to a rough root.
 pub(super) const ROUGH_STEPS: u32 = 8;
 
-/// Whether this last `change` of a `step` is small enough: a root of the first series need not be better than what that leaves out.
-#[inline]
-pub(super) fn is_rough_root(step: f64, change: f64) -> bool {
-    const ROUGH: f64 = 0.3;
-    change.abs() <= ROUGH * step.abs()
+/// Whether this last `change` of a step, s, is small enough at `omega`, rad/s: what its third power leaves is for the last step.
+#[inline(always)]
+pub(super) fn is_rough_root(omega: f64, change: f64) -> bool {
+    const ROUGH: f64 = 0.08;
+    omega * change.abs() <= ROUGH
 }
 
 /// The gap about a place: coefficients of the powers of the time since then, s.
@@ -75,6 +75,24 @@ impl Series {
         Self::halley([c0, c1, c2])
     }
 
+    /// The step from the place itself, at `tau`, s, to a root close by, s, and how much the slope grows on it, m/s; none if the slope is no
+    /// fall, or if the step may not have all digits. Derivatives number k of the gap are at most `speed` `omega`^(k - 1), k > 1.
+    ///
+    /// Householder's method of the third order. With y = -c0 / c1, it leaves (2 a2 a3 - a4 - a2^3) y^4, where ak = ck / c1 is at most
+    /// R omega^(k - 1) / k! and R the speed over -c1; so (omega (1 + R) y)^3 y, if that is small.
+    #[inline(always)]
+    pub(super) fn last_step(&self, tau: f64, speed: f64, omega: f64) -> Option<(f64, f64)> {
+        let Self([c0, c1, c2, c3, c4, ..]) = *self;
+        let (bend, square) = (c0 * c2, c1 * c1);
+        let divisor = c1 * (square - 2.0 * bend) + c0 * (c0 * c3);
+        let step = (c1 < 0.0 && divisor < 0.0).then(|| -c0 * (square - bend) / divisor)?;
+        let change = step * (2.0 * c2) + (step * step) * (3.0 * c3 + step * (4.0 * c4));
+        let small = (omega * step) * (speed - c1);
+        let left_out = (small * small) * (small * step);
+        let is_exact = left_out.abs() <= 0.25 * f64::EPSILON * tau * (square * -c1);
+        is_exact.then_some((step, change))
+    }
+
     /// The root of the first three terms ahead, where the gap is still open; none if they have none.
     #[inline]
     fn root_of_parabola(&self) -> Option<f64> {
@@ -89,12 +107,12 @@ impl Series {
 
     /// About the root that Halley's method finds from `start` on.
     #[inline]
-    fn rough_root(&self, start: f64) -> Option<f64> {
+    fn rough_root(&self, omega: f64, start: f64) -> Option<f64> {
         let mut step = start;
         for _ in 0..ROUGH_STEPS {
             let change = Self::halley(self.at(step))?;
             step += change;
-            if is_rough_root(step, change) {
+            if is_rough_root(omega, change) {
                 return Some(step);
             }
         }
@@ -106,12 +124,12 @@ impl Flight {
     /// When, and how fast, dz comes to be `beyond`, m, outside of the membrane at `side`, on a piece on which it rises or
     /// falls all the way to there.
     pub(super) fn crossing(&self, side: Side, from: &Knot, to: &Knot, beyond: f64) -> Crossing {
-        let (gap_to, level) = (self.seen_from(side), self.room(side) + beyond);
+        let (gap_to, level, omega) = (self.seen_from(side), self.room(side) + beyond, self.omega());
         let (mut low, mut high) = (from.tau, to.tau);
         let (begin, angle) = self.steepest(side, from, to).unwrap_or((from.tau, from.angle));
         let first = gap_to.series(begin, &angle, level);
         let start = if begin == from.tau { first.root_of_parabola() } else { first.first_step() };
-        let rough = start.and_then(|start| first.rough_root(start)).map(|step| begin + step);
+        let rough = start.and_then(|start| first.rough_root(omega, start)).map(|step| begin + step);
         let mut tau = rough.filter(|tau| *tau > low && *tau < high).unwrap_or(0.5 * (low + high));
         for _ in 0..MAX_SERIES {
             let angle = self.angle(tau);
@@ -124,22 +142,15 @@ impl Flight {
             if high - low <= f64::EPSILON * high {
                 return self.contact(side, high);
             }
-            let Some(step) = series.first_step().filter(|step| (low..=high).contains(&(tau + step))) else {
-                tau = 0.5 * (low + high);
-                continue;
-            };
-            let [_, slope, half_curvature] = series.at(step);
-            // With all digits: in the series, the straight part of the flight would carry the rounding of `tau` along.
-            let there = angle.swept.further(self.omega() * step);
-            let gap = level + gap_to.change(tau + step, &there);
-            let change = Series::halley([gap, slope, half_curvature]);
-            if let Some(change) = change.filter(|_| self.is_found(tau, step, gap / slope, slope)) {
-                let elapsed = (tau + (step + change)).clamp(low, high);
-                let there = angle.swept.further(self.omega() * (step + change));
-                let speed = -gap_to.slope(elapsed, &there);
-                return Crossing { elapsed, side, speed: speed.max(0.0) };
+            let is_between = |step: f64| (low..=high).contains(&(tau + step));
+            let last = series.last_step(tau, self.swiftness(tau), omega).filter(|(step, _)| is_between(*step));
+            if let Some((step, change)) = last {
+                let slope = series.slope() + change;
+                return Crossing { elapsed: tau + step, side, speed: (-slope).max(0.0) };
             }
-            let next = tau + step;
+            let step =
+                series.first_step().and_then(|step| series.rough_root(omega, step)).filter(|step| is_between(*step));
+            let next = step.map_or(low, |step| tau + step);
             tau = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         self.contact(side, tau)
@@ -165,19 +176,10 @@ impl Flight {
         Series::new(level, self.derivatives(tau, angle))
     }
 
-    /// Whether the `step`, s, of Halley's method from `tau` and one more of that method lead to the crossing, if Newton's method
-    /// would put that off by `rest`, s, from there.
-    ///
-    /// An error e becomes K e^3 by a step. The first step has left K step^3 = rest, so that the next leaves rest^4 / step^3.
-    /// Where the method crawls along a flat gap, the rest is larger than the step.
-    #[inline(always)]
-    pub(super) fn is_found(&self, tau: f64, step: f64, rest: f64, slope: f64) -> bool {
-        let allowed = 0.25 * f64::EPSILON * tau;
-        let square = (self.omega() * step).powi(2);
-        let left_out = self.swing * (square * square) * (square * square) * (1.0 / 40_320.0);
-        let is_complete = left_out <= allowed * slope.abs();
-        let (rest, step) = (rest.abs(), step.abs());
-        is_complete && (rest <= allowed || (rest <= 0.01 * step && rest.powi(4) <= allowed * step.powi(3)))
+    /// A speed, m/s, that times omega^(k - 1) is no smaller than derivative number k of dz about `tau`, s, k > 1.
+    fn swiftness(&self, tau: f64) -> f64 {
+        let ([c2, c3], omega) = (self.external.map(f64::abs), self.omega());
+        self.swing * omega + (2.0 * c2 + 6.0 * c3 * (tau + 1.0 / omega)) / omega
     }
 
     /// Where on the way from one extremum to the next the harmonic part is steepest: sine and cosine are known there. It
