@@ -182,8 +182,8 @@ skip() {
     echo "skipped: $*"
 }
 
-# fmu-export is checked with its model-description feature in calls of its own: together with the FMUs, the feature
-# would get into their shared libraries, because Cargo unifies features within a build.
+# The tests of the FMUs ask for the feature model-description of fmu-export, so that the whole workspace checks and tests it with that;
+# release builds of the FMUs are without.
 stage_lint() {
     if cargo fmt --version >/dev/null 2>&1; then
         run cargo fmt --all --check
@@ -193,7 +193,6 @@ stage_lint() {
     fi
     if cargo clippy --version >/dev/null 2>&1; then
         run cargo clippy --quiet --workspace --all-targets -- -D warnings
-        run cargo clippy --quiet -p fmu-export --all-targets --all-features -- -D warnings
     else
         skip "cargo clippy is not installed"
     fi
@@ -229,7 +228,6 @@ lint_workflows() {
 
 stage_unit() {
     run cargo test --workspace
-    run cargo test -p fmu-export --all-features
 }
 
 # Not the doc tests, where the mark means that they do not compile. The stage book runs the book.
@@ -254,10 +252,11 @@ build_fmus() {
     run cargo run --quiet --release -- fmu build
 }
 
-# With the program of the profile that the stage unit tests: optimising it would take minutes. FMUs are always optimised.
+# With the program that the stage unit tests: optimising it would take minutes, and built by itself, it would get other features of its
+# dependencies, which Cargo would compile again. FMUs are always optimised.
 stage_fmpy() {
     need_python
-    run cargo build
+    run cargo test --workspace --no-run
     local program=${CARGO_TARGET_DIR:-$PWD/target}/debug/videg
     run "$program" fmu build
     run env VIDEG="$program" "$VENV/bin/python" -m pytest tests/fmpy
@@ -305,7 +304,7 @@ stage_browser() {
 # mdBook is built from source once and then kept in target/tools.
 stage_book() {
     need_python
-    run cargo test --test book -- --ignored
+    run cargo test --workspace --test book -- --ignored # as the stage unit builds it
     run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
     run cargo run --quiet --release -- explore --no-open --output target/book/html/explorer.html

@@ -71,5 +71,5 @@ tr -d '\r' <"$work/windows.txt" | paste -d ' ' "$work/linux.txt" - | awk -v tole
     }'
 
 echo "running the tests of the panic guard under Wine"
-CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER=$wine cargo test -q -p fmu-export --target "$target" --test panics
+CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER=$wine cargo test -q -p fmu-export --target "$target" --test functions panics
 echo "the win64 library works"

@@ -1,10 +1,8 @@
 //! Steps, their communication points, discarded steps, derivatives and the status functions.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::toy::*;
-use common::*;
+use crate::common::toy::*;
+use crate::common::*;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
 

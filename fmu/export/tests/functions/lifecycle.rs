@@ -1,10 +1,8 @@
 //! Instantiation, experiment, reset and logging.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::toy::*;
-use common::*;
+use crate::common::toy::*;
+use crate::common::*;
 use core::ffi::CStr;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
@@ -32,7 +30,7 @@ fn a_bad_argument_of_instantiate_gives_null_and_the_reason_even_with_logging_off
     for (name, kind, guid, reason) in cases {
         let mut log = Log::default();
         let functions = Log::callbacks(&raw mut log);
-        assert!(common::instantiate(name, kind, guid, None, &raw const functions, false).is_null());
+        assert!(crate::common::instantiate(name, kind, guid, None, &raw const functions, false).is_null());
         let message = &log.lines[0].message;
         assert!(message.starts_with("fmi2Instantiate: ") && message.contains(reason), "{message}");
         assert_eq!((log.lines[0].status, log.lines.len()), (fmi2Error, 1));
@@ -49,13 +47,13 @@ fn callbacks_may_be_missing_in_part_or_altogether() {
         componentEnvironment: null_mut(),
     };
     for functions in [null(), &raw const nothing] {
-        let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, functions, true);
+        let c = crate::common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, functions, true);
         assert!(!c.is_null());
         unsafe {
             assert_eq!(fmi2DoStep(c, 0.0, 1.0, fmi2False), fmi2Error);
             fmi2FreeInstance(c);
         }
-        assert!(common::instantiate(None, fmi2CoSimulation, None, None, functions, true).is_null());
+        assert!(crate::common::instantiate(None, fmi2CoSimulation, None, None, functions, true).is_null());
     }
 }
 
@@ -76,7 +74,14 @@ fn any_resource_location_is_accepted_an_odd_one_with_a_warning() {
     for (location, warnings) in cases {
         let mut log = Log::default();
         let functions = Log::callbacks(&raw mut log);
-        let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), location, &raw const functions, true);
+        let c = crate::common::instantiate(
+            Some("toy"),
+            fmi2CoSimulation,
+            Some(&guid()),
+            location,
+            &raw const functions,
+            true,
+        );
         assert!(!c.is_null(), "{location:?}");
         assert_eq!(log.lines.len(), warnings, "{location:?}");
         assert_eq!(unsafe { fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0) }, fmi2OK, "the warning is over");
@@ -88,14 +93,15 @@ fn any_resource_location_is_accepted_an_odd_one_with_a_warning() {
 fn a_model_is_told_of_the_folder_of_its_resources_once_and_after_each_reset() {
     let mut log = Log::default();
     let (functions, location) = (Log::callbacks(&raw mut log), Some("file:///tmp/a%20b/resources"));
-    let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), location, &raw const functions, true);
-    let told = || common::toy::RESOURCES.take();
+    let c =
+        crate::common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), location, &raw const functions, true);
+    let told = || crate::common::toy::RESOURCES.take();
     let folder = std::path::PathBuf::from(if cfg!(windows) { "tmp/a b/resources" } else { "/tmp/a b/resources" });
     assert_eq!(told(), core::slice::from_ref(&folder));
     assert_eq!(unsafe { fmi2Reset(c) }, fmi2OK);
     assert_eq!(told(), [folder]);
     unsafe { fmi2FreeInstance(c) };
-    let c = common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, &raw const functions, true);
+    let c = crate::common::instantiate(Some("toy"), fmi2CoSimulation, Some(&guid()), None, &raw const functions, true);
     assert!(!c.is_null() && told().is_empty(), "there is none");
     unsafe { fmi2FreeInstance(c) };
 }

@@ -1,11 +1,9 @@
 //! Which call is legal in which state: the table cell by cell, and the C functions driven through every cell.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::calls::{call, host_in};
-use common::toy::Toy;
-use common::*;
+use crate::common::calls::{call, host_in};
+use crate::common::toy::Toy;
+use crate::common::*;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
 use fmu_export::{CallState, Causality, Function, Initial, Interface, Legality, Slave, Standard, Variability};
@@ -275,7 +273,7 @@ fn from_the_error_state_a_restored_state_leads_back() {
     let saved = host.save();
     assert_eq!(host.step(7.0, 1.0), fmi2Error);
     assert_eq!(host.step(0.0, 1.0), fmi2Error);
-    assert_eq!(host.real(common::toy::GAIN), 2.0, "values may still be read, for debugging");
+    assert_eq!(host.real(crate::common::toy::GAIN), 2.0, "values may still be read, for debugging");
     assert_eq!(host.restore(saved), fmi2OK);
     assert_eq!(host.step(0.0, 1.0), fmi2OK);
 }
@@ -284,7 +282,7 @@ fn from_the_error_state_a_restored_state_leads_back() {
 fn after_a_fatal_error_nothing_but_free_is_left() {
     let host = host_in(Interface::CoSimulation, CallState::Fatal).expect("a host");
     assert_eq!(host.reset(), fmi2Fatal);
-    assert_eq!(host.try_real(common::toy::GAIN).0, fmi2Fatal);
+    assert_eq!(host.try_real(crate::common::toy::GAIN).0, fmi2Fatal);
     assert_eq!(host.lines()[0].category, "logStatusFatal");
     let mut stale = core::ptr::dangling_mut();
     assert_eq!(unsafe { fmi2FreeFMUstate(host.component, &raw mut stale) }, fmi2Fatal, "refused");

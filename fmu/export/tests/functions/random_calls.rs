@@ -1,10 +1,7 @@
 //! Random call sequences with random arguments, for both interfaces: whatever a host does, it gets the answer that the
 //! standard gives.
 
-#[path = "common/toy.rs"]
-#[allow(dead_code, non_upper_case_globals)] // a part of it serves here
-mod toy;
-
+use crate::common::toy;
 use fmu_export::{CallState, Function, Guid, Standard};
 use fmu_host::{Fmu, linked_functions, run};
 use std::ffi::CString;

@@ -5,11 +5,9 @@
 #![cfg(feature = "model-description")]
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
 use core::ffi::{CStr, c_char, c_int, c_void};
 
-use common::toy::Toy;
+use crate::common::toy::Toy;
 use fmu_export::abi::describe::Take;
 use fmu_export::{
     Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Standard, Variable,
@@ -24,8 +22,8 @@ fn text() -> String {
 /// A golden file of this test.
 macro_rules! golden {
     ($file:literal, $text:expr) => {
-        let command = "cargo test -p fmu-export --features model-description --test model_description";
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/", $file);
+        let command = "cargo test -p fmu-export --features model-description --test functions model_description";
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/functions/data/", $file);
         Golden::new("UPDATE_GOLDEN", command).file(path, $text);
     };
 }

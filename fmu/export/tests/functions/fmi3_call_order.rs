@@ -1,10 +1,8 @@
 //! Which call of FMI 3.0 is legal in which state: the table cell by cell, and the C functions driven through every cell.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::calls3::{call, failed_host, host_in, status_of};
-use common::fmi3::*;
+use crate::common::calls3::{call, failed_host, host_in, status_of};
+use crate::common::fmi3::*;
 use core::cell::RefCell;
 use core::ptr::null_mut;
 use fmu_export::abi::fmi3::*;
@@ -268,7 +266,7 @@ fn within_a_step_no_instance_is_freed() {
         None
     });
     assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
-    assert_eq!(host.float(common::toy::INTEGRAL), 1.0);
+    assert_eq!(host.float(crate::common::toy::INTEGRAL), 1.0);
 }
 
 #[test]
@@ -279,7 +277,7 @@ fn after_an_error_the_instance_is_terminated_and_a_reset_or_a_saved_state_leads_
     assert!(host.error().starts_with("fmi3DoStep: currentCommunicationPoint = 7 s"));
     assert_eq!(host.step(0.0, 1.0).status, fmi3Error);
     assert_eq!(host.error(), "fmi3DoStep: illegal in state terminated; legal in: stepMode");
-    assert_eq!(host.float(common::toy::GAIN), 2.0, "values may still be read, for debugging");
+    assert_eq!(host.float(crate::common::toy::GAIN), 2.0, "values may still be read, for debugging");
     assert_eq!(host.restore(saved), fmi3OK);
     assert_eq!(host.stepped(0.0, 0.5), (false, false, 0.5));
     assert_eq!(unsafe { fmi3Reset(host.instance) }, fmi3OK);

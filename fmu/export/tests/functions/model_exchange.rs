@@ -1,10 +1,8 @@
 //! Model exchange through the C interface.
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
-mod common;
-
-use common::toy::{DERIVATIVE, INPUT, INTEGRAL, LIMIT};
-use common::*;
+use crate::common::toy::{DERIVATIVE, INPUT, INTEGRAL, LIMIT};
+use crate::common::*;
 use core::ptr::null_mut;
 use fmu_export::abi::*;
 
@@ -42,7 +40,7 @@ fn derivatives_and_indicators_follow_states_and_inputs() {
     assert_eq!(host.set_real(INPUT, 3.0), fmi2OK);
     assert_eq!((derivative(&host), host.real(DERIVATIVE)), (6.0, 6.0));
     assert_eq!(indicator(&host), f64::INFINITY, "no limit was set");
-    assert_eq!(host.real(common::toy::TIME), 0.25);
+    assert_eq!(host.real(crate::common::toy::TIME), 0.25);
 }
 
 #[test]
@@ -89,7 +87,7 @@ fn what_is_read_after_the_end_is_of_the_last_time_and_inputs() {
     assert_eq!(unsafe { fmi2SetTime(host.component, 0.25) }, fmi2OK);
     assert_eq!(host.set_real(INPUT, 3.0), fmi2OK);
     assert_eq!(host.terminate(), fmi2OK);
-    assert_eq!((host.real(common::toy::TIME), derivative(&host), host.real(INPUT)), (0.25, 6.0, 3.0));
+    assert_eq!((host.real(crate::common::toy::TIME), derivative(&host), host.real(INPUT)), (0.25, 6.0, 3.0));
 }
 
 #[test]
@@ -110,7 +108,7 @@ fn only_a_restored_state_leads_back_behind_an_event() {
     unsafe { assert_eq!(fmi2EnterEventMode(host.component), fmi2OK) };
     assert_eq!(host.enter_continuous_time_mode(), fmi2OK);
     assert_eq!(place(&host, 0.5_f64.next_down(), 0.25), fmi2OK, "rounding");
-    assert_eq!(host.real(common::toy::TIME), 0.5);
+    assert_eq!(host.real(crate::common::toy::TIME), 0.5);
     host.refused(
         unsafe { fmi2SetTime(host.component, 0.25) },
         "fmi2SetTime: time = 0.25 s: it must not lie before the last event, at 0.5 s",
@@ -160,7 +158,7 @@ fn a_saved_state_leads_back_and_does_not_fit_the_other_interface() {
     let saved = host.save();
     assert_eq!(place(&host, 0.6, 2.0), fmi2OK);
     assert_eq!(host.restore(saved), fmi2OK);
-    assert_eq!((state(&host), host.real(common::toy::TIME)), (0.75, 0.5));
+    assert_eq!((state(&host), host.real(crate::common::toy::TIME)), (0.75, 0.5));
     let bytes = host.serialize(saved);
     assert_eq!(Host::exchanging().deserialize(&bytes, &mut null_mut()), fmi2OK);
     let other = Host::initialized();

@@ -1,11 +1,9 @@
 //! A panic behind any function of FMI 3.0 becomes an error with a message; instances that cannot be made say why.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::calls3::{call, host_in};
-use common::fmi3::*;
-use common::toy::{
+use crate::common::calls3::{call, host_in};
+use crate::common::fmi3::*;
+use crate::common::toy::{
     COUNT_OF_VARIABLES, GAIN, INPUT, INTEGRAL, PANIC_IN_CALL, PANIC_IN_CLONE, PANIC_IN_DROP, PANIC_IN_NEW, TICK,
 };
 use core::ptr::null_mut;

@@ -1,10 +1,8 @@
 //! Get and Set of variables through the C functions.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::toy::*;
-use common::*;
+use crate::common::toy::*;
+use crate::common::*;
 use core::ptr::{null, null_mut};
 use fmu_export::abi::*;
 

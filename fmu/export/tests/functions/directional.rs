@@ -1,10 +1,8 @@
 //! Directional derivatives through the C interface.
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
-mod common;
-
-use common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
-use common::*;
+use crate::common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
+use crate::common::*;
 use core::ptr::{null, null_mut};
 
 fn derivative(host: &Host, unknowns: &[u32], knowns: &[u32], seeds: &[f64]) -> Result<Vec<f64>, String> {

@@ -2,9 +2,7 @@
 //! and against what is known of the state of the instance.
 #![allow(clippy::expect_used)] // a helper fails a test, too
 
-mod common;
-
-use common::fmi3::fmu;
+use crate::common::fmi3::fmu;
 use fmu_host::fmi3::{Fmu, run};
 
 /// Sequences; few for Miri, which is a thousand times slower.

@@ -1,10 +1,8 @@
 //! Get and Set of FMI 3.0: the types, and which variables may be named in which state.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::fmi3::*;
-use common::toy::{self, Toy};
+use crate::common::fmi3::*;
+use crate::common::toy::{self, Toy};
 use core::ffi::CStr;
 use core::fmt::Debug;
 use core::ptr::{null, null_mut};

@@ -1,10 +1,8 @@
 //! Saving, restoring and serialising FMU states.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::toy::*;
-use common::*;
+use crate::common::toy::*;
+use crate::common::*;
 use core::ptr::{dangling_mut, null, null_mut, without_provenance_mut};
 use fmu_export::abi::*;
 use fmu_export::{CallState, Experiment};

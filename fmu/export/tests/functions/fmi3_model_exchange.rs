@@ -1,10 +1,8 @@
 //! Model exchange of FMI 3.0, and derivatives of both kinds.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::fmi3::*;
-use common::toy;
+use crate::common::fmi3::*;
+use crate::common::toy;
 use core::ptr::null_mut;
 use fmu_export::abi::fmi3::*;
 

@@ -1,11 +1,9 @@
 //! A panic behind any hook is an error of that call and nothing more: the host lives on.
 #![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
-mod common;
-
-use common::calls::{call, host_in};
-use common::toy::*;
-use common::*;
+use crate::common::calls::{call, host_in};
+use crate::common::toy::*;
+use crate::common::*;
 use core::ptr::null_mut;
 use fmu_export::abi::*;
 use fmu_export::{CallState, Function, Interface, Legality};
