@@ -1,5 +1,4 @@
 //! Which call is legal in which state: the table cell by cell, and the C functions driven through every cell.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::calls::{call, host_in};
 use crate::common::toy::Toy;

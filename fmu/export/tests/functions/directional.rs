@@ -1,5 +1,4 @@
 //! Directional derivatives through the C interface.
-#![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
 use crate::common::toy::{COUNT, DERIVATIVE, DOUBLED, GAIN, HELD, INPUT, INTEGRAL, SEED, SWITCHED};
 use crate::common::*;

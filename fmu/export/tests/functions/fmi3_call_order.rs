@@ -1,5 +1,4 @@
 //! Which call of FMI 3.0 is legal in which state: the table cell by cell, and the C functions driven through every cell.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::calls3::{call, failed_host, host_in, status_of};
 use crate::common::fmi3::*;

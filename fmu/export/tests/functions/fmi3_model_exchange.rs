@@ -1,5 +1,4 @@
 //! Model exchange of FMI 3.0, and derivatives of both kinds.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::fmi3::*;
 use crate::common::toy;

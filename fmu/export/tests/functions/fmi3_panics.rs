@@ -1,5 +1,4 @@
 //! A panic behind any function of FMI 3.0 becomes an error with a message; instances that cannot be made say why.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::calls3::{call, host_in};
 use crate::common::fmi3::*;

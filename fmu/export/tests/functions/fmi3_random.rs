@@ -1,6 +1,5 @@
 //! Random calls of FMI 3.0 in any order, with arguments right and wrong, within steps, too: each answer is held against the table
 //! and against what is known of the state of the instance.
-#![allow(clippy::expect_used)] // a helper fails a test, too
 
 use crate::common::fmi3::fmu;
 use fmu_host::fmi3::{Fmu, run};

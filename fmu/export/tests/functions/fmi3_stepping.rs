@@ -1,5 +1,4 @@
 //! Steps of FMI 3.0: events, early return, intermediate update, clocks, and what goes wrong.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::fmi3::*;
 use crate::common::toy;

@@ -1,5 +1,4 @@
 //! Get and Set of FMI 3.0: the types, and which variables may be named in which state.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::fmi3::*;
 use crate::common::toy::{self, Toy};

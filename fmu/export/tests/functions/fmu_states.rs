@@ -1,5 +1,4 @@
 //! Saving, restoring and serialising FMU states.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::toy::*;
 use crate::common::*;

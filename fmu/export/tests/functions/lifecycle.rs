@@ -1,5 +1,4 @@
 //! Instantiation, experiment, reset and logging.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::toy::*;
 use crate::common::*;

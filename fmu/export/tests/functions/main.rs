@@ -1,4 +1,6 @@
-//! The C functions, the table behind them and the model description, one subject a module: they share a toy model, which takes long to compile.
+//! The C functions, the table behind them and the model description, one subject a module: they share a toy model, which takes long to
+//! compile.
+#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 mod call_order;
 mod common;

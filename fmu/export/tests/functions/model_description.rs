@@ -3,7 +3,6 @@
 //! Golden files `data/Toy.xml`, `data/Toy3.xml` and `data/Toy.terminalsAndIcons.xml`: written by this test with
 //! `UPDATE_GOLDEN=1`, validated against the schemas of FMI 2.0 and 3.0 with FMPy 0.3.32 by hand.
 #![cfg(feature = "model-description")]
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use core::ffi::{CStr, c_char, c_int, c_void};
 

@@ -1,5 +1,4 @@
 //! Model exchange through the C interface.
-#![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
 use crate::common::toy::{DERIVATIVE, INPUT, INTEGRAL, LIMIT};
 use crate::common::*;

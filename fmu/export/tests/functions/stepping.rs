@@ -1,5 +1,4 @@
 //! Steps, their communication points, discarded steps, derivatives and the status functions.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::toy::*;
 use crate::common::*;

@@ -1,5 +1,4 @@
 //! Get and Set of variables through the C functions.
-#![allow(clippy::expect_used, clippy::panic)] // Helpers outside of #[test] functions fail a test, too.
 
 use crate::common::toy::*;
 use crate::common::*;
