@@ -163,10 +163,11 @@ except KeyboardInterrupt:
     print("ended after", time.monotonic() - begun)
 print(videg.simulate(until=1.0).impacts)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     took = float(done.stdout.split()[2])
-    assert 0.9 < took < 10.0, done.stdout
+    # Far sooner than the run would end, on a busy machine, too.
+    assert 0.9 < took < 30.0, done.stdout
 
 
 def test_an_error_of_the_progress_ends_the_run() -> None:
