@@ -297,7 +297,8 @@ stage_exporter() {
 
 stage_browser() {
     need_python
-    run cargo build --release --example figures
+    run cargo build --release
+    run cargo test --workspace --no-run
     run "$VENV/bin/python" -m pytest tests/browser
 }
 
@@ -312,6 +313,8 @@ stage_book() {
 }
 
 stage_python() {
+    run cargo build --release
+    run cargo run --quiet --release -- explore --no-open --output "${CARGO_TARGET_DIR:-target}/explorer.html"
     run tests/python/run.sh
 }
 

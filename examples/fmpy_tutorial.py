@@ -187,7 +187,7 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
 # %% [markdown]
 # `impact.nextTime` and `pulse.nextKnot` are the times of the next kink of C(t) and of the next release of a resting ball. They look one
 # period of the excitation ahead and follow the inputs as soon as these are set. A master that sets its inputs, steps to these times and
-# never takes a step of more than a period has every impact, peak and release at the end of a step. With phase noise they look 256 hold
+# never takes a step of more than a period has every impact, peak and release at the end of a step. With phase noise they look 512 hold
 # intervals ahead, or only to the end of the present one; the description of [`impact.nextTime`](../reference/variables.md) has the rule.
 #
 # ## Go back in time

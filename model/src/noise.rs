@@ -19,8 +19,8 @@ const MAX_START: f64 = 1e9;
 enum Passing {
     /// There is no noise.
     Never,
-    /// One by one: in a contact that lasts, with friction, reaction, suspension or a prescribed motion, with a Wiener process, under an integrator; and where they are longer than a
-    /// window of the search, so that this costs nothing.
+    /// One by one: in a contact that lasts, with friction, reaction, suspension or a prescribed motion, with a Wiener process, under an integrator; and where they are longer than
+    /// half a period of the force, so that this costs nothing.
     Single,
     /// Many in one go.
     Blocks,
@@ -72,7 +72,7 @@ impl Noise {
             && p.excitation_kind == ExcitationKind::Force
             && p.friction == 0.0
             && !p.is_suspended()
-            && p.noise_hold <= 1.0 / p.frequency;
+            && p.noise_hold <= 0.5 / p.frequency;
         let passing = match (p.is_noisy(), is_fast) {
             (false, _) => Passing::Never,
             (true, false) => Passing::Single,

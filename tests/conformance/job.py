@@ -1,6 +1,5 @@
 """The job that every importer does: the paper's Fig. 14, the harvester connected with the circuit."""
 
-import os
 import subprocess
 import sys
 import zipfile
@@ -26,8 +25,6 @@ master (Jacobi)."""
 
 NEVER = 1e300
 """Times from here on mean that nothing is foreseen."""
-
-TARGET = Path(os.environ.get("CARGO_TARGET_DIR", harness.ROOT / "target"))
 
 Series = dict[str, np.ndarray]
 """Values of one FMU's outputs at the end of each step, by name."""
@@ -56,9 +53,9 @@ def edited(fmu: str, folder: Path, edit: Callable[[bytes], bytes]) -> str:
 
 def build_program(name: str, *arguments: str) -> Path:
     """Has Cargo build a program that does this job; returns its file."""
-    command = ["cargo", "build", "--quiet", "--target-dir", TARGET, *arguments]
+    command = ["cargo", "build", "--quiet", "--target-dir", harness.TARGET, *arguments]
     subprocess.run(command, cwd=harness.ROOT, check=True)
-    return TARGET / ("release" if "--release" in arguments else "debug") / name
+    return harness.TARGET / ("release" if "--release" in arguments else "debug") / name
 
 
 def run_program(program: Path, fmus: dict[str, str], folder: Path) -> dict[str, Series]:

@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from harness import ROOT
+from harness import ROOT, TARGET
 
 CRATES = ["fmu-abi", "fmu-derive", "fmu-export", "fmu-import", "fmu-package", "cargo-fmu", "videg-input", "videg-system"]
-TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute()
 
 
 @dataclass

@@ -10,8 +10,7 @@ import pytest
 
 import harness
 
-BUILT = harness.ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
-PROGRAMS = Path(os.environ.get("VIDEG", BUILT / "videg")).parent
+PROGRAMS = Path(os.environ.get("VIDEG", harness.TARGET / "release" / "videg")).parent
 
 
 @pytest.fixture

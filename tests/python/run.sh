@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the wheel from the source distribution, installs it into an environment of its own outside of the source tree, and tests it
-# there with nothing else on the PATH: no Rust, no Cargo, no program of this source tree. Prints how long a user waits for the first
-# table.
+# Builds the wheel, installs it into an environment of its own outside of the source tree, and tests it there with nothing else on the
+# PATH: no Rust, no Cargo, no program of this source tree. Prints how long a user waits for the first table. The source distribution
+# must have the files that git has, so that what is built from it is the same.
 #
 # Environment: WHEEL, a wheel to test in place of one that is built here.
 set -euo pipefail
@@ -13,8 +13,13 @@ python3 -m venv "$work/user"
 wheel=${WHEEL:-}
 if [[ -z $wheel ]]; then
     release/wheel.sh source - - - "$work"
-    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}/python \
-        "$work/user/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" "$work"/videg-*.tar.gz
+    diff <(git ls-files | LC_ALL=C sort) \
+        <(tar --list --gzip --file "$work"/videg-*.tar.gz | sed 's,^[^/]*/,,; /^PKG-INFO$/d' | LC_ALL=C sort)
+    # What is built already is not built again; but not in its place, since the wheel's program has other features.
+    target=${CARGO_TARGET_DIR:-$PWD/target}
+    mkdir -p "$target/python"
+    cp --archive "$target"/{release,wasm32-unknown-unknown} "$target/python/"
+    CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" .
     wheel=$(ls "$work"/videg-*.whl)
 fi
 ls -l "$wheel"

@@ -13,7 +13,7 @@ import pytest
 
 import harness
 
-VIDEG = Path(os.environ.get("CARGO_TARGET_DIR", harness.ROOT / "target")) / "release" / "videg"
+VIDEG = harness.TARGET / "release" / "videg"
 
 SWEEP = [
     *("--vary", "membrane.restitution=0.3:0.9:40", "--vary", "excitation.amplitude=0.4:0.6:10", "--samples", "4"),

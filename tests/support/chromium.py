@@ -1,6 +1,5 @@
 """A headless Chromium that asks nobody for anything, and where its pictures go."""
 
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,8 +8,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 import harness
 
-TARGET = os.environ.get("CARGO_TARGET_DIR", "target")
-SCREENSHOTS = harness.ROOT / TARGET / "screenshots"
+SCREENSHOTS = harness.TARGET / "screenshots"
 QUIET = [
     "--no-sandbox",
     "--disable-gpu",

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-
+TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
 
 VIDEG = [os.environ["VIDEG"]] if "VIDEG" in os.environ else ["cargo", "run", "--quiet", "--release", "--"]
 """The command-line tool: that of the environment, or that of this tree."""

@@ -5,7 +5,7 @@ use crate::command::{
 };
 use crate::sweep::statistics::{NOISE, statistics};
 
-const WHAT: [&str; 4] = ["--vary", "membrane.restitution=0.3:0.9:4", "--until-precision", "0.004"];
+const WHAT: [&str; 4] = ["--vary", "membrane.restitution=0.3:0.9:4", "--until-precision", "0.005"];
 
 #[test]
 fn runs_are_those_of_the_full_sweep_up_to_where_each_mean_is_precise() {
@@ -23,9 +23,9 @@ fn runs_are_those_of_the_full_sweep_up_to_where_each_mean_is_precise() {
         let [mean, low, high] =
             ["mean", "low", "high"].map(|of| row[&format!("average_voltage_gain.{of}")].parse::<f64>().unwrap());
         assert_eq!(precision, 0.5 * (high - low) / mean);
-        assert_eq!(row["reached"], (precision <= 0.004).to_string());
+        assert_eq!(row["reached"], (precision <= 0.005).to_string());
         // Decisions are made behind 50, 75 and 80 samples.
-        assert!(samples == 80 || precision <= 0.004 && [50, 75].contains(&samples), "{samples} {precision}");
+        assert!(samples == 80 || precision <= 0.005 && [50, 75].contains(&samples), "{samples} {precision}");
         unreached += u32::from(row["reached"] == "false");
     }
     let said = format!("warning: {unreached} of 4 points did not become as precise as --until-precision;");

@@ -170,7 +170,7 @@ fn impacts_under_an_external_force_and_with_other_hold_times_are_those_of_brute_
     for (hold, force) in [(1e-5, [0.05, -0.1]), (3.3e-4, [0.0, 0.0]), (7e-3, [-0.02, 0.03]), (0.31, [0.0, 0.0])] {
         let p = Parameters { phase_noise: 0.7, noise_hold: hold, ..fig14 };
         let mut tally = Tally::default();
-        compare(&p, force, 1.5, &mut tally);
+        compare(&p, force, 3.0, &mut tally);
         assert!(tally.flights > 5, "hold {hold}: {tally:?}");
     }
 }

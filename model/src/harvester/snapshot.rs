@@ -51,7 +51,7 @@ pub struct Snapshot {
     /// Start of the present search for events: `z_M` - `z_m` and its rate.
     pub relative: Start,
     /// Number of the phase-noise sample in force at the start of the cylinder's motion. With phase noise that start may
-    /// lie hold intervals back: the begin of a block of 256, or of the interval after an event.
+    /// lie hold intervals back: the begin of a block of 512, or of the interval after an event.
     pub noise_sample: u64,
     /// The Wiener process of the phase noise, sqrt(s).
     pub noise_walk: f64,

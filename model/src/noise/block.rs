@@ -1,7 +1,8 @@
 //! A block of hold intervals: what the harmonic force does in them, summed.
 #![allow(clippy::inline_always)] // only what is inlined becomes part of a loop over vectors
 
-use super::normal::{self, Aligned, COLUMNS, ROWS};
+use super::normal::{self, Aligned};
+pub use super::normal::{COLUMNS, ROWS};
 
 /// Hold intervals in a block.
 pub const BLOCK: usize = normal::GROUP;
@@ -17,32 +18,33 @@ pub fn place_in_block(sample: u64) -> usize {
 /// begin of the block.
 #[derive(Clone)]
 pub struct Block {
-    /// Samples of the noise at the places of the intervals.
-    pub samples: Aligned<[f64; BLOCK]>,
-    /// `z_M'`, m/s, at the places of the intervals, if the cylinder is at rest at the begin of each column.
-    pub velocity: Aligned<[f64; BLOCK]>,
-    /// `z_M`, m, likewise, if it is at 0 there.
+    /// Bits of the samples of the noise at the places of the intervals.
+    pub samples: Aligned<[u32; BLOCK]>,
+    /// `z_M'` at the places of the intervals, if the cylinder is at rest at the begin of each column, and in one more row at
+    /// the end of each column.
+    pub velocity: Aligned<[f64; BLOCK + COLUMNS]>,
+    /// `z_M` at the places of the intervals, if it is at 0 at the begin of each column.
     pub position: Aligned<[f64; BLOCK]>,
+    /// Units of both, m/s and m.
+    pub units: [f64; 2],
     /// Velocity and position at the begin of each column and at the end of the block.
     columns: [[f64; 2]; COLUMNS + 1],
-    /// No |`z_M`| is larger at the begin or end of an interval, to rounding, m.
-    pub reach: f64,
     pub number: u64,
 }
 
 impl Block {
     pub const EMPTY: Self = Self {
-        samples: Aligned([0.0; BLOCK]),
-        velocity: Aligned([0.0; BLOCK]),
+        samples: Aligned([0; BLOCK]),
+        velocity: Aligned([0.0; BLOCK + COLUMNS]),
         position: Aligned([0.0; BLOCK]),
+        units: [0.0; 2],
         columns: [[0.0; 2]; COLUMNS + 1],
-        reach: 0.0,
         number: u64::MAX,
     };
 
     /// Sample of the noise in interval `k` of the block.
     pub fn sample(&self, k: usize) -> f64 {
-        self.samples.0[normal::place(k)]
+        f64::from(f32::from_bits(self.samples.0[normal::place(k)]))
     }
 
     /// Velocity, m/s, and position, m, at the begin of interval `k` of the block, or at its end ([`BLOCK`]); the
@@ -54,46 +56,41 @@ impl Block {
             return [velocity, position];
         }
         let (place, time) = (normal::place(k), (k % ROWS) as f64 * hold);
-        [velocity + self.velocity.0[place], position + (time * velocity + self.position.0[place])]
+        let [by_velocity, by_position] =
+            [self.units[0] * self.velocity.0[place], self.units[1] * self.position.0[place]];
+        [velocity + by_velocity, position + (time * velocity + by_position)]
     }
 
-    /// Sums what each interval of length `hold`, s, does, which stands at its place: down the columns, all at once,
-    /// then from column to column. Velocities come first: together, compilers would pack velocity and position of a
-    /// column into one vector.
+    /// Sums what each interval of length `hold`, s, does, which stands at its place: a change of velocity, and of position
+    /// what it differs from the mean of the velocities before and after; the unit of position is half that of velocity
+    /// times `hold`. It goes down the columns, all at once, then from column to column. Velocities come first: together,
+    /// compilers would pack velocity and position of a column into one vector.
     #[inline(always)]
     pub fn sum(&mut self, hold: f64) {
+        let (mut velocity, mut position) = ([0.0; COLUMNS], [0.0; COLUMNS]);
         let (velocities, _) = self.velocity.0.as_chunks_mut::<COLUMNS>();
-        let (mut velocity, mut position, mut reach) = ([0.0; COLUMNS], [0.0; COLUMNS], [0.0_f64; COLUMNS]);
-        for row in velocities.iter_mut() {
+        for row in &mut velocities[..ROWS] {
             let before = velocity;
             for (sum, change) in velocity.iter_mut().zip(&*row) {
                 *sum += change;
             }
             *row = before;
         }
-        for (row, velocities) in self.position.0.as_chunks_mut::<COLUMNS>().0.iter_mut().zip(velocities) {
+        velocities[ROWS] = velocity;
+        for (row, both) in self.position.0.as_chunks_mut::<COLUMNS>().0.iter_mut().zip(velocities.windows(2)) {
             let before = position;
             for k in 0..COLUMNS {
-                position[k] += hold * velocities[k] + row[k];
-                reach[k] = if position[k].abs() > reach[k] { position[k].abs() } else { reach[k] };
+                position[k] += (both[0][k] + both[1][k]) + row[k];
             }
             *row = before;
         }
-        self.sum_columns(hold, velocity, position, reach);
-    }
-
-    /// The same for what each column does, and how far each reaches.
-    #[inline(always)]
-    fn sum_columns(&mut self, hold: f64, velocity: [f64; COLUMNS], position: [f64; COLUMNS], reach: [f64; COLUMNS]) {
-        let length = ROWS as f64 * hold;
-        let ([mut v, mut z], mut farthest) = ([0.0_f64; 2], 0.0_f64);
+        let [of_velocity, of_position] = self.units;
+        let (length, [mut v, mut z]) = (ROWS as f64 * hold, [0.0; 2]);
         for k in 0..COLUMNS {
             self.columns[k] = [v, z];
-            farthest = farthest.max(z.abs() + length * v.abs() + reach[k]);
-            z += length * v + position[k];
-            v += velocity[k];
+            z += length * v + of_position * position[k];
+            v += of_velocity * velocity[k];
         }
         self.columns[COLUMNS] = [v, z];
-        self.reach = farthest;
     }
 }

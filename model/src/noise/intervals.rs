@@ -3,7 +3,7 @@
 //! Inside an interval dz stays within a bound, given by the largest acceleration, of its chord; only where that may touch a
 //! membrane the interval must be searched in closed form.
 
-use super::block::{BLOCK, Block, place_in_block};
+use super::block::{BLOCK, Block, COLUMNS, ROWS, place_in_block};
 
 /// State at the begin of a hold interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl Conditions {
             [anchor.dz + (time * rate + (position + farther)), rate + (gained + faster)]
         };
         HoldState {
-            sample: anchor.sample + (place - from) as u64,
+            sample: anchor.sample + place as u64 - from as u64,
             position: anchor.position + (time * velocity + position),
             velocity: velocity + gained,
             dz,
@@ -113,26 +113,30 @@ impl Conditions {
 
     fn doubtful_flight(&self, anchor: &HoldState, block: &Block, first: usize) -> Option<usize> {
         let near = self.near(anchor);
-        if self.farthest(anchor, block) < near {
+        let is_far = |from: &HoldState, intervals| self.farthest(from, intervals) < near;
+        if is_far(anchor, BLOCK - anchor.place()) {
             return None;
         }
-        let mut is_near = self.at(anchor, block, first).dz.abs() >= near;
-        (first..BLOCK).find(|place| {
-            let was_near = is_near;
-            is_near = self.at(anchor, block, place + 1).dz.abs() >= near;
-            was_near || is_near
+        let is_near = |place| self.at(anchor, block, place).dz.abs() >= near;
+        let mut columns =
+            (first / ROWS..COLUMNS).filter(|column| !is_far(&self.at(anchor, block, column * ROWS), ROWS));
+        columns.find_map(|column| {
+            let mut places = first.max(column * ROWS)..(column + 1) * ROWS;
+            let mut ends_near = is_near(places.start);
+            places.find(|place| {
+                let begins_near = ends_near;
+                ends_near = is_near(place + 1);
+                begins_near || ends_near
+            })
         })
     }
 
-    /// A bound of |dz|, m, at the begins and ends of all intervals of the block from the anchor on.
-    fn farthest(&self, anchor: &HoldState, block: &Block) -> f64 {
-        let from = anchor.place();
-        let [velocity, position] = block.at(from, self.hold);
-        let time = self.hold * (BLOCK - from) as f64;
-        let straight = anchor.dz + time * (anchor.rate - velocity);
-        let external = 0.5 * (anchor.external.abs() + self.incline.abs()) + self.rate.abs() * time / 6.0;
-        let external = time * time * external;
-        1.000_001 * (anchor.dz.abs().max(straight.abs()) + block.reach + position.abs() + external)
+    /// A bound of |dz|, m, in so many `intervals` from `start`.
+    fn farthest(&self, start: &HoldState, intervals: usize) -> f64 {
+        let time = self.hold * intervals as f64;
+        let straight = start.dz + time * start.rate;
+        let force = self.amplitude + start.external.abs() + self.incline.abs() + self.rate.abs() * time / 3.0;
+        1.000_001 * (start.dz.abs().max(straight.abs()) + 0.5 * time * time * force)
     }
 
     /// |dz|, m, at both ends of an interval up to which the ball meets no membrane in between; for one block.
