@@ -58,7 +58,7 @@ CI runs this one, too:
 
 Only when named:
   conformance-slow
-               conformance with fmi-sim, too, which takes ten minutes to build
+               conformance with fmi-sim, too, which takes ten minutes to build; clippy for the reader with the crate `fmi`
   soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md; random tests of
                model and circuit with parameters that no run has drawn before
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
@@ -283,7 +283,6 @@ stage_scale() {
 
 stage_conformance() {
     need_python
-    run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     build_fmus
     run "$VENV/bin/python" -m pytest tests/c tests/conformance tests/coupling tests/netlists
     run "$VENV/bin/python" tests/conformance
@@ -319,6 +318,7 @@ stage_python() {
 }
 
 stage_conformance-slow() {
+    run cargo clippy --quiet --locked --manifest-path "$FMI_CRATE" --target-dir "${CARGO_TARGET_DIR:-target}" -- -D warnings
     run cargo install --quiet --locked --root target/tools fmi-sim --version 0.7.0
     PATH="$PWD/target/tools/bin:$PATH" stage_conformance
 }
