@@ -6,7 +6,7 @@ pub mod intervals;
 pub mod normal;
 
 use self::block::{BLOCK, Block, place_in_block};
-use self::blocks::Blocks;
+use self::blocks::{Blocks, LONGEST};
 use crate::error::ModelError;
 use crate::paper::excitation::noisy_phase;
 use crate::parameters::{ContactLaw, ExcitationKind, NoiseModel, Parameters};
@@ -20,7 +20,7 @@ enum Passing {
     /// There is no noise.
     Never,
     /// One by one: in a contact that lasts, with friction, reaction, suspension or a prescribed motion, with a Wiener process, under an integrator; and where they are longer than
-    /// half a period of the force, so that this costs nothing.
+    /// a fiftieth of a period of the force, so that this costs nothing.
     Single,
     /// Many in one go.
     Blocks,
@@ -72,7 +72,7 @@ impl Noise {
             && p.excitation_kind == ExcitationKind::Force
             && p.friction == 0.0
             && !p.is_suspended()
-            && p.noise_hold <= 0.5 / p.frequency;
+            && p.noise_hold <= LONGEST / p.frequency;
         let passing = match (p.is_noisy(), is_fast) {
             (false, _) => Passing::Never,
             (true, false) => Passing::Single,

@@ -15,7 +15,7 @@ impl Harvester {
     /// during a contact under the compliant law, and if no impact is predicted within at least one excitation period (from
     /// the release on, if the ball rests), or, with phase noise, within at least 512 hold intervals if those are shorter;
     /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
-    /// a period.
+    /// a fiftieth of a period.
     pub fn next_impact(&self) -> Option<f64> {
         if self.is_due() {
             return self.after_due()?.next_impact();

@@ -139,7 +139,8 @@ impl Conditions {
         1.000_001 * (start.dz.abs().max(straight.abs()) + 0.5 * time * time * force)
     }
 
-    /// |dz|, m, at both ends of an interval up to which the ball meets no membrane in between; for one block.
+    /// |dz|, m, at both ends of an interval up to which the ball meets no membrane in between, but by the rounding of the sums; for one
+    /// block.
     fn near(&self, from: &HoldState) -> f64 {
         let [begin, end] = [0.0, BLOCK as f64].map(|n| (from.external + n * self.hold * self.rate).abs());
         let bulge = 0.125 * self.hold * self.hold * (self.amplitude + (begin.max(end) + self.incline.abs()));

@@ -4,7 +4,7 @@
 //! The force without the harmonic part is a line, so that the slope of dz oscillates by `speed` about its `drift`. If the drift is
 //! larger, dz has no extremum at all. If the slope grows from the start to where it is steepest, dz is convex there, and lies inside of
 //! the tangents at both ends: they show that the ball turns back in the open. It then meets what it goes to before the slope is zero
-//! again. What is found so is, to the last bit, what the search from extremum to extremum finds, but no extremum is worked out, and the
+//! again. What is found so is, to rounding, what the search from extremum to extremum finds, but no extremum is worked out, and the
 //! series about the steepest place has odd terms only. Where anything is in doubt, that search decides.
 
 #![allow(clippy::inline_always)] // one straight piece of code for each side, which is known where it is called
