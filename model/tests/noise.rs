@@ -16,29 +16,27 @@ fn gain(parameters: &Parameters) -> f64 {
     harvester.totals().voltage_gain / 100.0
 }
 
-/// Mean over runs with `seeds` seeds, V/s.
-fn mean_gain(intensity: f64, seeds: i32) -> f64 {
-    (1..=seeds).map(|seed| gain(&fig17(intensity, seed))).sum::<f64>() / f64::from(seeds)
-}
-
-/// Median over runs without noise, V/s, whose starts differ by little: a single one is at the mercy of its last bits.
-fn median_gain_without_noise() -> f64 {
-    let p = fig17(0.0, 1);
-    let nudged = |k| Parameters { ball_velocity: p.ball_velocity + 1e-7 * f64::from(k), ..p };
-    let mut gains: Vec<f64> = (0..101).map(|k| gain(&nudged(k))).collect();
+/// Median of the voltage gain over runs, V/s.
+///
+/// A single run is at the mercy of its last bits or its seed, and a mean is at the mercy of few runs in which elastic impacts gain
+/// energy: with noise the gains deviate by more than their mean.
+fn median_gain(runs: impl Iterator<Item = Parameters>) -> f64 {
+    let mut gains: Vec<f64> = runs.map(|p| gain(&p)).collect();
     gains.sort_by(f64::total_cmp);
-    gains[50]
+    gains[gains.len() / 2]
 }
 
 #[test]
 #[ignore = "slow"]
 fn the_voltage_gain_falls_with_the_intensity_of_the_noise_as_in_fig_17() {
-    // A single run with noise deviates by as much as the mean: a heavy tail of runs in which elastic impacts gain energy.
-    let none = median_gain_without_noise();
-    let [weak, strong] = [4.0, 10.0].map(|intensity| mean_gain(intensity, 8));
+    let p = fig17(0.0, 1);
+    // Starts that differ by little.
+    let none = median_gain((0..101).map(|k| Parameters { ball_velocity: p.ball_velocity + 1e-7 * f64::from(k), ..p }));
+    let [weak, strong] = [4.0, 10.0].map(|intensity| median_gain((1..=101).map(|seed| fig17(intensity, seed))));
     assert!((none - 31_700.0).abs() < 1_500.0, "{none} V/s without noise");
-    assert!((3_000.0..26_000.0).contains(&weak), "{weak} V/s at D = 4");
-    assert!((500.0..20_000.0).contains(&strong), "{strong} V/s at D = 10");
+    // Of 400 runs the median is 7600 and 3800 V/s, and 101 runs give one that deviates by some 10 %.
+    assert!((weak / 7_600.0).ln().abs() < 0.5, "{weak} V/s at D = 4");
+    assert!((strong / 3_800.0).ln().abs() < 0.5, "{strong} V/s at D = 10");
     assert!(strong < weak && weak < none, "{strong} V/s at D = 10, {weak} at D = 4, {none} without noise");
 }
 
