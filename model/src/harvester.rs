@@ -254,7 +254,7 @@ impl Harvester {
     /// Searches for the next event as far ahead of `time`, s, as events are predicted.
     #[inline(never)]
     fn search_from(&mut self, time: f64) {
-        let horizon = self.noise.horizon(1.0 / self.parameters.frequency);
+        let horizon = self.noise.horizon(self.motion.horizon());
         self.motion.next_event(&mut self.noise, time + horizon, false);
     }
 

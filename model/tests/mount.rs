@@ -15,7 +15,7 @@ use mounts::{
 };
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_4;
-use videg_model::{Case, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Side};
+use videg_model::{Case, Event, ExcitationKind, Harvester, ModelError, NoiseModel, Parameters, Side};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
@@ -214,4 +214,24 @@ fn a_suspension_needs_a_force_and_a_mass_that_it_can_move() {
     let too_stiff = Parameters { cylinder_mass: 1e-3, suspension_damping: 1e3, ..stiff };
     let error = too_stiff.validate().unwrap_err().to_string();
     assert!(error.starts_with("cylinder.suspensionDamping = 1e3 N.s/m is too large for cylinder.mass"), "{error}");
+}
+
+/// The pieces of its series are of 8 us here, the period of 1000 s: a search of all of that takes a minute before the first step ends.
+#[test]
+fn a_suspension_of_short_pieces_announces_impacts_a_million_pieces_ahead() {
+    let p = Parameters { suspension_damping: 1e4, frequency: 1e-3, ball_velocity: 2.2e-3, ..Parameters::default() };
+    let [mut whole, mut split] = [(); 2].map(|()| Harvester::new(&p, 0.0).unwrap());
+    let horizon = whole.known_until();
+    assert!((8.0..8.2).contains(&horizon), "{horizon} s");
+    assert_eq!(whole.next_impact(), None);
+    split.advance(4.0).unwrap();
+    let announced = split.next_impact().unwrap();
+    assert!((9.0..12.0).contains(&announced), "{announced} s");
+    let mut came = Vec::new();
+    let mut note =
+        |event: &Event| came.extend(if let Event::Impact(impact) = event { Some(impact.time) } else { None });
+    whole.advance_with(12.0, &mut note).unwrap();
+    assert_eq!(came.first(), Some(&announced));
+    split.advance(12.0).unwrap();
+    assert_eq!(whole, split);
 }

@@ -9,7 +9,11 @@ sequences=${SEQUENCES:-5000}
 profile=${PROFILE:-dev}
 built=${CARGO_TARGET_DIR:-target}/$([[ $profile == dev ]] && echo debug || echo "$profile")
 
-cargo build --quiet --profile "$profile" -p fmu-host -p videg-fmu-harvester -p videg-fmu-circuit
+if [[ $profile == dev ]]; then
+    cargo test --quiet --workspace --no-run # as the stage unit builds them, lest both build them again and again
+else
+    cargo build --quiet --profile "$profile" -p fmu-host -p videg-fmu-harvester -p videg-fmu-circuit
+fi
 
 watched() {
     local name=$1
@@ -19,10 +23,14 @@ watched() {
         --show-leak-kinds=definite,indirect "$built/fmu-host" "$built/lib$name.so" "$description" "$@"
 }
 
-for name in VibroImpactHarvester HarvestingCircuit; do
-    watched "$name" 0 "$sequences"
-    folder=fmi3/ watched "$name" 0 "$sequences"
-done
+both_standards() {
+    watched "$1" 0 "$sequences"
+    folder=fmi3/ watched "$1" 0 "$sequences"
+}
+
+both_standards HarvestingCircuit &
+both_standards VibroImpactHarvester
+wait $!
 echo "no memory errors, no leaks"
 
 # What was just seen to pass, with one fault.

@@ -13,7 +13,8 @@ const STARTS: usize = 8;
 impl Harvester {
     /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, or is about to turn against friction, after that. None
     /// during a contact under the compliant law, and if no impact is predicted within at least one excitation period (from
-    /// the release on, if the ball rests), or, with phase noise, within at least 512 hold intervals if those are shorter;
+    /// the release on, if the ball rests), or, with phase noise, within at least 512 hold intervals if those are shorter, or, on a
+    /// suspension, within at least a million pieces of its power series if those are shorter;
     /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
     /// a fiftieth of a period.
     pub fn next_impact(&self) -> Option<f64> {
@@ -39,13 +40,13 @@ impl Harvester {
     }
 
     /// Up to where [`Harvester::next_knot`] knows every knot, s, later than the present time: one excitation period ahead, with phase noise at
-    /// most 512 hold intervals, and where these are passed one by one the end of the present one; during a contact as far as
+    /// most 512 hold intervals, and where these are passed one by one the end of the present one; on a suspension at most a million
+    /// pieces of its power series; during a contact as far as
     /// it has been followed.
     pub fn known_until(&self) -> f64 {
-        let period = 1.0 / self.parameters.frequency;
         let followed = self.motion.ball.contact().map_or(f64::INFINITY, Contact::end);
         let followed = if followed > self.time { followed } else { f64::INFINITY };
-        let ahead = followed.min(self.time + self.noise.horizon(period));
+        let ahead = followed.min(self.time + self.noise.horizon(self.motion.horizon()));
         if self.noise.in_blocks() {
             return ahead;
         }

@@ -8,6 +8,9 @@ use super::side::Side;
 use super::{Ball, Motion};
 use crate::noise::Noise;
 
+/// Pieces of the series of a suspended cylinder that are searched ahead of the present time: a tenth of a second of work.
+const MOST_PIECES: f64 = 1e6;
+
 impl Motion {
     /// The membrane that a ball touches where its present flight begins, and the speed at which it approaches that, m/s.
     pub fn touched(&self) -> Option<(Side, f64)> {
@@ -125,9 +128,16 @@ impl Motion {
         calm.min(self.end_of_piece()) // there the next piece is to be entered
     }
 
+    /// How far ahead events are predicted, s, without noise: an excitation period, but on a suspension of which a piece is far shorter
+    /// no more than [`MOST_PIECES`], lest the search for a first event takes minutes.
+    pub fn horizon(&self) -> f64 {
+        let pieces = self.flight.piece().map_or(f64::INFINITY, |piece| MOST_PIECES * piece);
+        self.flight.window_length().min(pieces)
+    }
+
     /// The last time, s, from which the search need not go farther than `searched`, s.
     fn before_horizon_of(&self, searched: f64) -> f64 {
-        let horizon = self.flight.window_length();
+        let horizon = self.horizon();
         // Less the rounding of this difference and of the sum that the search compares with.
         searched - horizon - 4.0 * f64::EPSILON * (searched.abs() + horizon)
     }

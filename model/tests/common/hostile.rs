@@ -99,9 +99,16 @@ pub fn kinds() -> Vec<(&'static str, Parameters)> {
     ]
 }
 
-/// How long to run, s: shorter where hold intervals are, of which each is worked out.
+/// How long to run, s: shorter where hold intervals are, of which each is worked out, and on a viscous film, which a long contact
+/// follows in steps as small as its fastest change.
 pub fn duration(parameters: &Parameters) -> f64 {
-    if parameters.phase_noise > 0.0 { (2e4 * parameters.noise_hold).min(2.0) } else { 2.0 }
+    if parameters.phase_noise > 0.0 {
+        (2e4 * parameters.noise_hold).min(2.0)
+    } else if parameters.viscous_modulus > 0.0 {
+        0.5
+    } else {
+        2.0
+    }
 }
 
 /// Every output of a harvester, by name.
@@ -199,13 +206,19 @@ fn digits_of_time(harvester: &Harvester, parameters: &Parameters, speed: f64) ->
     16.0 * (time.next_up() - time) * (rate + of_mount + by_pull) + 64.0 * f64::EPSILON * of_mount * duration(parameters)
 }
 
+/// Events after which a run has shown what it can.
+const ENOUGH: u64 = 100_000;
+
 /// Runs a harvester from `start`, s, in a few steps: every output stays finite, the books close and the events keep to the
 /// budget; or an error says why it ends.
 pub fn run(parameters: &Parameters, start: f64, what: &str) -> Result<Harvester, ModelError> {
     let mut harvester = Harvester::new(parameters, start)?;
     assert_finite(&harvester, what);
     let until = duration(parameters);
-    for part in [1e-9, 1e-3, 0.25, 0.5, 1.0] {
+    for part in [1e-9, 1e-3, 0.02, 0.1, 0.25, 0.5, 1.0] {
+        if harvester.totals().events() > ENOUGH {
+            break;
+        }
         let before = harvester.totals().events();
         let advanced = harvester.advance(start + part * until);
         assert!(harvester.totals().events() - before <= 3 * BUDGET, "{what}: more events than the budget");

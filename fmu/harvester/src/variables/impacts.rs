@@ -25,7 +25,7 @@ pub(super) static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted within one period (with phase noise: within 512 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a fiftieth of a period)",
+        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted within one period (with phase noise: within 512 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a fiftieth of a period; on a suspension within a million pieces of its power series if these are shorter)",
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
