@@ -1,7 +1,7 @@
 //! The command line as a user or a script meets it: exit codes, `--json`, the files written, and the paper's numbers.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
@@ -18,7 +18,7 @@ struct Run {
 
 /// Runs the tool in a folder of its own, where `out/` does no harm.
 ///
-/// One at a time: each run asks Cargo whether the FMUs are fresh, and a Cargo that waits for another says so on stderr.
+/// One at a time: a run may ask Cargo whether the FMUs are fresh, and a Cargo that waits for another says so on stderr.
 /// The first run compiles them.
 fn videg(arguments: &[&str]) -> Run {
     static FOLDER: LazyLock<Mutex<TempDir>> = LazyLock::new(|| {
@@ -281,6 +281,25 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
     for (arguments, parts) in cases {
         assert_refused(arguments, parts);
     }
+}
+
+/// In a folder of their own, where no build of other packages takes their place.
+#[test]
+fn libraries_that_are_as_new_as_their_sources_are_not_built_again() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(videg(&["fmu", "build"]).code, Some(0));
+    let build = |target: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_videg"));
+        command.args(["fmu", "build", "--output"]).arg(folder.path());
+        command.env("CARGO", "false").env_remove("VIDEG_NO_BUILD");
+        command.env("CARGO_TARGET_DIR", target).output().unwrap()
+    };
+    let target = std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("target"), PathBuf::from);
+    let fresh = build(&target);
+    assert!(fresh.status.success(), "{fresh:?}");
+    let nothing_there = build(&folder.path().join("target"));
+    assert_eq!(nothing_there.status.code(), Some(2), "{nothing_there:?}");
 }
 
 /// Stacks that no address space holds stand for a system that gives no more threads.

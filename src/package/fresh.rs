@@ -19,6 +19,16 @@ pub(super) fn is_fresh(library: &Path, workspace: &Path) -> bool {
     check().unwrap_or(false)
 }
 
+/// Cargo was asked at this time, and the library is what it found or made. Files that changed before without a consequence, as the
+/// lock file often does, then make it old no more. Where nothing can be written, Cargo is asked each time.
+pub(super) fn confirm(library: &Path, asked: SystemTime) {
+    if modified(library).is_some_and(|built| built < asked)
+        && let Ok(file) = std::fs::File::options().write(true).open(library)
+    {
+        let _ = file.set_modified(asked);
+    }
+}
+
 /// Files that may be there: the manifests of the packages that the sources belong to, and Cargo's configuration.
 fn settings(sources: &[PathBuf], workspace: &Path) -> BTreeSet<PathBuf> {
     let folders = sources.iter().flat_map(|source| source.ancestors().skip(1));
@@ -62,6 +72,13 @@ mod tests {
             assert!(!is_fresh(&path("libx.so"), folder.path()), "{name} is newer");
             file.set_modified(old).unwrap();
         }
+        let built = modified(&path("libx.so")).unwrap();
+        let lock = std::fs::File::options().write(true).open(path("Cargo.lock")).unwrap();
+        lock.set_modified(built + std::time::Duration::from_secs(5)).unwrap();
+        confirm(&path("libx.so"), built - std::time::Duration::from_secs(5));
+        assert!(modified(&path("libx.so")) == Some(built), "built after that");
+        confirm(&path("libx.so"), built + std::time::Duration::from_secs(10));
+        assert!(is_fresh(&path("libx.so"), folder.path()), "Cargo saw the lock file");
         std::fs::remove_file(path("x/c.rs")).unwrap();
         assert!(!is_fresh(&path("libx.so"), folder.path()), "a source is gone");
     }

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use fmu_package::cargo::{self, Build};
 use fmu_package::{Messages, Platform, Target};
@@ -56,16 +57,19 @@ fn is_workspace(folder: &Path) -> bool {
 /// The libraries for one target, in the order of [`FMUS`]: built, or else found.
 pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Option<&Target>) -> Result<Vec<PathBuf>> {
     let platform = target.map_or(Platform::HOST, |target| target.platform);
+    let beside = beside_program().and_then(|folder| lying_in(&folder));
     if options.as_is
         && target.is_none()
-        && let Some(libraries) = beside_program(platform, |_| true)
+        && let Some(libraries) = beside
     {
         return Ok(libraries);
     }
-    if let (None, true, Some(workspace)) = (target, options.build, workspace)
-        && let Some(libraries) = beside_program(platform, |library| fresh::is_fresh(library, workspace))
-    {
-        return Ok(libraries);
+    if let (None, true, Some(workspace)) = (target, options.build, workspace) {
+        let built = lying_in(&own_build_folder(workspace).join("release"));
+        let is_fresh = |libraries: &Vec<PathBuf>| libraries.iter().all(|library| fresh::is_fresh(library, workspace));
+        if let Some(libraries) = beside.into_iter().chain(built).find(is_fresh) {
+            return Ok(libraries);
+        }
     }
     let why = match workspace {
         None => NO_TREE.to_owned(),
@@ -87,18 +91,30 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
 /// Builds the libraries of all FMUs and returns them in the order of [`FMUS`].
 fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_package::Result<Vec<PathBuf>> {
     let packages = FMUS.iter().flat_map(|fmu| ["-p", fmu.package]);
-    let arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
-    let messages = Messages::Taken(progress);
+    let mut arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
+    if let (None, Some(folder)) = (target, own_build_folder(workspace).to_str()) {
+        arguments.extend(["--target-dir", folder].map(str::to_owned));
+    }
+    let (asked, messages) = (SystemTime::now(), Messages::Taken(progress));
     let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, messages })?;
-    FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect()
+    let libraries: Vec<_> =
+        FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect::<fmu_package::Result<_>>()?;
+    for library in &libraries {
+        fresh::confirm(library, asked);
+    }
+    Ok(libraries)
 }
 
-/// The release libraries beside the running program, if all are there and pass `test`.
-fn beside_program(platform: Platform, test: impl Fn(&Path) -> bool) -> Option<Vec<PathBuf>> {
+/// The folder of the running program, where release libraries may be.
+fn beside_program() -> Option<PathBuf> {
     let program = std::env::current_exe().ok()?;
-    let beside = program.parent().filter(|folder| !folder.ends_with("debug") && !folder.ends_with("deps"))?;
-    let libraries = FMUS.iter().map(|fmu| beside.join(platform.cargo_name(fmu.identifier)));
-    libraries.map(|library| (library.is_file() && test(&library)).then_some(library)).collect()
+    program.parent().filter(|folder| !folder.ends_with("debug") && !folder.ends_with("deps")).map(Path::to_path_buf)
+}
+
+/// The libraries of all FMUs in a folder, if all are there.
+fn lying_in(folder: &Path) -> Option<Vec<PathBuf>> {
+    let libraries = FMUS.iter().map(|fmu| folder.join(Platform::HOST.cargo_name(fmu.identifier)));
+    libraries.map(|library| library.is_file().then_some(library)).collect()
 }
 
 fn is_not_found(error: &fmu_package::PackageError) -> bool {
@@ -120,6 +136,9 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
     if let Some(workspace) = workspace {
         let base = build_folder(workspace);
         folders.push(target.map_or_else(|| base.clone(), |target| base.join(&target.triple)).join("release"));
+        if target.is_none() {
+            folders.push(own_build_folder(workspace).join("release"));
+        }
     }
     folders
 }
@@ -127,6 +146,12 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
 /// The build folder of Cargo.
 pub(super) fn build_folder(workspace: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
+}
+
+/// Where Cargo builds the libraries of this machine by themselves. With other packages beside them their dependencies have other
+/// features, and the name of a library does not tell: in one folder, `cargo build` and this would compile them anew by turns.
+fn own_build_folder(workspace: &Path) -> PathBuf {
+    build_folder(workspace).join("libraries")
 }
 
 fn can_write(folder: &Path) -> bool {

@@ -9,6 +9,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("cargo fuzz", "needs a nightly compiler"),
     ("VIDEG_FUZZ", "needs a nightly compiler"),
     ("./test.sh", "the tests themselves"),
+    (".venv/bin/python -m pytest", "the tests themselves"),
+    (".venv/bin/python tests/browser/explorer_speed.py", "a benchmark"),
     ("UPDATE_", "writes what the tests compare with"),
 ];
 

@@ -75,7 +75,8 @@ fn a_signal_leaves_no_cargo_that_goes_on_building() {
     let cargo = script(folder.path(), "cargo", &mark);
     let mut program = videg(&["fmu", "build", "--output"]);
     program.arg(folder.path().join("out"));
-    program.env("CARGO", cargo).env_remove("VIDEG_NO_BUILD");
+    // Where nothing is built yet.
+    program.env("CARGO", cargo).env("CARGO_TARGET_DIR", folder.path().join("target")).env_remove("VIDEG_NO_BUILD");
     assert_eq!(interrupted(&mut program, "TERM", &mark, &temporary, false), Some(143));
 }
 
