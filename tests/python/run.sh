@@ -19,7 +19,15 @@ if [[ -z $wheel ]]; then
     target=${CARGO_TARGET_DIR:-$PWD/target}
     mkdir -p "$target/python"
     cp --archive "$target"/{release,wasm32-unknown-unknown} "$target/python/"
-    CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" .
+    if ! CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --verbose --disable-pip-version-check --no-deps --wheel-dir "$work" . \
+        >"$work/built" 2>&1; then
+        cat "$work/built"
+        exit 1
+    fi
+    if grep "Compiling videg-report" "$work/built"; then
+        echo "the wheel compiles again what cargo build has compiled: its dependencies have other features, see build-dependencies in Cargo.toml" >&2
+        exit 1
+    fi
     wheel=$(ls "$work"/videg-*.whl)
 fi
 ls -l "$wheel"
