@@ -185,10 +185,10 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
     print(f"{name:19} {slave.get(name)[0]:.6f}")
 
 # %% [markdown]
-# `impact.nextTime` and `pulse.nextKnot` are the times of the next kink of C(t) and of the next release of a resting ball. They look one
-# period of the excitation ahead and follow the inputs as soon as these are set. A master that sets its inputs, steps to these times and
-# never takes a step of more than a period has every impact, peak and release at the end of a step. With phase noise they look 512 hold
-# intervals ahead, or only to the end of the present one; the description of [`impact.nextTime`](../reference/variables.md) has the rule.
+# `impact.nextTime` and `pulse.nextKnot` are the times of the next kink of C(t) and of the next release of a resting ball. They follow
+# the inputs as soon as these are set, and look ahead as far as `pulse.knownUntil`: one period of the excitation, or less. A master that sets its inputs,
+# steps to these times and never beyond `pulse.knownUntil` has every impact, peak and release at the end of a step. With phase noise that is 512 hold
+# intervals ahead, or only the end of the present one; the description of [`impact.nextTime`](../reference/variables.md) has the rule.
 #
 # ## Go back in time
 #

@@ -285,6 +285,7 @@ fn what_cannot_run_ends_with_2_and_one_line_that_names_it() {
 
 /// In a folder of their own, where no build of other packages takes their place.
 #[test]
+#[cfg(unix)]
 fn libraries_that_are_as_new_as_their_sources_are_not_built_again() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(videg(&["fmu", "build"]).code, Some(0));
@@ -298,8 +299,11 @@ fn libraries_that_are_as_new_as_their_sources_are_not_built_again() {
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("target"), PathBuf::from);
     let fresh = build(&target);
     assert!(fresh.status.success(), "{fresh:?}");
-    let nothing_there = build(&folder.path().join("target"));
-    assert_eq!(nothing_there.status.code(), Some(2), "{nothing_there:?}");
+    if cfg!(debug_assertions) {
+        // Those of a release lie beside the program.
+        let nothing_there = build(&folder.path().join("target"));
+        assert_eq!(nothing_there.status.code(), Some(2), "{nothing_there:?}");
+    }
 }
 
 /// Stacks that no address space holds stand for a system that gives no more threads.

@@ -196,3 +196,42 @@ fn options_that_do_not_go_together_are_refused_by_name() {
         &["cannot make the folder file"],
     );
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1, ..ProptestConfig::default() })]
+
+    /// With noise, a slow ball or a suspension of short pieces the next impact is not always known.
+    #[test]
+    fn straight_lines_between_knots_stay_as_close_to_c_as_they_say(
+        hold in -5.0..-1.0_f64, noise in 0.1..3.0_f64, compliant in any::<[bool; 6]>(), seed in 1..1000_u32, error in -4.0..-2.5_f64,
+    ) {
+        for (kind, compliant) in compliant.into_iter().enumerate() {
+            let (folder, error) = (tempfile::tempdir().unwrap(), 10_f64.powf(error));
+            let mut settings = vec![format!("contact.law={}", if compliant { "compliant" } else { "impulsive" })];
+            let noisy = [format!("excitation.phaseNoise={noise}"), format!("excitation.seed={seed}")];
+            let of_kind: &[String] = match kind {
+                0 => &[],
+                1 => &["initial.ballVelocity=0.02".to_owned(), "excitation.amplitude=0.02".to_owned()],
+                2 => &["excitation.noiseModel=wiener".to_owned(), noisy[0].clone(), noisy[1].clone()],
+                3 => &["cylinder.suspensionDamping=1e4".to_owned(), "excitation.frequency=0.01".to_owned()],
+                4 => &noisy,
+                _ => &[format!("excitation.noiseHold={}", 10_f64.powf(hold)), noisy[0].clone(), noisy[1].clone()],
+            };
+            settings.extend_from_slice(of_kind);
+            let settings: Vec<_> = settings.iter().flat_map(|setting| ["--set", setting]).collect();
+            let until = ["2", "12"][usize::from(kind == 3)];
+            let error_text = error.to_string();
+            let table = |how: &[&str], name: &str| {
+                let common = ["--until", until, "--format", "csv", "--output", name];
+                exported(folder.path(), &[&common[..], &settings, how].concat());
+                rows(&folder.path().join(name)).1
+            };
+            let (lines, samples) = (table(&["--knots", &error_text], "lines.csv"), table(&["--sample", "2e-4"], "samples.csv"));
+            for column in [1, 2] {
+                let height = lines.iter().map(|row| (row[column] - lines[0][column]).abs()).fold(0.0, f64::max);
+                let off = samples.iter().map(|row| (row[column] - at(&lines, row[0], column)).abs()).fold(0.0, f64::max);
+                prop_assert!(off <= error * height + 1e-18, "{settings:?}: {off:e} F of {height:e} F with {error:e}");
+            }
+        }
+    }
+}

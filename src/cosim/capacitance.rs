@@ -31,12 +31,31 @@ impl CapacitanceTable {
         let mut table = Self::default();
         table.push(0.0, rest)?;
         let (mut now, mut time) = (0.0, TimeProgress::new(progress, until));
+        // Those since the last knot, when that was, and whether it is now.
+        let (mut points, mut last_knot, mut is_at_knot) = (vec![(now, rest)], now, true);
+        let mut impacts = sampler.impacts()?;
         while now < until {
             time.tell(now)?;
-            let end = sample.next_knot().clamp(now + Sampler::SHORTEST, until.max(now + Sampler::SHORTEST)).min(until);
-            let points = sampler.interval(now, end, &mut sample)?;
-            thin(&points, sampler.tolerance(), &mut table)?;
+            let knot = sample.next_knot();
+            let end = knot.min(sample.known_until());
+            let end = end.clamp(now + Sampler::SHORTEST, until.max(now + Sampler::SHORTEST)).min(until);
+            // A pulse begins at a knot and announces its peak and end.
+            let is_flat = !is_at_knot && sample.deflection() == [0.0; 2];
+            // From knot to knot as far as is known, of which this is a part.
+            let whole_end = if knot < f64::MAX { knot.min(until).max(end) } else { end };
+            let pieces = if is_flat { 1 } else { sampler.pieces(end - now, whole_end - last_knot) };
+            sampler.interval(now, end, pieces, &mut sample, &mut points)?;
             now = end;
+            // What was not known may come where that ends.
+            let before = std::mem::replace(&mut impacts, sampler.impacts()?);
+            is_at_knot = end >= knot || impacts != before;
+            if is_at_knot {
+                last_knot = now;
+            }
+            if is_at_knot || now == until || points.len() > Sampler::MOST_POINTS {
+                thin(&points, sampler.tolerance(), &mut table)?;
+                points.drain(..points.len() - 1);
+            }
         }
         Ok(table)
     }
@@ -59,20 +78,34 @@ impl Sampler<'_> {
     /// Closest knots, s: a ball that comes to rest has knots without end.
     const SHORTEST: f64 = 1e-6;
 
-    /// Pieces into which the stretch between two knots is cut before it is thinned. A quarter of a sine in n pieces is
-    /// off by (pi/2)^2 / (8 n^2) of its height; four times its curvature is allowed for, and half the error.
-    fn pieces(&self, length: f64) -> u32 {
-        let wanted = (2.0 / self.error.sqrt()).min(length / (0.1 * Self::SHORTEST)).ceil();
+    /// Points between two knots after which they are thinned.
+    const MOST_POINTS: usize = 1_000_000;
+
+    /// Impacts so far.
+    fn impacts(&self) -> Result<i32, NgspiceError> {
+        let [impacts, _] = self.harvester.counts()?;
+        Ok(impacts)
+    }
+
+    /// Pieces into which this length, s, of the `whole` stretch between two knots is cut before it is thinned. A quarter of a sine in
+    /// n pieces is off by (pi/2)^2 / (8 n^2) of its height; four times its curvature is allowed for, and half the error.
+    fn pieces(&self, length: f64, whole: f64) -> u32 {
+        let wanted = (2.0 / self.error.sqrt() * (length / whole)).min(length / (0.1 * Self::SHORTEST)).ceil();
         // Bounded by 2 / sqrt(1e-9).
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let pieces = wanted as u32;
-        pieces.max(2)
+        pieces.max(if length < whole { 1 } else { 2 })
     }
 
-    /// Points of C(t) from `now` to `end`, both included; the harvester stands at `end` then.
-    fn interval(&mut self, now: f64, end: f64, sample: &mut HarvesterSample) -> Result<Vec<Point>, NgspiceError> {
-        let pieces = self.pieces(end - now);
-        let mut points = vec![(now, sample.capacitance())];
+    /// Adds points of C(t) behind `now` up to `end`, at which the harvester stands then.
+    fn interval(
+        &mut self,
+        now: f64,
+        end: f64,
+        pieces: u32,
+        sample: &mut HarvesterSample,
+        points: &mut Vec<Point>,
+    ) -> Result<(), NgspiceError> {
         let mut last = now;
         for k in 1..=pieces {
             let part = f64::from(k) / f64::from(pieces);
@@ -80,14 +113,20 @@ impl Sampler<'_> {
             self.harvester.step(last, next - last)?;
             *sample = self.harvester.sample()?;
             last = next;
-            points.push((next, sample.capacitance()));
-        }
-        for (_, capacitance) in &points {
+            let capacitance = sample.capacitance();
             for ((height, c), rest) in self.height.iter_mut().zip(capacitance).zip(self.rest) {
                 *height = height.max((c - rest).abs());
             }
+            // On a level nothing but its ends is needed.
+            if let [.., (_, before), (_, here)] = points[..]
+                && before == here
+                && here == capacitance
+            {
+                points.pop();
+            }
+            points.push((next, capacitance));
         }
-        Ok(points)
+        Ok(())
     }
 
     /// Half of the error, F: the other half is that of the pieces.

@@ -8,7 +8,7 @@ use fmu_import::{Causality, Fmu, Instance, Logging, Status, Value, Variable};
 use videg_model::Parameters;
 
 /// Real outputs that the master reads at each communication point, in the order of [`HarvesterSample`]'s columns.
-const REALS: [&str; 16] = [
+const REALS: [&str; 17] = [
     "left.capacitance",
     "right.capacitance",
     "left.deflection",
@@ -25,9 +25,10 @@ const REALS: [&str; 16] = [
     "gain.energyEq13",
     "impact.nextTime",
     "pulse.nextKnot",
+    "pulse.knownUntil",
 ];
 
-/// How many of them make a row of a time series: all but the two that look ahead.
+/// How many of them make a row of a time series: all but the three that look ahead.
 const RECORDED: usize = 14;
 
 /// Integral of 1/2 U^2 dC so far, J: work of the force of the connected voltages on the ball. Only a harvester on which
@@ -77,6 +78,11 @@ impl HarvesterSample {
     /// Next time at which a capacitance has a kink or an extremum, or at which the ball hits a membrane, s.
     pub fn next_knot(&self) -> f64 {
         self.0[14].min(self.0[15])
+    }
+
+    /// Time, s, up to which the next knot is known: none comes before it that is not announced.
+    pub fn known_until(&self) -> f64 {
+        self.0[16]
     }
 }
 

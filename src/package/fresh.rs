@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// True if no source in the dep-info file that Cargo leaves beside `library`, nor a manifest of theirs, the lock file or Cargo's
-/// configuration, is newer. In doubt, false.
-pub(super) fn is_fresh(library: &Path, workspace: &Path) -> bool {
+/// configuration, is newer than `asked`, when Cargo was asked for it, or than the library where that is not known. In doubt, false.
+pub(super) fn is_fresh(library: &Path, asked: Option<SystemTime>, workspace: &Path) -> bool {
     let check = || {
-        let built = modified(library)?;
+        let built = asked.or_else(|| modified(library))?;
         let sources = sources(&std::fs::read_to_string(library.with_extension("d")).ok()?)?;
         let manifests = ["Cargo.toml", "Cargo.lock"].map(|name| workspace.join(name));
         let mut all = sources.iter().chain(&manifests);
@@ -19,14 +19,18 @@ pub(super) fn is_fresh(library: &Path, workspace: &Path) -> bool {
     check().unwrap_or(false)
 }
 
-/// Cargo was asked at this time, and the library is what it found or made. Files that changed before without a consequence, as the
-/// lock file often does, then make it old no more. Where nothing can be written, Cargo is asked each time.
-pub(super) fn confirm(library: &Path, asked: SystemTime) {
-    if modified(library).is_some_and(|built| built < asked)
-        && let Ok(file) = std::fs::File::options().write(true).open(library)
-    {
-        let _ = file.set_modified(asked);
-    }
+/// Name of the file that tells by its time when Cargo was last asked for the libraries in a folder.
+const ASKED: &str = "asked";
+
+/// Writes down that Cargo was asked at `time` for what lies in `folder`: a source saved while it was built may be newer than what was
+/// compiled and older than the library. Where nothing can be written, Cargo is asked each time.
+pub(super) fn note(folder: &Path, time: SystemTime) {
+    let _ = std::fs::File::create(folder.join(ASKED)).and_then(|file| file.set_modified(time));
+}
+
+/// When Cargo was last asked for what lies in `folder`.
+pub(super) fn asked(folder: &Path) -> Option<SystemTime> {
+    modified(&folder.join(ASKED))
 }
 
 /// Files that may be there: the manifests of the packages that the sources belong to, and Cargo's configuration.
@@ -36,7 +40,8 @@ fn settings(sources: &[PathBuf], workspace: &Path) -> BTreeSet<PathBuf> {
     manifests.chain([workspace.join(".cargo").join("config.toml")]).collect()
 }
 
-fn modified(path: &Path) -> Option<SystemTime> {
+/// When a file last changed.
+pub(super) fn modified(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).ok()?.modified().ok()
 }
 
@@ -62,24 +67,28 @@ mod tests {
         }
         let escaped = path("a b.rs").display().to_string().replace(' ', "\\ ");
         let dep_info = format!("{}: {escaped} {}\n", path("libx.so").display(), path("x/c.rs").display());
-        assert!(!is_fresh(&path("libx.so"), folder.path()), "no dep-info");
+        assert!(!is_fresh(&path("libx.so"), None, folder.path()), "no dep-info");
         std::fs::write(path("libx.d"), dep_info).unwrap();
-        assert!(is_fresh(&path("libx.so"), folder.path()));
+        assert!(is_fresh(&path("libx.so"), None, folder.path()));
         for name in ["a b.rs", "Cargo.lock", "x/Cargo.toml"] {
             let old = modified(&path(name)).unwrap();
             let file = std::fs::File::options().write(true).open(path(name)).unwrap();
             file.set_modified(SystemTime::now() + std::time::Duration::from_secs(5)).unwrap();
-            assert!(!is_fresh(&path("libx.so"), folder.path()), "{name} is newer");
+            assert!(!is_fresh(&path("libx.so"), None, folder.path()), "{name} is newer");
             file.set_modified(old).unwrap();
         }
-        let built = modified(&path("libx.so")).unwrap();
+        // Saved while the library was built.
+        let before = modified(&path("a b.rs")).unwrap() - std::time::Duration::from_secs(1);
+        note(folder.path(), before);
+        assert_eq!(asked(folder.path()), Some(before));
+        assert!(!is_fresh(&path("libx.so"), Some(before), folder.path()));
+        // Cargo saw a newer lock file.
+        let later = modified(&path("libx.so")).unwrap() + std::time::Duration::from_secs(10);
         let lock = std::fs::File::options().write(true).open(path("Cargo.lock")).unwrap();
-        lock.set_modified(built + std::time::Duration::from_secs(5)).unwrap();
-        confirm(&path("libx.so"), built - std::time::Duration::from_secs(5));
-        assert!(modified(&path("libx.so")) == Some(built), "built after that");
-        confirm(&path("libx.so"), built + std::time::Duration::from_secs(10));
-        assert!(is_fresh(&path("libx.so"), folder.path()), "Cargo saw the lock file");
+        lock.set_modified(later - std::time::Duration::from_secs(5)).unwrap();
+        assert!(!is_fresh(&path("libx.so"), None, folder.path()));
+        assert!(is_fresh(&path("libx.so"), Some(later), folder.path()));
         std::fs::remove_file(path("x/c.rs")).unwrap();
-        assert!(!is_fresh(&path("libx.so"), folder.path()), "a source is gone");
+        assert!(!is_fresh(&path("libx.so"), None, folder.path()), "a source is gone");
     }
 }

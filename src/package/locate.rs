@@ -58,17 +58,20 @@ fn is_workspace(folder: &Path) -> bool {
 pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Option<&Target>) -> Result<Vec<PathBuf>> {
     let platform = target.map_or(Platform::HOST, |target| target.platform);
     let beside = beside_program().and_then(|folder| lying_in(&folder));
-    if options.as_is
-        && target.is_none()
-        && let Some(libraries) = beside
-    {
-        return Ok(libraries);
+    if let (true, None, Some(libraries)) = (options.as_is, target, &beside) {
+        let built = around_program().and_then(|tree| lying_in(&own_build_folder(&tree).join("release")));
+        let newer = built.filter(|built| fresh::modified(&built[0]) > fresh::modified(&libraries[0]));
+        return Ok(newer.unwrap_or_else(|| libraries.clone()));
     }
     if let (None, true, Some(workspace)) = (target, options.build, workspace) {
-        let built = lying_in(&own_build_folder(workspace).join("release"));
-        let is_fresh = |libraries: &Vec<PathBuf>| libraries.iter().all(|library| fresh::is_fresh(library, workspace));
-        if let Some(libraries) = beside.into_iter().chain(built).find(is_fresh) {
-            return Ok(libraries);
+        let own = own_build_folder(workspace);
+        let built = lying_in(&own.join("release")).zip(fresh::asked(&own));
+        let candidates = beside.map(|libraries| (libraries, None)).into_iter();
+        let candidates = candidates.chain(built.map(|(libraries, asked)| (libraries, Some(asked))));
+        for (libraries, asked) in candidates {
+            if libraries.iter().all(|library| fresh::is_fresh(library, asked, workspace)) {
+                return Ok(libraries);
+            }
         }
     }
     let why = match workspace {
@@ -99,8 +102,8 @@ fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_p
     let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, messages })?;
     let libraries: Vec<_> =
         FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect::<fmu_package::Result<_>>()?;
-    for library in &libraries {
-        fresh::confirm(library, asked);
+    if target.is_none() {
+        fresh::note(&own_build_folder(workspace), asked);
     }
     Ok(libraries)
 }
@@ -145,11 +148,12 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
 
 /// The build folder of Cargo.
 pub(super) fn build_folder(workspace: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
+    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
+    std::path::absolute(&folder).unwrap_or(folder)
 }
 
 /// Where Cargo builds the libraries of this machine by themselves. With other packages beside them their dependencies have other
-/// features, and the name of a library does not tell: in one folder, `cargo build` and this would compile them anew by turns.
+/// features, and both would have the same file name: in one folder, `cargo build` and this would compile them anew by turns.
 fn own_build_folder(workspace: &Path) -> PathBuf {
     build_folder(workspace).join("libraries")
 }
@@ -160,7 +164,8 @@ fn can_write(folder: &Path) -> bool {
 
 fn find(fmu: &FmuPackage, platform: Platform, folders: &[PathBuf], why: &str) -> Result<PathBuf> {
     let looked: Vec<_> = folders.iter().map(|folder| folder.join(platform.cargo_name(fmu.identifier))).collect();
-    let found = looked.iter().find(|path| path.is_file()).cloned();
+    // The newest, of equal ones the first.
+    let found = looked.iter().rev().filter(|path| path.is_file()).max_by_key(|path| fresh::modified(path)).cloned();
     found.ok_or_else(|| PackageError::NoLibrary { identifier: fmu.identifier, why: why.to_owned(), looked })
 }
 

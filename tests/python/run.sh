@@ -19,7 +19,7 @@ if [[ -z $wheel ]]; then
     target=${CARGO_TARGET_DIR:-$PWD/target}
     mkdir -p "$target/python"
     cp --archive "$target"/{release,wasm32-unknown-unknown} "$target/python/"
-    if ! CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --verbose --disable-pip-version-check --no-deps --wheel-dir "$work" . \
+    if ! CARGO_TERM_COLOR=never CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --verbose --disable-pip-version-check --no-deps --wheel-dir "$work" . \
         >"$work/built" 2>&1; then
         cat "$work/built"
         exit 1

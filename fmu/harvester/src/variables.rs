@@ -12,7 +12,7 @@ use videg_model::{ForceTable, Recording, Side};
 
 use crate::file::{Content, LONGEST};
 use crate::harvester::Harvester;
-use impacts::{EFFECTIVE_RESTITUTION, EVENTS, IMPACTS, TWINS};
+use impacts::{EFFECTIVE_RESTITUTION, EVENTS, IMPACTS, KNOWN, TWINS};
 use initial::{FILM, IMPACT};
 use parameters::{choices, reals};
 
@@ -401,6 +401,7 @@ const COUNT: usize = PARAMETERS.len()
     + EFFECTIVE_RESTITUTION.len()
     + VISCOUS_ENERGY.len()
     + DAMPING_POWER.len()
+    + KNOWN.len()
     + IMPACTS.len();
 
 /// The table; the value reference of a variable is its index.
@@ -433,5 +434,6 @@ pub static VARIABLES: [V; COUNT] = concat(&[
     &EFFECTIVE_RESTITUTION,
     &VISCOUS_ENERGY,
     &DAMPING_POWER,
+    &KNOWN,
     &IMPACTS,
 ]);

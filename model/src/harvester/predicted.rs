@@ -13,8 +13,8 @@ const STARTS: usize = 8;
 impl Harvester {
     /// Time of the next impact, s, if the external force goes on as it is: of a ball that rests, or is about to turn against friction, after that. None
     /// during a contact under the compliant law, and if no impact is predicted within at least one excitation period (from
-    /// the release on, if the ball rests), or, with phase noise, within at least 512 hold intervals if those are shorter, or, on a
-    /// suspension, within at least a million pieces of its power series if those are shorter;
+    /// the release on, if the ball rests). On a suspension it is at least a million pieces of its power series, if those are shorter. With
+    /// phase noise it is at least 512 hold intervals if those are shorter, or
     /// within the present hold interval under the compliant law, with a Wiener process, and if hold intervals are longer than
     /// a fiftieth of a period.
     pub fn next_impact(&self) -> Option<f64> {
@@ -93,7 +93,7 @@ impl Harvester {
         Some(ahead)
     }
 
-    /// Looks one period beyond the release, counted from there and not from the present time, which a caller chooses.
+    /// Looks as far beyond the release as events are predicted, counted from there and not from the present time, which a caller chooses.
     pub(super) fn look_beyond_release(&mut self) {
         if self.motion.search.after_release.is_none()
             && let Some(mut ahead) = self.at_release()

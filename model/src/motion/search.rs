@@ -8,7 +8,7 @@ use super::side::Side;
 use super::{Ball, Motion};
 use crate::noise::Noise;
 
-/// Pieces of the series of a suspended cylinder that are searched ahead of the present time: a tenth of a second of work.
+/// Pieces of the series of a suspended cylinder that are searched ahead of the present time: some tenths of a second of work.
 const MOST_PIECES: f64 = 1e6;
 
 impl Motion {
@@ -129,7 +129,7 @@ impl Motion {
     }
 
     /// How far ahead events are predicted, s, without noise: an excitation period, but on a suspension of which a piece is far shorter
-    /// no more than [`MOST_PIECES`], lest the search for a first event takes minutes.
+    /// no more than [`MOST_PIECES`], lest the first step takes a minute.
     pub fn horizon(&self) -> f64 {
         let pieces = self.flight.piece().map_or(f64::INFINITY, |piece| MOST_PIECES * piece);
         self.flight.window_length().min(pieces)

@@ -25,7 +25,7 @@ pub(super) static EVENTS: [V; 8] = [
     V::output(
         "impact.nextTime",
         "s",
-        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted within one period (with phase noise: within 512 hold intervals if these are shorter; within the present one if it is a Wiener process, contacts last or hold intervals are longer than a fiftieth of a period; on a suspension within a million pieces of its power series if these are shorter)",
+        "Time of the next impact while externalForce goes on as it is set; of a ball that rests, after its release. The largest double during a contact that lasts, and if none is predicted up to pulse.knownUntil, which is one period ahead (on a suspension a million pieces of its power series if these are shorter; with phase noise 512 hold intervals if these are shorter, or the present one if it is a Wiener process, contacts last or hold intervals are longer than a fiftieth of a period)",
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
@@ -131,6 +131,16 @@ pub(super) static IMPACTS: [V; 4] = [
         })
         .get(|slave| slave.last_impact.map_or(0.0, |(_, speed)| slave.impact_energy(speed))),
 ];
+
+/// How far the predictions reach.
+pub(super) static KNOWN: [V; 1] = [V::output(
+    "pulse.knownUntil",
+    "s",
+    "Time up to which impact.nextTime and pulse.nextKnot know all that comes while the inputs go on as they are set: a master that goes no further passes over nothing",
+)
+.discrete()
+.local()
+.get(|slave| slave.predicted(|model| Some(model.known_until())))];
 
 /// A count as an Integer.
 fn as_count(count: u64) -> i64 {
