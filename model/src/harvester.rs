@@ -254,8 +254,13 @@ impl Harvester {
     /// Searches for the next event as far ahead of `time`, s, as events are predicted.
     #[inline(never)]
     fn search_from(&mut self, time: f64) {
-        let horizon = self.noise.horizon(self.motion.horizon());
+        let horizon = self.horizon();
         self.motion.next_event(&mut self.noise, time + horizon, false);
+    }
+
+    /// How far ahead events are predicted, s.
+    fn horizon(&self) -> f64 {
+        self.noise.horizon(self.motion.horizon())
     }
 
     fn forces(&self) -> Forces<'_> {

@@ -27,7 +27,7 @@ pub(super) const DEFLECTIONS: [usize; 2] = [5, 6];
 const GAIN: usize = 9;
 
 /// Outputs that look ahead, and the speed of the last impact.
-const EVENTS: [&str; 3] = ["impact.nextTime", "pulse.nextKnot", "impact.lastVelocity"];
+const EVENTS: [&str; 4] = ["impact.nextTime", "pulse.nextKnot", "pulse.knownUntil", "impact.lastVelocity"];
 
 /// How long before an impact a sample is taken, s: short against anything that can be drawn, long against the spacing
 /// of doubles at 100 s.
@@ -124,11 +124,12 @@ impl Recorder<'_> {
         self.study.reals(&self.instance, EVENTS)
     }
 
-    /// To `target` or to what comes before it.
+    /// To `target`, or to what comes before it, or as far as that is known.
     fn follow(&mut self, target: f64) -> Result<(), PaperError> {
-        let [impact, knot, _] = self.events()?;
-        if impact > target.min(knot) {
-            self.go_to(target.min(knot))?;
+        let [impact, knot, known, _] = self.events()?;
+        let next = target.min(knot).min(known);
+        if impact > next {
+            self.go_to(next)?;
             return self.note();
         }
         if impact - BEFORE > self.time {

@@ -46,7 +46,7 @@ impl Harvester {
     pub fn known_until(&self) -> f64 {
         let followed = self.motion.ball.contact().map_or(f64::INFINITY, Contact::end);
         let followed = if followed > self.time { followed } else { f64::INFINITY };
-        let ahead = followed.min(self.time + self.noise.horizon(self.motion.horizon()));
+        let ahead = followed.min(self.time + self.horizon());
         if self.noise.in_blocks() {
             return ahead;
         }
