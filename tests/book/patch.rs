@@ -16,11 +16,7 @@ pub fn applies_and_passes(diff: &str) -> Result<(), String> {
     let folder = root().join("target/book/source");
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
     copy_sources(&folder).map_err(|error| format!("cannot copy the sources: {error}"))?;
-    let file = root().join("target/book/change.diff");
-    std::fs::write(&file, diff).map_err(|error| error.to_string())?;
-    let mut apply = Command::new("git");
-    apply.arg("apply").arg(&file).env("GIT_CEILING_DIRECTORIES", root().join("target/book"));
-    run(apply.current_dir(&folder))?;
+    run(git_apply(diff).map_err(|error| error.to_string())?.current_dir(&folder))?;
     for (package, test) in packages(diff) {
         let mut check = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
         let task = test.map_or(vec!["check"], |test| vec!["test", "--test", test]);
@@ -30,6 +26,22 @@ pub fn applies_and_passes(diff: &str) -> Result<(), String> {
         run(check.env("CARGO_TARGET_DIR", root().join("target/book/build")))?;
     }
     Ok(())
+}
+
+/// Whether `diff` fits the sources.
+pub fn applies(diff: &str) -> Result<(), String> {
+    run(git_apply(diff).map_err(|error| error.to_string())?.arg("--check").current_dir(root()))
+}
+
+/// The command, to be run in the folder of the sources.
+fn git_apply(diff: &str) -> std::io::Result<Command> {
+    let folder = root().join("target/book");
+    std::fs::create_dir_all(&folder)?;
+    let file = folder.join("change.diff");
+    std::fs::write(&file, diff)?;
+    let mut apply = Command::new("git");
+    apply.arg("apply").arg(file).env("GIT_CEILING_DIRECTORIES", folder);
+    Ok(apply)
 }
 
 fn run(command: &mut Command) -> Result<(), String> {

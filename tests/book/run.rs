@@ -265,6 +265,15 @@ fn what_is_shown_says_something() {
     }
 }
 
+#[test]
+fn changes_of_the_sources_apply() {
+    for chapter in chapter::all() {
+        for block in chapter.blocks.iter().filter(|block| block.language == "diff") {
+            patch::applies(&block.text).unwrap_or_else(|error| panic!("{}: {error}", chapter.place(block)));
+        }
+    }
+}
+
 /// `VIDEG_PAGE=docs/theory` runs only the pages whose path contains that.
 #[test]
 #[ignore = "slow: ./test.sh book"]
