@@ -61,7 +61,7 @@ const ROWS: &[Row] = &[
     row("100 s of Fig. 14 in 100,000 calls of `fmi2DoStep`; the paper's Runge-Kutta at 1e-5 s", CALLS, "doStep, 1 ms", RUNGE_KUTTA, Faster(50.0)),
     row("100 s of Fig. 14 in one go; the paper's Runge-Kutta at 1e-5 s", MOTION, "fig14, event-driven", PAPER, Faster(3000.0)),
     row("the same; the paper's Runge-Kutta stage by stage, as in textbooks", MOTION, "fig14, event-driven", STAGES, Nothing),
-    row("100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample", NOISE, "in blocks", "C, Runge-Kutta", Faster(10.0)),
+    row("100 s of Fig. 17, 1e7 samples of phase noise; a plain program in C, Runge-Kutta sample by sample", NOISE, "in blocks", "C, Runge-Kutta", Faster(20.0)),
     row("the same; a plain program in C, closed form sample by sample", NOISE, "in blocks", "C, closed form", Nothing),
     row("8 runs of 20 s of Fig. 17 on two threads; on one", ENSEMBLE, "threads: 2", "threads: 1", Faster(1.8)),
     row("circuit, 10 s of Fig. 14, ideal diodes; ngspice", CIRCUIT, "embedded, ideal diodes", "ngspice, batch", Nothing),

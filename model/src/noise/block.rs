@@ -61,29 +61,29 @@ impl Block {
         [velocity + by_velocity, position + (time * velocity + by_position)]
     }
 
-    /// Sums what each interval of length `hold`, s, does, which stands at its place: a change of velocity, and of position
-    /// what it differs from the mean of the velocities before and after; the unit of position is half that of velocity
-    /// times `hold`. It goes down the columns, all at once, then from column to column. Velocities come first: together,
-    /// compilers would pack velocity and position of a column into one vector.
+    /// Sums what each interval of length `hold`, s, does, `change` of the number that stands at its place in `position`: a change of
+    /// velocity, and of position what it differs from the mean of the velocities before and after; the unit of position is half
+    /// that of velocity times `hold`. It goes down the columns, all at once, then from column to column.
     #[inline(always)]
-    pub fn sum(&mut self, hold: f64) {
+    pub fn sum(&mut self, hold: f64, change: impl Fn(f64) -> [f64; 2]) {
         let (mut velocity, mut position) = ([0.0; COLUMNS], [0.0; COLUMNS]);
         let (velocities, _) = self.velocity.0.as_chunks_mut::<COLUMNS>();
-        for row in &mut velocities[..ROWS] {
-            let before = velocity;
-            for (sum, change) in velocity.iter_mut().zip(&*row) {
-                *sum += change;
+        let (positions, _) = self.position.0.as_chunks_mut::<COLUMNS>();
+        for (row_v, row_z) in velocities.iter_mut().zip(positions) {
+            let (mut faster, mut farther) = ([0.0; COLUMNS], [0.0; COLUMNS]);
+            for k in 0..COLUMNS {
+                [faster[k], farther[k]] = change(row_z[k]);
             }
-            *row = before;
+            *row_v = velocity;
+            *row_z = position;
+            for k in 0..COLUMNS {
+                velocity[k] += faster[k];
+            }
+            for k in 0..COLUMNS {
+                position[k] += (row_v[k] + velocity[k]) + farther[k];
+            }
         }
         velocities[ROWS] = velocity;
-        for (row, both) in self.position.0.as_chunks_mut::<COLUMNS>().0.iter_mut().zip(velocities.windows(2)) {
-            let before = position;
-            for k in 0..COLUMNS {
-                position[k] += (both[0][k] + both[1][k]) + row[k];
-            }
-            *row = before;
-        }
         let [of_velocity, of_position] = self.units;
         let (length, [mut v, mut z]) = (ROWS as f64 * hold, [0.0; 2]);
         for k in 0..COLUMNS {

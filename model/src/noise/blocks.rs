@@ -111,12 +111,8 @@ impl Force {
             let turns = noisy_phase(carrier + NUMBERS.0[k] * self.turns, self.intensity, xi);
             block.position.0[k] = turns - round(turns);
         }
-        for k in 0..BLOCK {
-            let [cos, sin] = cos_and_short_sin(block.position.0[k], &self.lag);
-            (block.velocity.0[k], block.position.0[k]) = (cos, sin);
-        }
         block.units = [self.push, 0.5 * self.push * self.hold];
-        block.sum(self.hold);
+        block.sum(self.hold, |turns| cos_and_short_sin(turns, &self.lag));
     }
 }
 
