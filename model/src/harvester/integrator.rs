@@ -142,7 +142,7 @@ impl Harvester {
     }
 
     /// The next time, s, at which an event is due whatever the states do: a fresh phase-noise sample, a sample of the
-    /// recording, or the peak or end of a pulse, where a capacitance has a kink.
+    /// recording, or the peak, end or overtaking of a pulse, where a capacitance has a kink.
     pub fn next_time_event(&self) -> Option<f64> {
         let knots = self.pulses.next_knots(self.time).map(|knot| knot.time);
         let sample = Some(self.motion.cylinder.drive.recorded.end).filter(|end| *end < f64::INFINITY);

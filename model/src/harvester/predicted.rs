@@ -28,7 +28,7 @@ impl Harvester {
     }
 
     /// The next time, s, at which a capacitance has a kink or an extremum, or the ball becomes free: the peak or the end of
-    /// a pulse, an impact, or the release of a resting ball; under the compliant law up to where the present contact is predicted
+    /// a pulse, or where another one that overlaps it becomes the larger, an impact, or the release of a resting ball; under the compliant law up to where the present contact is predicted
     /// under the present force and voltages, which is at most one excitation period.
     pub fn next_knot(&self) -> Option<f64> {
         if self.is_due() {

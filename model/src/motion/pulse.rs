@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use crate::membrane::Membrane;
 use crate::membrane::loading::Loading;
 use crate::motion::side::Side;
-use crate::numerics::roots::convex_root;
+use crate::numerics::roots::{bracketed_root, convex_root};
 use crate::numerics::series::hypergeometric;
 use crate::shared::Shared;
 
@@ -141,13 +141,22 @@ fn upper_series(exponent: f64, complement: f64) -> f64 {
     2.0 * a * hypergeometric(complement, |k| (1.0 - a + k) / (1.0 + k) * (0.5 + k) / (1.5 + k))
 }
 
-/// A time at which a pulse peaks or ends.
+/// A time at which the deflection of a membrane has an extremum or a kink.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<'a> {
     /// Time, s.
     pub(crate) time: f64,
     pub(crate) pulse: &'a Pulse,
-    pub(crate) is_end: bool,
+    pub(crate) kind: KnotKind<'a>,
+}
+
+/// What a pulse does at a knot.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum KnotKind<'a> {
+    Peaks,
+    Ends,
+    /// From here on this one is larger.
+    Meets(&'a Pulse),
 }
 
 /// A pulse under way.
@@ -296,37 +305,84 @@ impl Pulses {
 
     /// The pulse with the largest deflection at `time`, s; none if the membrane is flat.
     pub(crate) fn largest(&self, side: Side, time: f64) -> Option<(&Pulse, Deflection)> {
-        let mut largest: Option<(&Pulse, Deflection)> = None;
-        for running in &self.under_way[side.index()] {
+        self.largest_of(&self.under_way[side.index()], time).map(|(running, deflection)| (&running.pulse, deflection))
+    }
+
+    fn largest_of<'a>(&self, pulses: &'a [Running], time: f64) -> Option<(&'a Running, Deflection)> {
+        let mut largest: Option<(&Running, Deflection)> = None;
+        for running in pulses {
             let value = largest.map_or(0.0, |(_, deflection)| deflection.value);
             if running.pulse.peak <= value {
                 break;
             }
             let deflection = running.at(&self.shape, time);
             if deflection.value > value {
-                largest = Some((&running.pulse, deflection));
+                largest = Some((running, deflection));
             }
         }
         largest
     }
 
-    /// The first time after `time`, s, at which a pulse peaks or ends, of each membrane that is not flat.
+    /// The first time after `time`, s, at which a pulse peaks or ends or becomes the largest, of each membrane that is not flat.
     pub(crate) fn next_knots(&self, time: f64) -> impl Iterator<Item = Knot<'_>> {
         self.under_way.iter().filter_map(move |pulses| {
             let knots = pulses.iter().flat_map(|running| {
                 let pulse = &running.pulse;
-                let peak = Knot { time: running.peak_time(&self.shape), pulse, is_end: false };
-                [peak, Knot { time: running.end_time(&self.shape), pulse, is_end: true }]
+                let peak = Knot { time: running.peak_time(&self.shape), pulse, kind: KnotKind::Peaks };
+                [peak, Knot { time: running.end_time(&self.shape), pulse, kind: KnotKind::Ends }]
             });
-            knots.filter(|knot| knot.time > time).min_by(|a, b| a.time.total_cmp(&b.time))
+            let knot = knots.filter(|knot| knot.time > time).min_by(|a, b| a.time.total_cmp(&b.time))?;
+            Some(self.first_meeting(pulses, time, knot.time).unwrap_or(knot))
         })
+    }
+
+    /// The first time after `time`, s, and before `end`, s, at which another of the `pulses` becomes the largest, if none peaks or ends
+    /// in between.
+    fn first_meeting<'a>(&self, pulses: &'a [Running], time: f64, end: f64) -> Option<Knot<'a>> {
+        if pulses.len() < 2 {
+            return None;
+        }
+        let (first, _) = self.largest_of(pulses, time)?;
+        let lowest = first.at(&self.shape, end).value;
+        let others = pulses.iter().take_while(|other| other.pulse.peak > lowest);
+        let meetings = others.filter(|other| other.at(&self.shape, end).value > lowest).map(|other| {
+            let meeting = self.meeting([first, other], time);
+            Knot { time: meeting, pulse: &first.pulse, kind: KnotKind::Meets(&other.pulse) }
+        });
+        meetings.filter(|knot| knot.time > time && knot.time < end).min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+
+    /// When the second of `pair`, which is less deep at `time`, s, gets as deep as the first one, before either peaks or ends. They meet
+    /// at most once until then, because all pulses follow one force law: of two that are as deep, the one with more energy is
+    /// faster. The time does not depend on when it is asked for, and whoever asks there has it behind.
+    fn meeting(&self, pair: [&Running; 2], time: f64) -> f64 {
+        let corners =
+            pair.into_iter().flat_map(|it| [it.pulse.start, it.peak_time(&self.shape), it.end_time(&self.shape)]);
+        let before = corners.clone().filter(|corner| *corner <= time).fold(f64::NEG_INFINITY, f64::max);
+        let behind = corners.filter(|corner| *corner > time).fold(f64::INFINITY, f64::min);
+        let ahead = |time| {
+            let [first, second] = pair.map(|it| it.at(&self.shape, time));
+            (first.value - second.value, first.rate - second.rate)
+        };
+        let mut meeting = bracketed_root(before, behind, ahead);
+        let mut step = f64::EPSILON * meeting.abs();
+        while meeting < behind && ahead(meeting).0 >= 0.0 {
+            meeting = (meeting + step).min(behind);
+            step *= 2.0;
+        }
+        meeting
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{MembraneLaw, Parameters};
     use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Few where Miri interprets them, which takes far longer.
+    const CASES: u32 = if cfg!(miri) { 2 } else { 256 };
 
     /// Loading time times impact speed over delta for the linear spring, n = 1: a quarter of a sine's period.
     const LINEAR_LOADING: f64 = core::f64::consts::FRAC_PI_2;
@@ -375,7 +431,7 @@ mod tests {
     fn pulses_that_are_added_together_are_those_that_are_added_one_by_one() {
         // Few where Miri interprets them, which takes far longer.
         const MANY: u32 = if cfg!(miri) { 40 } else { 800 };
-        let membrane = Shared::new(Membrane::new(&crate::Parameters::default()));
+        let membrane = Shared::new(Membrane::new(&Parameters::default()));
         let none = || Pulses { shape: PulseShape::new(2.6, 0.5), under_way: Default::default() };
         for spacing in [1e-6, 1e-4, 1e-3, 3e-3, 1e-2] {
             let started = |k: u32| {
@@ -399,7 +455,7 @@ mod tests {
     fn the_larger_of_two_overlapping_pulses_wins() {
         let shape = PulseShape::new(2.6, 0.5);
         let mut pulses = Pulses { shape, under_way: Default::default() };
-        let membrane = Shared::new(Membrane::new(&crate::Parameters::default()));
+        let membrane = Shared::new(Membrane::new(&Parameters::default()));
         let both = [pulse(0.0, 1.0, 0.004), pulse(0.001, 0.1, 0.001)];
         for pulse in both {
             pulses.push(&membrane, Side::Left, pulse);
@@ -408,6 +464,44 @@ mod tests {
             let t = f64::from(k) * 1e-4;
             let [big, small] = both.map(|pulse| shape.at(&pulse, t).value);
             assert_eq!(pulses.at(Side::Left, t).value, big.max(small), "at {t} s");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn from_knot_to_knot_one_pulse_is_the_largest_and_rises_or_falls(
+            impacts in prop::collection::vec((0.0..0.05_f64, 0.02..1.0_f64), 1..6),
+            (restitution, exponent) in (0.1..1.0_f64, 1.0..4.0_f64), has_own_law in any::<bool>(),
+        ) {
+            let law = if has_own_law { MembraneLaw::Gent } else { MembraneLaw::Power };
+            let p = Parameters { membrane_law: law, restitution, stiffness_exponent: exponent, ..Parameters::default() };
+            let (membrane, shape) = (Shared::new(Membrane::new(&p)), PulseShape::new(exponent, restitution));
+            let mut pulses = Pulses { shape, under_way: Default::default() };
+            let mut impacts = impacts;
+            impacts.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for &(start, speed) in &impacts {
+                pulses.push(&membrane, Side::Left, pulse(start, speed, membrane.deflection(speed)));
+            }
+            // Pulses begin before what is looked at: those that come are other knots.
+            let mut now = impacts[impacts.len() - 1].0;
+            while let Some(knot) = pulses.next_knots(now).next() {
+                prop_assert!(knot.time > now);
+                let part = |part: f64| now + (knot.time - now) * part;
+                let at = |part: f64| pulses.largest(Side::Left, now + (knot.time - now) * part).unwrap();
+                let (largest, middle) = at(0.5);
+                for k in 1..20 {
+                    let (other, deflection) = at(f64::from(k) / 20.0);
+                    prop_assert!(other == largest && deflection.rate * middle.rate > 0.0, "{} to {}", part(0.0), part(1.0));
+                }
+                // Halfway to a knot asks for the same one.
+                prop_assert_eq!(pulses.next_knots(part(0.5)).next().unwrap().time, knot.time);
+                if let KnotKind::Meets(next) = knot.kind {
+                    prop_assert!(knot.pulse == largest && pulses.largest(Side::Left, knot.time).unwrap().0 == next);
+                }
+                now = knot.time;
+            }
         }
     }
 }

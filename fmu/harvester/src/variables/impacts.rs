@@ -35,7 +35,7 @@ pub(super) static EVENTS: [V; 8] = [
     V::output(
         "pulse.nextKnot",
         "s",
-        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is predicted",
+        "Next time at which a capacitance has a kink or an extremum (impact, peak or end of a pulse, or another one that overlaps it becomes larger), a resting ball is released or a contact that lasts changes, while the inputs go on as they are set; the largest double if none is predicted",
     )
     .discrete()
     .depends_on(&PREDICTED_FROM)
