@@ -3,7 +3,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-readonly STAGES=(setup lint unit valgrind fmpy)
+# Setup comes first, then the others, the longest first.
+readonly STAGES=(setup unit lint fmpy valgrind)
 readonly VENV=.venv
 # Each takes the one before in.
 readonly REQUIREMENTS=(
@@ -34,15 +35,16 @@ usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
 
-Runs the stages named, or those of these that have not passed yet on the same files, in this order:
+Runs the stages named one after the other; without a name, setup and then those of these that have not passed yet on the same files,
+two at a time, and again alone what failed so:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
-  lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
   unit         the tests of all Rust packages, but for the slow ones
-  valgrind     random calls on the FMUs' libraries: no memory error, no leak
+  lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
   fmpy         FMPy simulates the FMUs and agrees with the command line, and under valgrind no library of theirs errs
+  valgrind     random calls on the FMUs' libraries: no memory error, no leak
 
 CI runs this one, too:
-  slow         all of the following, two at a time, and again alone what failed so; each runs alone, too:
+  slow         all of the following, two at a time as well; each runs alone, too:
   unit-slow    those tests of the Rust packages that are marked #[ignore = "slow"]
   scale        HELICS federates and sweeps on Dask and Slurm, each on this machine alone, give the bytes of one process
   conformance  a C program, importers and checkers take the FMUs; writes docs/conformance.md, and docs/coupling.md
@@ -226,8 +228,12 @@ lint_workflows() {
     fi
 }
 
+# Examples have no tests, and the stage lint compiles them.
+readonly TESTED=(--workspace --lib --bins --tests)
+
 stage_unit() {
-    run cargo test --workspace
+    run cargo test "${TESTED[@]}"
+    run cargo test --workspace --doc
 }
 
 # Not the doc tests, where the mark means that they do not compile. The stage book runs the book.
@@ -256,7 +262,7 @@ build_fmus() {
 # dependencies, which Cargo would compile again. FMUs are always optimised.
 stage_fmpy() {
     need_python
-    run cargo test --workspace --no-run
+    run cargo test "${TESTED[@]}" --no-run
     local program=${CARGO_TARGET_DIR:-$PWD/target}/debug/videg
     run "$program" fmu build
     run env VIDEG="$program" "$VENV/bin/python" -m pytest tests/fmpy
@@ -297,7 +303,7 @@ stage_exporter() {
 stage_browser() {
     need_python
     run cargo build --release
-    run cargo test --workspace --no-run
+    run cargo test "${TESTED[@]}" --no-run
     run "$VENV/bin/python" -m pytest tests/browser
 }
 
@@ -391,8 +397,7 @@ record() {
 has_passed() {
     local now
     now=$(state)
-    # Setup looks at the machine, which may be another.
-    [[ $1 != setup && -n $now && -f $(record "$1") && $(<"$(record "$1")") == "$now" ]]
+    [[ -n $now && -f $(record "$1") && $(<"$(record "$1")") == "$now" ]]
 }
 
 run_stages() {
@@ -456,7 +461,7 @@ run_side_by_side() {
 }
 
 main() {
-    local stage
+    local stage left=()
     for stage in "$@"; do
         case $stage in
             -h | --help)
@@ -471,13 +476,15 @@ main() {
         echo "=== all passed: $*"
         return
     fi
-    for stage in "${STAGES[@]}"; do
+    run_stages setup
+    for stage in "${STAGES[@]:1}"; do
         if has_passed "$stage"; then
             echo "=== $stage: passed before on the same files; ./test.sh $stage runs it again"
         else
-            run_stages "$stage"
+            left+=("$stage")
         fi
     done
+    [[ ${#left[@]} -eq 0 ]] || run_side_by_side "${left[@]}"
     echo "=== all passed: ${STAGES[*]}"
 }
 
