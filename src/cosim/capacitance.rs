@@ -111,9 +111,8 @@ impl Sampler<'_> {
             let part = f64::from(k) / f64::from(pieces);
             let next = if k == pieces { end } else { now + (end - now) * part };
             self.harvester.step(last, next - last)?;
-            *sample = self.harvester.sample()?;
             last = next;
-            let capacitance = sample.capacitance();
+            let capacitance = self.harvester.capacitance()?;
             for ((height, c), rest) in self.height.iter_mut().zip(capacitance).zip(self.rest) {
                 *height = height.max((c - rest).abs());
             }
@@ -126,6 +125,7 @@ impl Sampler<'_> {
             }
             points.push((next, capacitance));
         }
+        *sample = self.harvester.sample()?;
         Ok(())
     }
 

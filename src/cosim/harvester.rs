@@ -251,6 +251,13 @@ impl HarvesterFmu {
         read(&self.instance, &self.reals).map(HarvesterSample)
     }
 
+    /// Capacitances at the communication point, left and right, F: without what is predicted, which takes longer.
+    pub(super) fn capacitance(&self) -> Result<[f64; 2], CosimError> {
+        let mut capacitance = [0.0; 2];
+        self.instance.get_real(&self.reals[..2], &mut capacitance)?;
+        Ok(capacitance)
+    }
+
     /// Impacts, and events computed, so far.
     pub fn counts(&self) -> Result<[i32; 2], CosimError> {
         let mut counts = [0; 2];

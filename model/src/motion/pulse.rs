@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use crate::membrane::Membrane;
 use crate::membrane::loading::Loading;
 use crate::motion::side::Side;
-use crate::numerics::roots::{bracketed_root, convex_root};
+use crate::numerics::roots::{convex_root, short_root_near};
 use crate::numerics::series::hypergeometric;
 use crate::shared::Shared;
 
@@ -343,13 +343,17 @@ impl Pulses {
             return None;
         }
         let (first, _) = self.largest_of(pulses, time)?;
-        let lowest = first.at(&self.shape, end).value;
-        let others = pulses.iter().take_while(|other| other.pulse.peak > lowest);
-        let meetings = others.filter(|other| other.at(&self.shape, end).value > lowest).map(|other| {
-            let meeting = self.meeting([first, other], time);
-            Knot { time: meeting, pulse: &first.pulse, kind: KnotKind::Meets(&other.pulse) }
-        });
-        meetings.filter(|knot| knot.time > time && knot.time < end).min_by(|a, b| a.time.total_cmp(&b.time))
+        let (mut found, mut until) = (None, end);
+        // What is the largest there has met the first one before, unless another has sooner.
+        while let Some((next, _)) = self.largest_of(pulses, until).filter(|(next, _)| *next != first) {
+            let meeting = self.meeting([first, next], time);
+            if meeting <= time || meeting >= until {
+                break;
+            }
+            found = Some(Knot { time: meeting, pulse: &first.pulse, kind: KnotKind::Meets(&next.pulse) });
+            until = meeting;
+        }
+        found
     }
 
     /// When the second of `pair`, which is less deep at `time`, s, gets as deep as the first one, before either peaks or ends. They meet
@@ -364,8 +368,8 @@ impl Pulses {
             let [first, second] = pair.map(|it| it.at(&self.shape, time));
             (first.value - second.value, first.rate - second.rate)
         };
-        let mut meeting = bracketed_root(before, behind, ahead);
-        let mut step = f64::EPSILON * meeting.abs();
+        let mut meeting = short_root_near(0.5 * (before + behind), before, behind, ahead);
+        let mut step = f64::EPSILON * meeting.abs().max(behind - before);
         while meeting < behind && ahead(meeting).0 >= 0.0 {
             meeting = (meeting + step).min(behind);
             step *= 2.0;
