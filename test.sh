@@ -303,7 +303,8 @@ stage_exporter() {
 stage_browser() {
     need_python
     run cargo build --release
-    run cargo test "${TESTED[@]}" --no-run
+    # With the examples, of which one draws the report of figures.
+    run cargo test --workspace --no-run
     run "$VENV/bin/python" -m pytest tests/browser
 }
 
