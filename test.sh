@@ -229,7 +229,7 @@ lint_workflows() {
 }
 
 # Examples have no tests, and the stage lint compiles them.
-readonly TESTED=(--workspace --lib --bins --tests)
+readonly TESTED=(--workspace --tests)
 
 stage_unit() {
     run cargo test "${TESTED[@]}"

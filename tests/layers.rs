@@ -99,6 +99,25 @@ fn every_package_has_its_place() {
     }
 }
 
+/// Nobody would run them.
+#[test]
+fn a_library_whose_tests_do_not_run_has_none() {
+    let is_tested = |folder: &str| manifest(folder).get("lib").and_then(|it| it.get("test")?.as_bool()).unwrap_or(true);
+    let mut read = 0;
+    for (folder, _) in PACKAGES.iter().filter(|(folder, _)| !is_tested(folder)) {
+        let source = repository().join(folder).join("src");
+        for file in Imports::read(&source.join("lib.rs")).files() {
+            let text = fs::read_to_string(source.join(file)).unwrap();
+            assert!(
+                !text.contains("#[cfg(test)]"),
+                "{folder}/src/{file} has tests, but {folder}/Cargo.toml says test = false"
+            );
+            read += 1;
+        }
+    }
+    assert!(read > 10, "only {read} files are read");
+}
+
 #[test]
 fn a_shared_library_links_nothing_of_the_command_line() {
     let below = |folder: &str| PACKAGES.iter().find(|(it, _)| *it == folder).unwrap().1;

@@ -94,26 +94,3 @@ impl Slave for Harvesting {
         Ok(slave)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn step(slave: &mut Harvesting, capacitance: [f64; 2]) -> [f64; 2] {
-        slave.capacitance = capacitance;
-        slave.do_step(0.0, 1e-3, &Logger::silent()).unwrap();
-        slave.circuit().unwrap().capacitance()
-    }
-
-    /// As from masters that start all signals at 0.
-    #[test]
-    fn a_capacitance_of_zero_means_that_none_has_been_handed_over() {
-        let mut slave = Harvesting::new();
-        slave.capacitance = [20e-12, 0.0];
-        slave.update();
-        assert_eq!(slave.circuit().unwrap().capacitance(), [20e-12, REST_CAPACITANCE]);
-        assert_eq!(step(&mut slave, [0.0; 2]), [20e-12, REST_CAPACITANCE]);
-        assert_eq!(step(&mut slave, [0.0, 16e-12]), [20e-12, 16e-12]);
-        assert_eq!(slave.capacitance, [20e-12, 16e-12]);
-    }
-}

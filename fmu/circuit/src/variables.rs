@@ -118,14 +118,3 @@ const COUNT: usize = QUANTITIES.len() + CHOICES.len() + INPUTS.len() + OUTPUTS.l
 
 /// The table; the value reference of a variable is its index.
 pub static VARIABLES: [V; COUNT] = concat(&[FIRST.0, &CHOICES, &INPUTS, &OUTPUTS, FIRST.1, &LEAKAGE]);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_rows_have_the_order_and_the_names_of_the_tables_of_the_circuit() {
-        let names = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
-        assert!(QUANTITIES.iter().chain(&CHOICES).map(Variable::name).eq(names));
-    }
-}

@@ -2,8 +2,11 @@
 //! `InitialUnknowns` say.
 
 use HarvestingCircuit::Harvesting;
-use fmu_export::{Standard, changed_references, model_description, terminals_and_icons};
+use fmu_export::{
+    Causality, Kind, Slave, Standard, Variable, changed_references, model_description, terminals_and_icons,
+};
 use fmu_host::initial::{found, promised};
+use videg_circuit::Settings;
 
 /// A file of the folder `modelDescription`.
 macro_rules! kept {
@@ -20,6 +23,21 @@ fn the_packaged_model_descriptions_are_those_of_the_variable_table() {
     check(kept!("HarvestingCircuit.xml"), &model_description::<Harvesting>(Standard::Fmi2).unwrap());
     check(kept!("fmi3/HarvestingCircuit.xml"), &model_description::<Harvesting>(Standard::Fmi3).unwrap());
     check(kept!("fmi3/HarvestingCircuit.terminalsAndIcons.xml"), &terminals_and_icons::<Harvesting>(true).unwrap());
+}
+
+#[test]
+fn the_parameters_are_those_of_the_tables_of_the_circuit() {
+    let names = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
+    let is_of_the_tables =
+        |row: &&Variable<Harvesting>| row.causality() == Causality::Parameter && !matches!(row.kind(), Kind::String(_));
+    let rows = Harvesting::variables().iter().filter(is_of_the_tables).map(Variable::name);
+    assert_eq!(sorted(rows), sorted(names));
+}
+
+fn sorted<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names: Vec<_> = names.collect();
+    names.sort_unstable();
+    names
 }
 
 /// Size that a variable typically has.

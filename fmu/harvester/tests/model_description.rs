@@ -5,8 +5,11 @@ mod common;
 
 use VibroImpactHarvester::Harvester;
 use common::differences::natural_size;
-use fmu_export::{Standard, changed_references, model_description, terminals_and_icons};
+use fmu_export::{
+    Causality, Kind, Slave, Standard, Variable, changed_references, model_description, terminals_and_icons,
+};
 use fmu_host::initial::{found, on_inputs, promised};
+use videg_model::Parameters;
 
 /// A file of the folder `modelDescription`.
 macro_rules! kept {
@@ -23,6 +26,21 @@ fn the_packaged_model_descriptions_are_those_of_the_variable_table() {
     check(kept!("VibroImpactHarvester.xml"), &model_description::<Harvester>(Standard::Fmi2).unwrap());
     check(kept!("fmi3/VibroImpactHarvester.xml"), &model_description::<Harvester>(Standard::Fmi3).unwrap());
     check(kept!("fmi3/VibroImpactHarvester.terminalsAndIcons.xml"), &terminals_and_icons::<Harvester>(true).unwrap());
+}
+
+#[test]
+fn the_parameters_are_those_of_the_tables_of_the_model() {
+    let names = Parameters::TABLE.iter().map(|it| it.name).chain(Parameters::CHOICES.iter().map(|it| it.name));
+    let is_of_the_tables =
+        |row: &&Variable<Harvester>| row.causality() == Causality::Parameter && !matches!(row.kind(), Kind::String(_));
+    let rows = Harvester::variables().iter().filter(is_of_the_tables).map(Variable::name);
+    assert_eq!(sorted(rows), sorted(names));
+}
+
+fn sorted<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names: Vec<_> = names.collect();
+    names.sort_unstable();
+    names
 }
 
 /// Starts; enough to find each dependency on an input.

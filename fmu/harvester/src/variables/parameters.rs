@@ -147,14 +147,3 @@ const fn is_same(a: &str, b: &str) -> bool {
     }
     same == a.len() && same == b.len()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_rows_have_the_order_and_the_names_of_the_tables_of_the_model() {
-        let names = Parameters::TABLE.iter().map(|it| it.name).chain(Parameters::CHOICES.iter().map(|it| it.name));
-        assert!(REALS.iter().chain(&CHOICES).map(Variable::name).eq(names));
-    }
-}
