@@ -35,8 +35,8 @@ usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
 
-Runs the stages named one after the other; without a name, setup and then those of these that have not passed yet on the same files,
-two at a time, and again alone what failed so:
+Runs the stages named one after the other; without a name, setup while the tests are compiled, and then those of these that have not
+passed yet on the same files, two at a time, and again alone what failed so:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   unit         the tests of all Rust packages, but for the slow ones
   lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
@@ -231,6 +231,11 @@ lint_workflows() {
 # Examples have no tests, and the stage lint compiles them.
 readonly TESTED=(--workspace --tests)
 
+# Needs nothing of what setup installs.
+stage_compile() {
+    run cargo test --quiet "${TESTED[@]}" --no-run
+}
+
 stage_unit() {
     run cargo test "${TESTED[@]}"
     run cargo test --workspace --doc
@@ -308,11 +313,11 @@ stage_browser() {
     run "$VENV/bin/python" -m pytest tests/browser
 }
 
-# mdBook is built from source once and then kept in target/tools.
+# mdBook is built from source once and then kept in target/tools; it is built faster than optimised by more than it takes longer.
 stage_book() {
     need_python
     run cargo test --workspace --test book -- --ignored # as the stage unit builds it
-    run cargo install --quiet --locked --root target/tools mdbook --version 0.5.4 --no-default-features --features search
+    run env CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --locked --debug --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
     run cargo run --quiet --release -- explore --no-open --output target/book/html/explorer.html
     run "$VENV/bin/python" -m pytest tests/book
@@ -443,6 +448,7 @@ await_stage() {
 # had: it runs again alone, and must pass.
 run_side_by_side() {
     local stage
+    failed=()
     printed=$(mktemp -d)
     trap end_running EXIT
     trap 'exit 130' INT
@@ -458,6 +464,7 @@ run_side_by_side() {
         await_stage
     done
     set +m
+    end_running
     [[ ${#failed[@]} -eq 0 ]] || run_stages "${failed[@]}"
 }
 
@@ -477,7 +484,11 @@ main() {
         echo "=== all passed: $*"
         return
     fi
-    run_stages setup
+    if has_passed unit; then
+        run_stages setup
+    else
+        run_side_by_side setup compile
+    fi
     for stage in "${STAGES[@]:1}"; do
         if has_passed "$stage"; then
             echo "=== $stage: passed before on the same files; ./test.sh $stage runs it again"

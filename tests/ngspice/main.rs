@@ -89,6 +89,7 @@ fn compare(ngspice: &Ngspice, table: &CapacitanceTable, ideal: &Parameters, what
 
 /// On the paper's motion, on a slow transient, and with a ball that comes to rest. `videg crosscheck` has random circuits.
 #[test]
+#[ignore = "slow"]
 fn both_solvers_agree() {
     let Some(ngspice) = ngspice() else { return };
     let fmu = harvester_fmu();
@@ -106,6 +107,7 @@ fn both_solvers_agree() {
 
 /// Films that leak while a membrane waits for the next impact, and such that lose all their charge until then.
 #[test]
+#[ignore = "slow"]
 fn both_solvers_agree_on_films_that_leak() {
     let Some(ngspice) = ngspice() else { return };
     let table = table(&harvester_fmu(), "fig14", 5.0);

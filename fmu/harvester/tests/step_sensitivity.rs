@@ -115,6 +115,7 @@ fn check_step(host: &Host, at: [f64; 2], force: [f64; 2], tally: &mut Tally, wha
 }
 
 #[test]
+#[ignore = "slow"]
 fn derivatives_through_a_step_agree_with_central_differences() {
     let mut random = Random::seeded(7);
     let mut tally = Tally::default();
