@@ -221,4 +221,14 @@ mod tests {
         let exact = model.totals().voltage_gain / 10.0;
         assert!((stepped / exact - 1.0).abs() < 1e-2, "{stepped} V/s against {exact} V/s");
     }
+
+    #[test]
+    #[cfg_attr(miri, ignore = "half a million steps of safe code or more")]
+    fn a_ball_that_rests_counts_an_impact_at_every_step() {
+        let p = parameters("table3-2hz");
+        let found = FixedStep::new(&p, &[p.ball_velocity], FixedStep::PAPER).run([50.0, 100.0])[0];
+        // Without these impacts it is 0.0530 W.
+        assert!((found.power / 0.0612 - 1.0).abs() < 2e-3, "{found:?}");
+        assert!(found.impacts > 1_000_000, "{found:?}");
+    }
 }

@@ -225,6 +225,7 @@ fn an_hour_long_run_loses_nothing_of_the_phase() {
     let mut harvester = Harvester::new(&p, 0.0).unwrap();
     harvester.advance(1.0e6 + 0.125).unwrap(); // a whole number of periods and a quarter
     assert!((harvester.cylinder_velocity() - p.cylinder_amplitude() * TAU * 2.0).abs() < 1e-15);
+    assert_eq!(harvester.next_impact(), None);
 }
 
 #[test]
