@@ -79,7 +79,7 @@ pub struct Brute {
     recorded: Recorded,
     /// External force, N, at t = 0, and its rate, N/s.
     force: [f64; 2],
-    dt: f64,
+    pub dt: f64,
     pub time: f64,
     /// `z_M`, `z_M'`, `z_m`, `z_m'`.
     pub state: [f64; 4],

@@ -92,14 +92,15 @@ pub fn straight_and_split(p: &Parameters, mut cuts: Vec<f64>) -> [Harvester; 2] 
     [straight, split]
 }
 
-/// Compares the motion with that by brute force, impact by impact, while `sensitivity` at a time, s, is below 1e-5: the distance, m,
-/// of two runs that began close to each other.
+/// Compares the motion with that by brute force, m, impact by impact, while `sensitivity` at a time, s, is below 1e-5: the distance,
+/// m, of two runs that began close to each other.
 pub fn follow_brute_force(
     mut harvester: Harvester,
     mut brute: Brute,
+    tolerance: f64,
     sensitivity: impl Fn(f64) -> f64,
 ) -> Result<(), TestCaseError> {
-    let mut impacts = Vec::new();
+    let (mut impacts, mut checked) = (Vec::new(), 0);
     for k in 1..=20 {
         let time = 0.1 * f64::from(k);
         brute.run(time);
@@ -115,19 +116,24 @@ pub fn follow_brute_force(
             break;
         }
         impacts.extend(seen);
+        checked = brute.impacts.len();
         let [z, v, b, w] = brute.state;
         let ours = positions(&harvester);
         let found = (ours[0] - z).abs().max((ours[1] - b).abs());
         prop_assert!(
-            found < 3e-5,
+            found < tolerance,
             "{found:e} m at {time} s, {} impacts\nours   {ours:?}\nbrute  {:?}\n{impacts:?} {:?}",
             impacts.len(),
             [z, b, v, w],
             brute.impacts
         );
     }
-    let resolved = |list: &[(f64, f64)]| list.iter().copied().filter(|(_, speed)| *speed > 1e-2).collect::<Vec<_>>();
-    for (a, b) in resolved(&impacts).iter().zip(&resolved(&brute.impacts)) {
+    // Those of a chattering end are cut off at different depths.
+    let least = 200.0 * brute.dt;
+    let resolved = |list: &[(f64, f64)]| list.iter().copied().filter(|(_, speed)| *speed > least).collect::<Vec<_>>();
+    let (ours, theirs) = (resolved(&impacts), resolved(&brute.impacts[..checked]));
+    prop_assert!(ours.len().abs_diff(theirs.len()) <= 1, "{} against {} impacts", ours.len(), theirs.len());
+    for (a, b) in ours.iter().zip(&theirs) {
         prop_assert!((a.0 - b.0).abs() < 1e-3 && (a.1 - b.1).abs() < 1e-3, "{a:?} {b:?}");
     }
     Ok(())
