@@ -38,38 +38,23 @@ impl CircuitSample {
 
     /// The values as a row of a time series.
     pub fn columns(&self) -> [f64; Self::NAMES.len()] {
-        let Ledger { supply, load, zener, diode, leakage, stored, mechanical, supply_charge, load_charge } =
-            self.ledger;
-        let [left, right] = self.voltage;
-        let energies = [supply, load, zener, diode, stored, mechanical];
-        let mut row = [0.0; Self::NAMES.len()];
-        row[..5].copy_from_slice(&[left, right, self.load_voltage, self.load_current, self.supply_current]);
-        row[5..11].copy_from_slice(&energies);
-        row[11..].copy_from_slice(&[supply_charge, load_charge, leakage]);
-        row
+        let mut sample = *self;
+        sample.places().map(|place| *place)
     }
 
     /// The sample of which these are the [`columns`](Self::columns).
     pub fn from_columns(row: [f64; Self::NAMES.len()]) -> Self {
-        let [
-            left,
-            right,
-            load_voltage,
-            load_current,
-            supply_current,
-            supply,
-            load,
-            zener,
-            diode,
-            stored,
-            mechanical,
-            q_in,
-            q_out,
-            leakage,
-        ] = row;
-        let charges = Ledger { supply_charge: q_in, load_charge: q_out, ..Ledger::default() };
-        let ledger = Ledger { supply, load, zener, diode, leakage, stored, mechanical, ..charges };
-        Self { voltage: [left, right], load_voltage, load_current, supply_current, ledger }
+        let mut sample = Self::default();
+        sample.places().into_iter().zip(row).for_each(|(place, value)| *place = value);
+        sample
+    }
+
+    /// Where the values are that have these [`NAMES`](Self::NAMES).
+    fn places(&mut self) -> [&mut f64; Self::NAMES.len()] {
+        let Self { voltage: [left, right], load_voltage: u, load_current: i, supply_current: i_in, ledger } = self;
+        let Ledger { supply, load, zener, diode, leakage, stored, mechanical, supply_charge: q_in, load_charge: q_out } =
+            ledger;
+        [left, right, u, i, i_in, supply, load, zener, diode, stored, mechanical, q_in, q_out, leakage]
     }
 }
 
