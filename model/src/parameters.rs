@@ -63,45 +63,20 @@ impl Quantity {
 }
 
 macro_rules! parameters {
-    ($($field:ident: $name:literal, $unit:literal, $start:expr, $min:expr, $max:expr, $description:literal;)*) => {
-        /// Parameters of one harvester. Real ones are listed in [`Parameters::TABLE`].
+    (
+        $($field:ident: $name:literal, $unit:literal, $start:expr, $min:expr, $max:expr, $description:literal;)*
+        @choices $($constant:ident, $choice:ident: $type:ty, $label:literal, $first:literal, $about:literal;)*
+    ) => {
+        /// Parameters of one harvester. Real ones are listed in [`Parameters::TABLE`], others in [`Parameters::CHOICES`].
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("`", $name, "` in ", $unit, ": ", $description)] pub $field: f64,)*
-            /// `excitation.kind`: what is prescribed.
-            pub excitation_kind: ExcitationKind,
-            /// `excitation.seed`: seed of the phase noise.
-            pub seed: i32,
-            /// `excitation.noiseModel`: how the phase noise is read.
-            pub noise_model: NoiseModel,
-            /// `initial.outsideGap`: what a start beyond a membrane means.
-            pub outside_gap: OutsideGap,
-            /// `contact.law`: how ball and membrane act on each other.
-            pub contact_law: ContactLaw,
-            /// `contact.reaction`: the contact acts back on the cylinder.
-            pub reaction: bool,
-            /// `contact.electrostaticFeedback`: the Maxwell force acts on the ball.
-            pub electrostatic_feedback: bool,
-            /// `excitation.fileRepeat`: the recording begins again at its end.
-            pub file_repeat: bool,
-            /// `membrane.law`: the force of a membrane over its deflection.
-            pub membrane_law: MembraneLaw,
+            $(#[doc = concat!("`", $label, "`: ", $about)] pub $choice: $type,)*
         }
 
         impl Default for Parameters {
             fn default() -> Self {
-                Self {
-                    $($field: $start,)*
-                    excitation_kind: ExcitationKind::Force,
-                    seed: 1,
-                    noise_model: NoiseModel::Held,
-                    outside_gap: OutsideGap::Project,
-                    contact_law: ContactLaw::Impulsive,
-                    reaction: false,
-                    electrostatic_feedback: false,
-                    file_repeat: false,
-                    membrane_law: MembraneLaw::Power,
-                }
+                Self { $($field: $start,)* $($choice: Item::of($first),)* }
             }
         }
 
@@ -111,6 +86,18 @@ macro_rules! parameters {
                 name: $name, unit: $unit, start: $start, min: $min, max: $max, description: $description,
                 get: |p| p.as_ref().$field, set: |p, value| p.as_mut().$field = value,
             },)*];
+        }
+
+        impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
+            /// Every parameter that chooses or counts, in the order in which the FMU lists them.
+            pub const TABLE: &'static [Self] = &[$(Self::$constant,)*];
+            $(
+                #[doc = concat!("`", $label, "`")]
+                pub const $constant: Self = Self {
+                    name: $label, start: $first, description: $about,
+                    get: |p| p.as_ref().$choice.item(), set: |p, item| p.as_mut().$choice = Item::of(item),
+                };
+            )*
         }
     };
 }
@@ -156,6 +143,69 @@ parameters! {
     ogden_exponent_3: "membrane.ogdenExponent3", "1", 2.0, -20.0, 20.0, "alpha_3: exponent of Ogden's third term";
     viscous_modulus: "membrane.viscousModulus", "Pa", 0.0, 0.0, 1e12, "mu_v: shear modulus of a Maxwell branch beside the film (membrane.law = gent or ogden, contact.law = compliant), whose losses take the place of membrane.restitution; 0: none";
     relaxation_time: "membrane.relaxationTime", "s", 0.0, 0.0, 1e9, "tau: relaxation time of the Maxwell branch, at least 1e-6 s; 0: no branch";
+
+    @choices
+    SEED, seed: i32, "excitation.seed", 1, "Seed of the phase noise: equal seeds, equal noise";
+    NOISE_MODEL, noise_model: NoiseModel, "excitation.noiseModel", 1, "How the phase noise is read, Section 5.2";
+    OUTSIDE_GAP, outside_gap: OutsideGap, "initial.outsideGap", 1, "Meaning of a start beyond a membrane, as in Fig. 12";
+    CONTACT_LAW, contact_law: ContactLaw, "contact.law", 1, "Law of the contact between ball and membrane, Section 3.2";
+    ELECTROSTATIC_FEEDBACK, electrostatic_feedback: bool, "contact.electrostaticFeedback", 0, "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in Section 2.1";
+    REACTION, reaction: bool, "contact.reaction", 0, "The ball acts back on the cylinder, so that impacts keep the momentum; Section 3.2 neglects it: m / M is small";
+    EXCITATION_KIND, excitation_kind: ExcitationKind, "excitation.kind", 1, "What is prescribed: the force on the cylinder, Eq. (7), or its acceleration, as a shaker does";
+    FILE_REPEAT, file_repeat: bool, "excitation.fileRepeat", 0, "The recording begins again where it ends; otherwise there is nothing after its last sample";
+    MEMBRANE_LAW, membrane_law: MembraneLaw, "membrane.law", 1, "Force of a membrane over its deflection: Eq. (2), measured, or that of a film by virtual work";
+}
+
+/// What a [`Choice`] chooses.
+trait Item: Sized {
+    /// Its number.
+    fn item(self) -> i32;
+
+    /// What has this number.
+    fn of(item: i32) -> Self;
+}
+
+impl Item for i32 {
+    fn item(self) -> i32 {
+        self
+    }
+
+    fn of(item: i32) -> Self {
+        item
+    }
+}
+
+impl Item for bool {
+    fn item(self) -> i32 {
+        i32::from(self)
+    }
+
+    fn of(item: i32) -> Self {
+        item != 0
+    }
+}
+
+/// Items in the order of their numbers.
+macro_rules! items {
+    ($($type:ident: $($item:ident)*, $last:ident;)*) => {$(
+        impl Item for $type {
+            fn item(self) -> i32 {
+                (1..).zip([$(Self::$item,)* Self::$last]).find(|(_, it)| *it == self).map_or(1, |(number, _)| number)
+            }
+
+            fn of(item: i32) -> Self {
+                (1..).zip([$(Self::$item,)*]).find(|(number, _)| *number == item).map_or(Self::$last, |(_, it)| it)
+            }
+        }
+    )*};
+}
+
+items! {
+    ExcitationKind: Force, Motion;
+    NoiseModel: Held, Wiener;
+    OutsideGap: Project, Free;
+    ContactLaw: Impulsive, Compliant;
+    MembraneLaw: Power Table Gent, Ogden;
 }
 
 /// What the excitation prescribes.
@@ -205,124 +255,6 @@ pub enum MembraneLaw {
     Gent,
     /// Virtual work of a film after Ogden.
     Ogden,
-}
-
-impl MembraneLaw {
-    /// All laws, in the order of their numbers.
-    const ALL: [Self; 4] = [Self::Power, Self::Table, Self::Gent, Self::Ogden];
-
-    /// Its number, from 1.
-    fn item(self) -> i32 {
-        match self {
-            Self::Power => 1,
-            Self::Table => 2,
-            Self::Gent => 3,
-            Self::Ogden => 4,
-        }
-    }
-}
-
-impl<P: AsRef<Parameters> + AsMut<Parameters> + 'static> Choice<P> {
-    /// Every parameter that chooses or counts, in the order in which the FMU lists them.
-    pub const TABLE: &'static [Self] = &[
-        Self::SEED,
-        Self::NOISE_MODEL,
-        Self::OUTSIDE_GAP,
-        Self::CONTACT_LAW,
-        Self::ELECTROSTATIC_FEEDBACK,
-        Self::REACTION,
-        Self::EXCITATION_KIND,
-        Self::FILE_REPEAT,
-        Self::MEMBRANE_LAW,
-    ];
-
-    /// `membrane.law`
-    pub const MEMBRANE_LAW: Self = Self {
-        name: "membrane.law",
-        start: 1,
-        description: "Force of a membrane over its deflection: Eq. (2), measured, or that of a film by virtual work",
-        get: |p| p.as_ref().membrane_law.item(),
-        set: |p, item| {
-            let law = MembraneLaw::ALL.into_iter().find(|law| law.item() == item);
-            p.as_mut().membrane_law = law.unwrap_or(MembraneLaw::Ogden);
-        },
-    };
-
-    /// `excitation.fileRepeat`
-    pub const FILE_REPEAT: Self = Self {
-        name: "excitation.fileRepeat",
-        start: 0,
-        description: "The recording begins again where it ends; otherwise there is nothing after its last sample",
-        get: |p| i32::from(p.as_ref().file_repeat),
-        set: |p, on| p.as_mut().file_repeat = on != 0,
-    };
-
-    /// `excitation.kind`
-    pub const EXCITATION_KIND: Self = Self {
-        name: "excitation.kind",
-        start: 1,
-        description: "What is prescribed: the force on the cylinder, Eq. (7), or its acceleration, as a shaker does",
-        get: |p| if p.as_ref().excitation_kind == ExcitationKind::Force { 1 } else { 2 },
-        set: |p, item| {
-            p.as_mut().excitation_kind = if item == 1 { ExcitationKind::Force } else { ExcitationKind::Motion };
-        },
-    };
-
-    /// `excitation.seed`
-    pub const SEED: Self = Self {
-        name: "excitation.seed",
-        start: 1,
-        description: "Seed of the phase noise: equal seeds, equal noise",
-        get: |p| p.as_ref().seed,
-        set: |p, seed| p.as_mut().seed = seed,
-    };
-
-    /// `excitation.noiseModel`
-    pub const NOISE_MODEL: Self = Self {
-        name: "excitation.noiseModel",
-        start: 1,
-        description: "How the phase noise is read, Section 5.2",
-        get: |p| if p.as_ref().noise_model == NoiseModel::Held { 1 } else { 2 },
-        set: |p, item| p.as_mut().noise_model = if item == 1 { NoiseModel::Held } else { NoiseModel::Wiener },
-    };
-
-    /// `initial.outsideGap`
-    pub const OUTSIDE_GAP: Self = Self {
-        name: "initial.outsideGap",
-        start: 1,
-        description: "Meaning of a start beyond a membrane, as in Fig. 12",
-        get: |p| if p.as_ref().outside_gap == OutsideGap::Project { 1 } else { 2 },
-        set: |p, item| p.as_mut().outside_gap = if item == 1 { OutsideGap::Project } else { OutsideGap::Free },
-    };
-
-    /// `contact.law`
-    pub const CONTACT_LAW: Self = Self {
-        name: "contact.law",
-        start: 1,
-        description: "Law of the contact between ball and membrane, Section 3.2",
-        get: |p| if p.as_ref().contact_law == ContactLaw::Impulsive { 1 } else { 2 },
-        set: |p, item| p.as_mut().contact_law = if item == 1 { ContactLaw::Impulsive } else { ContactLaw::Compliant },
-    };
-
-    /// `contact.electrostaticFeedback`
-    pub const ELECTROSTATIC_FEEDBACK: Self = Self {
-        name: "contact.electrostaticFeedback",
-        start: 0,
-        description: "The Maxwell force 1/2 U^2 dC/dx of the connected voltages acts on the ball; neglected in \
-                      Section 2.1",
-        get: |p| i32::from(p.as_ref().electrostatic_feedback),
-        set: |p, on| p.as_mut().electrostatic_feedback = on != 0,
-    };
-
-    /// `contact.reaction`
-    pub const REACTION: Self = Self {
-        name: "contact.reaction",
-        start: 0,
-        description: "The ball acts back on the cylinder, so that impacts keep the momentum; Section 3.2 neglects it: m / M is \
-                      small",
-        get: |p| i32::from(p.as_ref().reaction),
-        set: |p, on| p.as_mut().reaction = on != 0,
-    };
 }
 
 impl AsRef<Self> for Parameters {
