@@ -213,7 +213,7 @@ impl Tangent {
         self.of(|change| change.incline)
     }
 
-    fn membrane(&self) -> Option<&MembraneChange> {
+    pub fn membrane(&self) -> Option<&MembraneChange> {
         self.parameters.as_ref().map(|change| &change.membrane)
     }
 }
@@ -305,16 +305,4 @@ impl Tangential<'_> {
         let displacement = to - from - velocity * elapsed + by_gravity + side.sign() * self.tangent.half_travel();
         self.delay_by(displacement, hit, speed)
     }
-}
-
-/// Changes of what a membrane shows at its present deflection, m, when that changes by `change`, m: area ratio, stretch, field per
-/// volt and capacitance.
-pub fn membrane_changes(membrane: &Membrane, tangent: &Tangent, deflection: f64, change: f64) -> [f64; 4] {
-    let by = tangent.membrane();
-    [
-        membrane.area_change(deflection, change, by),
-        membrane.stretch_change(deflection, change, by),
-        membrane.field_change(deflection, change, by),
-        membrane.capacitance_change(deflection, change, by),
-    ]
 }

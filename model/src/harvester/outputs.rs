@@ -8,7 +8,7 @@ use crate::motion::Ball;
 use crate::motion::pulse::{Deflection, Pulse};
 use crate::motion::side::Side;
 use crate::parameters::{ContactLaw, ExcitationKind, Parameters};
-use crate::sensitivity::{Sensitivities, membrane_changes};
+use crate::sensitivity::Sensitivities;
 
 impl Harvester {
     /// The parameters.
@@ -243,7 +243,7 @@ impl Harvester {
         let deflection = Side::BOTH.map(|side| self.pulses.change_at(side, time, shape));
         let of_membranes = Side::BOTH.map(|side| {
             let value = self.deflection(side).value;
-            membrane_changes(&self.membrane, &self.tangent, value, deflection[side.index()])
+            self.membrane.shown_changes(value, deflection[side.index()], self.tangent.membrane())
         });
         let of_membrane = |k: usize| of_membranes.map(|of_membrane| of_membrane[k]);
         let acceleration = changes.acceleration_change(time);

@@ -58,28 +58,19 @@ impl Membrane {
         if peak > 0.0 { peak * (2.0 / power * speed_change / speed + by_membrane) } else { 0.0 }
     }
 
-    /// Change of `A_3` / `A_2` at `deflection`, m, when that changes by `deflection_change`, m.
-    pub(crate) fn area_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
-        let by_deflection = self.area_slope(deflection) * deflection_change;
-        by_deflection + change.map_or(0.0, |change| self.area_change_by_geometry(deflection, change))
-    }
-
-    /// Change of lambda sqrt(`A_3` / `A_2`) at `deflection`, m, when that changes by `deflection_change`, m.
-    pub(crate) fn stretch_change(
-        &self,
-        deflection: f64,
-        deflection_change: f64,
-        change: Option<&MembraneChange>,
-    ) -> f64 {
+    /// Changes of what it shows at `deflection`, m, when that changes by `by`, m: `A_3` / `A_2`, lambda sqrt(`A_3` / `A_2`), the field
+    /// per volt 1 / `h_3`, 1/m, and the capacitance, F.
+    pub(crate) fn shown_changes(&self, deflection: f64, by: f64, change: Option<&MembraneChange>) -> [f64; 4] {
+        let of = |of_change: &dyn Fn(&MembraneChange) -> f64| change.map_or(0.0, of_change);
         let root = self.area_ratio(deflection).sqrt();
-        let by_area = 0.5 * self.prestretch / root * self.area_change(deflection, deflection_change, change);
-        by_area + change.map_or(0.0, |change| change.prestretch * root)
-    }
-
-    /// Change of 1 / `h_3`, 1/m, the field per volt, at `deflection`, m, when that changes by `deflection_change`, m.
-    pub(crate) fn field_change(&self, deflection: f64, deflection_change: f64, change: Option<&MembraneChange>) -> f64 {
-        let by_area = self.area_change(deflection, deflection_change, change) / self.thickness;
-        by_area - change.map_or(0.0, |change| change.log_thickness / self.thickness_at(deflection))
+        let area = self.area_slope(deflection) * by + of(&|change| self.area_change_by_geometry(deflection, change));
+        let rest = of(&|change| change.rest_capacitance * (1.0 + self.capacitance_excess(deflection)));
+        [
+            area,
+            0.5 * self.prestretch / root * area + of(&|change| change.prestretch * root),
+            area / self.thickness - of(&|change| change.log_thickness / self.thickness_at(deflection)),
+            rest + self.rest_capacitance * self.excess_change(deflection, by, change),
+        ]
     }
 
     /// The change of `A_3` / `A_2` at a given deflection. Eq. (5), `R_2` sin(alpha) - (delta - `r_b`) cos(alpha) = `r_b`,
@@ -110,17 +101,6 @@ impl Membrane {
     pub(crate) fn excess_change_by_geometry(&self, deflection: f64, change: Option<&MembraneChange>) -> f64 {
         let by_geometry = |change| 2.0 * self.area_ratio(deflection) * self.area_change_by_geometry(deflection, change);
         change.map_or(0.0, by_geometry)
-    }
-
-    /// Change of the capacitance, F, at `deflection`, m, when that changes by `deflection_change`, m.
-    pub(crate) fn capacitance_change(
-        &self,
-        deflection: f64,
-        deflection_change: f64,
-        change: Option<&MembraneChange>,
-    ) -> f64 {
-        let rest = change.map_or(0.0, |change| change.rest_capacitance * (1.0 + self.capacitance_excess(deflection)));
-        rest + self.rest_capacitance * self.excess_change(deflection, deflection_change, change)
     }
 
     /// Change of [`Membrane::excess_of_chatter`] when the first `speed` changes by `speed_change` and the `restitution` by
@@ -167,13 +147,14 @@ mod tests {
         let change = Some(&change);
         let peak = membrane.deflection(speed);
         let peak_change = membrane.deflection_change(speed, peak, speed_change, change);
+        let [area, stretch, field, capacitance] = membrane.shown_changes(peak, peak_change, change);
         let r = p.restitution;
         [
             [peak, peak_change],
-            [membrane.area_ratio(peak), membrane.area_change(peak, peak_change, change)],
-            [membrane.capacitance(peak), membrane.capacitance_change(peak, peak_change, change)],
-            [membrane.stretch(peak), membrane.stretch_change(peak, peak_change, change)],
-            [membrane.field(peak, 1.0), membrane.field_change(peak, peak_change, change)],
+            [membrane.area_ratio(peak), area],
+            [membrane.capacitance(peak), capacitance],
+            [membrane.stretch(peak), stretch],
+            [membrane.field(peak, 1.0), field],
             [
                 membrane.excess_of_chatter(speed, r),
                 membrane.excess_of_chatter_change(speed, r, speed_change, d.restitution, change),
