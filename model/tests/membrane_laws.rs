@@ -1,8 +1,12 @@
 //! Laws of the membrane: tables of Eq. (2), films of Gent and Ogden.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/brute.rs"]
+mod brute;
+
 use core::f64::consts::PI;
 
+use brute::rk4;
 use proptest::prelude::*;
 use videg_model::{Case, ContactLaw, Direction, ForceTable, Harvester, Membrane, MembraneLaw, Parameters, Setup, Side};
 
@@ -95,19 +99,12 @@ fn stress(p: &Parameters, stretch: f64) -> f64 {
 /// Time from the impact to the largest deflection, s, and deflections at eighths of it, m, by brute force.
 fn brute_force(membrane: &Membrane, mass: f64, speed: f64, end: f64) -> Vec<f64> {
     const STEPS: u32 = 4000;
-    let h = end / f64::from(STEPS);
-    let acceleration = |x: f64| -membrane.force(x) / mass;
-    let (mut x, mut v, mut found) = (0.0, speed, Vec::new());
+    let slope = |_, [x, v]: [f64; 2]| [v, -membrane.force(x) / mass];
+    let (mut state, mut found) = ([0.0, speed], Vec::new());
     for step in 1..=STEPS {
-        let (a1, x2, v2) = (acceleration(x), x + 0.5 * h * v, v + 0.5 * h * acceleration(x));
-        let a2 = acceleration(x2);
-        let (x3, v3) = (x + 0.5 * h * v2, v + 0.5 * h * a2);
-        let a3 = acceleration(x3);
-        let (x4, v4) = (x + h * v3, v + h * a3);
-        x += h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-        v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + acceleration(x4));
+        state = rk4(slope, 0.0, state, end / f64::from(STEPS));
         if step % (STEPS / 8) == 0 {
-            found.push(x);
+            found.push(state[0]);
         }
     }
     found

@@ -7,7 +7,7 @@ mod brute;
 #[path = "common/mounts.rs"]
 mod mounts;
 
-use brute::{Recorded, small_steps};
+use brute::{Recorded, rk4, small_steps};
 use mounts::{any_mount, compliant, follow_small_steps, positions, sensitivity};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -56,18 +56,9 @@ fn elastic(p: &Parameters, until: f64, steps: u32) -> [f64; 4] {
             - p.suspension_damping * v;
         [v, w, (force - contact) / p.cylinder_mass, contact / p.ball_mass - p.gravity * p.inclination.sin()]
     };
-    let plus = |s: [f64; 4], k: [f64; 4], h: f64| -> [f64; 4] { std::array::from_fn(|i| s[i] + h * k[i]) };
     let h = until / f64::from(steps);
-    let mut s = [p.cylinder_position, p.ball_position, p.cylinder_velocity, p.ball_velocity];
-    for k in 0..steps {
-        let t = h * f64::from(k);
-        let k1 = slope(t, s);
-        let k2 = slope(t + 0.5 * h, plus(s, k1, 0.5 * h));
-        let k3 = slope(t + 0.5 * h, plus(s, k2, 0.5 * h));
-        let k4 = slope(t + h, plus(s, k3, h));
-        s = std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
-    }
-    s
+    let start = [p.cylinder_position, p.ball_position, p.cylinder_velocity, p.ball_velocity];
+    (0..steps).fold(start, |s, k| rk4(slope, h * f64::from(k), s, h))
 }
 
 proptest! {

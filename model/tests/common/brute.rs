@@ -63,6 +63,16 @@ impl Recorded {
     }
 }
 
+/// A step, of length `h`, of the fourth order of Runge and Kutta.
+pub fn rk4<const N: usize>(slope: impl Fn(f64, [f64; N]) -> [f64; N], t: f64, s: [f64; N], h: f64) -> [f64; N] {
+    let plus = |k: [f64; N], h: f64| -> [f64; N] { std::array::from_fn(|i| s[i] + h * k[i]) };
+    let k1 = slope(t, s);
+    let k2 = slope(t + 0.5 * h, plus(k1, 0.5 * h));
+    let k3 = slope(t + 0.5 * h, plus(k2, 0.5 * h));
+    let k4 = slope(t + h, plus(k3, h));
+    std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+}
+
 /// What the ball does, in the brute-force integration.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Mode {
@@ -143,13 +153,7 @@ impl Brute {
             let [a, b] = self.accelerations(time, s, self.mode);
             [s[1], a, s[3], b]
         };
-        let plus = |s: [f64; 4], k: [f64; 4], h: f64| -> [f64; 4] { std::array::from_fn(|i| s[i] + h * k[i]) };
-        let (t, s) = (self.time, self.state);
-        let k1 = slope(t, s);
-        let k2 = slope(t + 0.5 * h, plus(s, k1, 0.5 * h));
-        let k3 = slope(t + 0.5 * h, plus(s, k2, 0.5 * h));
-        let k4 = slope(t + h, plus(s, k3, h));
-        std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+        rk4(slope, self.time, self.state, h)
     }
 
     /// Force over m on a ball that moves with the cylinder.
