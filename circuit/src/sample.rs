@@ -78,6 +78,9 @@ mod tests {
     fn a_row_of_numbers_makes_the_sample_that_made_it() {
         let mut row = [0.0; CircuitSample::NAMES.len()];
         row.iter_mut().enumerate().for_each(|(k, value)| *value = k as f64);
-        assert_eq!(CircuitSample::from_columns(row).columns(), row);
+        let sample = CircuitSample::from_columns(row);
+        assert_eq!(sample.columns(), row);
+        let CircuitSample { voltage, load_current, ledger, .. } = sample;
+        assert_eq!([voltage[1], load_current, ledger.stored, ledger.leakage], [1.0, 3.0, 9.0, 13.0]);
     }
 }
