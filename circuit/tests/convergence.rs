@@ -4,7 +4,7 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{Ramp, moved, run};
+use common::{Ramp, decades, kinds, moved, run};
 use proptest::prelude::*;
 use videg_circuit::{Circuit, DiodeParameters, Diodes, Parameters, Release, Solver, Topology};
 
@@ -15,25 +15,8 @@ fn exponential(ideal: Parameters, relative_tolerance: f64) -> Parameters {
     Parameters { diodes: Diodes::Exponential(DiodeParameters { solver, ..DiodeParameters::default() }), ..ideal }
 }
 
-fn variants() -> Vec<(Topology, Release)> {
-    [Topology::SharedNode, Topology::Isolated]
-        .into_iter()
-        .flat_map(|topology| [Release::Zener, Release::Switch, Release::Storage].map(|release| (topology, release)))
-        .collect()
-}
-
 fn parameters() -> impl Strategy<Value = Parameters> {
-    let voltage = prop_oneof![Just(2000.0), 2000.0..2600.0_f64];
-    let circuit = (prop::sample::select(variants()), voltage, 8.0..11.0_f64, common::leakage(-2.0..2.0));
-    circuit.prop_map(|((topology, release), voltage, decades, time_constant)| Parameters {
-        leakage_time_constant: time_constant,
-        zener_voltage: voltage,
-        storage_voltage: voltage,
-        load_resistance: 10.0_f64.powf(decades),
-        topology,
-        release,
-        ..Parameters::default()
-    })
+    common::parameters(kinds(), 1.3, decades(8.0..11.0), common::leakage(-2.0..2.0))
 }
 
 /// Pulses `C2 + dC sin^n` of 200 ramps on alternating membranes, as of impacts, with rests between; all of them reach
@@ -111,14 +94,12 @@ proptest! {
 
     #[test]
     fn contacts_that_grow_150_fold_to_300_kv_are_followed(
-        (topology, release) in prop::sample::select(variants()),
-        decades in 8.0..13.0_f64,
+        (topology, release) in prop::sample::select(kinds()),
+        load_resistance in decades(8.0..13.0),
         emission in prop_oneof![Just(0.01), Just(1e-5)],
         contacts in prop::collection::vec((0.01..1.0_f64, 1e-4..2e-2_f64, 0.0..1.0_f64, 0_usize..2), 1000..1500),
     ) {
-        let ideal = Parameters {
-            load_resistance: 10.0_f64.powf(decades), topology, release, ..Parameters::default()
-        };
+        let ideal = Parameters { load_resistance, topology, release, ..Parameters::default() };
         let rest = 7e-12;
         let mut ramps = Vec::new();
         for (height, length, pause, side) in contacts {

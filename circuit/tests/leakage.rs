@@ -4,10 +4,9 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{Ramp, moved, pulse, run};
+use common::{Ramp, TOPOLOGIES, U, kinds, moved, pulse, run};
 use videg_circuit::{Circuit, DiodeParameters, Diodes, Ledger, Parameters, Release, Topology};
 
-const U: f64 = 2000.0;
 const C: [f64; 2] = [15e-12, 12e-12];
 const OPEN: f64 = f64::INFINITY;
 
@@ -22,11 +21,7 @@ fn models(ideal: Parameters) -> [(Parameters, f64); 2] {
 
 /// All circuits, each with how exact it is.
 fn circuits(base: Parameters) -> impl Iterator<Item = (Parameters, f64)> {
-    [Topology::SharedNode, Topology::Isolated].into_iter().flat_map(move |topology| {
-        [Release::Zener, Release::Switch, Release::Storage]
-            .into_iter()
-            .flat_map(move |release| models(Parameters { topology, release, ..base }))
-    })
+    kinds().into_iter().flat_map(move |(topology, release)| models(Parameters { topology, release, ..base }))
 }
 
 fn assert_closed(ledger: &Ledger) {
@@ -35,7 +30,7 @@ fn assert_closed(ledger: &Ledger) {
 
 #[test]
 fn a_charged_membrane_at_rest_decays_until_the_supply_holds_it() {
-    for topology in [Topology::SharedNode, Topology::Isolated] {
+    for topology in TOPOLOGIES {
         for (parameters, exact) in models(Parameters { topology, zener_voltage: 5000.0, ..leaking(3.0) }) {
             let start = 3000.0;
             let mut circuit = Circuit::with_voltages(parameters, C, [start; 2]).unwrap();
@@ -145,16 +140,18 @@ fn an_endless_time_constant_is_none_and_a_long_one_tends_to_it() {
 }
 
 #[test]
-fn a_leaking_circuit_goes_on_from_its_state_to_the_last_bit() {
+fn a_circuit_goes_on_from_its_state_to_the_last_bit() {
     let ramps = pulse(C, 12e-12, 0.03, 0.25, 50);
-    for (parameters, _) in circuits(Parameters { load_resistance: 1e10, ..leaking(0.3) }) {
-        let mut circuit = Circuit::new(parameters, C).unwrap();
-        run(&mut circuit, &ramps[..30]);
-        let mut other = Circuit::new(parameters, C).unwrap();
-        other.restore(&circuit.state()).unwrap();
-        run(&mut circuit, &ramps[30..]);
-        run(&mut other, &ramps[30..]);
-        assert_eq!(circuit, other);
-        assert!(circuit.ledger().leakage > 0.0);
+    for time_constant in [0.0, 0.3] {
+        for (parameters, _) in circuits(Parameters { load_resistance: 1e10, ..leaking(time_constant) }) {
+            let mut circuit = Circuit::new(parameters, C).unwrap();
+            run(&mut circuit, &ramps[..30]);
+            let mut other = Circuit::new(parameters, [1e-12; 2]).unwrap();
+            other.restore(&circuit.state()).unwrap();
+            run(&mut circuit, &ramps);
+            run(&mut other, &ramps);
+            assert_eq!(circuit, other);
+            assert_eq!(circuit.ledger().leakage > 0.0, time_constant > 0.0);
+        }
     }
 }

@@ -71,9 +71,40 @@ pub fn moved(ledger: &Ledger) -> f64 {
         + ledger.stored.abs()
 }
 
+/// Every circuit: topology and release.
+pub fn kinds() -> Vec<(Topology, Release)> {
+    let releases = [Release::Zener, Release::Switch, Release::Storage];
+    TOPOLOGIES.into_iter().flat_map(|topology| releases.map(|release| (topology, release))).collect()
+}
+
+/// A value of these decades.
+pub fn decades(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    range.prop_map(|d| 10.0_f64.powf(d))
+}
+
+/// Any of the `kinds` that releases at the supply voltage, or at up to `most` times that, with a load, ohm, and a time constant of the
+/// leakage, s.
+pub fn parameters(
+    kinds: Vec<(Topology, Release)>,
+    most: f64,
+    load: impl Strategy<Value = f64>,
+    leakage: impl Strategy<Value = f64>,
+) -> impl Strategy<Value = Parameters> {
+    let circuit = (prop::sample::select(kinds), prop_oneof![Just(U), U..U * most], load, leakage);
+    circuit.prop_map(|((topology, release), voltage, load_resistance, leakage_time_constant)| Parameters {
+        zener_voltage: voltage,
+        storage_voltage: voltage,
+        load_resistance,
+        leakage_time_constant,
+        topology,
+        release,
+        ..Parameters::default()
+    })
+}
+
 /// No leakage in half of the cases, else time constants (s) of these decades.
-pub fn leakage(decades: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
-    prop_oneof![Just(0.0), decades.prop_map(|d| 10.0_f64.powf(d))]
+pub fn leakage(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), decades(range)]
 }
 
 /// The sums of the independent solver: supply charge, load charge, energies of load, Zener diodes and leakage, final charges.
