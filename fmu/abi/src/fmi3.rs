@@ -107,7 +107,8 @@ pub type fmi3UnlockPreemptionCallback = Option<unsafe extern "C" fn()>;
 /// `status` take an instance first and return a status.
 #[macro_export]
 macro_rules! functions3 {
-    ([$($callback:tt)*] $($tokens:tt)*) => {
+    (@types [$($callback:tt)*] [$($tokens:tt)*]
+     $($get:ident $get_type:ident $set:ident $set_type:ident $kind:ident;)*) => {
         $($callback)*! {
             $($tokens)*;
             create {
@@ -146,54 +147,9 @@ macro_rules! functions3 {
                 fmi3EnterEventMode fmi3EnterEventModeTYPE();
                 fmi3Terminate fmi3TerminateTYPE();
                 fmi3Reset fmi3ResetTYPE();
-                fmi3GetFloat32 fmi3GetFloat32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Float32,
-                    nValues: usize
-                );
-                fmi3GetFloat64 fmi3GetFloat64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Float64,
-                    nValues: usize
-                );
-                fmi3GetInt8 fmi3GetInt8TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Int8,
-                    nValues: usize
-                );
-                fmi3GetUInt8 fmi3GetUInt8TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3UInt8,
-                    nValues: usize
-                );
-                fmi3GetInt16 fmi3GetInt16TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Int16,
-                    nValues: usize
-                );
-                fmi3GetUInt16 fmi3GetUInt16TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3UInt16,
-                    nValues: usize
-                );
-                fmi3GetInt32 fmi3GetInt32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Int32,
-                    nValues: usize
-                );
-                fmi3GetUInt32 fmi3GetUInt32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3UInt32,
-                    nValues: usize
-                );
-                fmi3GetInt64 fmi3GetInt64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Int64,
-                    nValues: usize
-                );
-                fmi3GetUInt64 fmi3GetUInt64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3UInt64,
-                    nValues: usize
-                );
-                fmi3GetBoolean fmi3GetBooleanTYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Boolean,
-                    nValues: usize
-                );
-                fmi3GetString fmi3GetStringTYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3String,
-                    nValues: usize
-                );
+                $($get $get_type(
+                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut $kind, nValues: usize
+                );)*
                 fmi3GetBinary fmi3GetBinaryTYPE(
                     valueReferences: *const fmi3ValueReference, nValueReferences: usize, valueSizes: *mut usize,
                     values: *mut fmi3Binary, nValues: usize
@@ -201,54 +157,9 @@ macro_rules! functions3 {
                 fmi3GetClock fmi3GetClockTYPE(
                     valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *mut fmi3Clock
                 );
-                fmi3SetFloat32 fmi3SetFloat32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Float32,
-                    nValues: usize
-                );
-                fmi3SetFloat64 fmi3SetFloat64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Float64,
-                    nValues: usize
-                );
-                fmi3SetInt8 fmi3SetInt8TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Int8,
-                    nValues: usize
-                );
-                fmi3SetUInt8 fmi3SetUInt8TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3UInt8,
-                    nValues: usize
-                );
-                fmi3SetInt16 fmi3SetInt16TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Int16,
-                    nValues: usize
-                );
-                fmi3SetUInt16 fmi3SetUInt16TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3UInt16,
-                    nValues: usize
-                );
-                fmi3SetInt32 fmi3SetInt32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Int32,
-                    nValues: usize
-                );
-                fmi3SetUInt32 fmi3SetUInt32TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3UInt32,
-                    nValues: usize
-                );
-                fmi3SetInt64 fmi3SetInt64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Int64,
-                    nValues: usize
-                );
-                fmi3SetUInt64 fmi3SetUInt64TYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3UInt64,
-                    nValues: usize
-                );
-                fmi3SetBoolean fmi3SetBooleanTYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3Boolean,
-                    nValues: usize
-                );
-                fmi3SetString fmi3SetStringTYPE(
-                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const fmi3String,
-                    nValues: usize
-                );
+                $($set $set_type(
+                    valueReferences: *const fmi3ValueReference, nValueReferences: usize, values: *const $kind, nValues: usize
+                );)*
                 fmi3SetBinary fmi3SetBinaryTYPE(
                     valueReferences: *const fmi3ValueReference, nValueReferences: usize, valueSizes: *const usize,
                     values: *const fmi3Binary, nValues: usize
@@ -362,19 +273,23 @@ macro_rules! functions3 {
             }
         }
     };
+    ([$($callback:tt)*] $($tokens:tt)*) => {
+        $crate::functions3! {
+            @types [$($callback)*] [$($tokens)*]
+            fmi3GetFloat32 fmi3GetFloat32TYPE fmi3SetFloat32 fmi3SetFloat32TYPE fmi3Float32;
+            fmi3GetFloat64 fmi3GetFloat64TYPE fmi3SetFloat64 fmi3SetFloat64TYPE fmi3Float64;
+            fmi3GetInt8 fmi3GetInt8TYPE fmi3SetInt8 fmi3SetInt8TYPE fmi3Int8;
+            fmi3GetUInt8 fmi3GetUInt8TYPE fmi3SetUInt8 fmi3SetUInt8TYPE fmi3UInt8;
+            fmi3GetInt16 fmi3GetInt16TYPE fmi3SetInt16 fmi3SetInt16TYPE fmi3Int16;
+            fmi3GetUInt16 fmi3GetUInt16TYPE fmi3SetUInt16 fmi3SetUInt16TYPE fmi3UInt16;
+            fmi3GetInt32 fmi3GetInt32TYPE fmi3SetInt32 fmi3SetInt32TYPE fmi3Int32;
+            fmi3GetUInt32 fmi3GetUInt32TYPE fmi3SetUInt32 fmi3SetUInt32TYPE fmi3UInt32;
+            fmi3GetInt64 fmi3GetInt64TYPE fmi3SetInt64 fmi3SetInt64TYPE fmi3Int64;
+            fmi3GetUInt64 fmi3GetUInt64TYPE fmi3SetUInt64 fmi3SetUInt64TYPE fmi3UInt64;
+            fmi3GetBoolean fmi3GetBooleanTYPE fmi3SetBoolean fmi3SetBooleanTYPE fmi3Boolean;
+            fmi3GetString fmi3GetStringTYPE fmi3SetString fmi3SetStringTYPE fmi3String;
+        }
+    };
 }
 
-macro_rules! types {
-    (; create { $($create:tt)* } other { $($other:tt)* } status { $($status:tt)* }) => {
-        types! { $($create)* $($other)* }
-        types! { @status $($status)* }
-    };
-    (@status $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)*) => {
-        types! { $($name $signature(instance: fmi3Instance $(, $argument: $kind)*) -> fmi3Status;)* }
-    };
-    ($($name:ident $signature:ident($($argument:ident: $kind:ty),*) $(-> $ret:ty)?;)*) => {$(
-        #[doc = concat!("`", stringify!($name), "`")]
-        pub type $signature = unsafe extern "C" fn($($argument: $kind),*) $(-> $ret)?;
-    )*};
-}
-functions3!([types]);
+functions3!([types] instance: fmi3Instance, fmi3Status);

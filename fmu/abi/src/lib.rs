@@ -7,6 +7,23 @@
 #![no_std]
 #![allow(non_camel_case_types, non_snake_case, non_upper_case_globals)]
 
+/// The types of all functions. Those outside of `create` and `other` take this instance first and return this status.
+macro_rules! types {
+    ($instance:ident: $instance_type:ty, $status:ty;
+     create { $($create:tt)* } other { $($other:tt)* } $($group:ident { $($functions:tt)* })*) => {
+        types! { $($create)* $($other)* }
+        $(types! { @status $instance: $instance_type, $status; $($functions)* })*
+    };
+    (@status $instance:ident: $instance_type:ty, $status:ty;
+     $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)*) => {
+        types! { $($name $signature($instance: $instance_type $(, $argument: $kind)*) -> $status;)* }
+    };
+    ($($name:ident $signature:ident($($argument:ident: $kind:ty),*) $(-> $ret:ty)?;)*) => {$(
+        #[doc = concat!("`", stringify!($name), "`")]
+        pub type $signature = unsafe extern "C" fn($($argument: $kind),*) $(-> $ret)?;
+    )*};
+}
+
 pub mod describe;
 pub mod fmi3;
 
@@ -207,17 +224,4 @@ macro_rules! functions {
     };
 }
 
-macro_rules! types {
-    (; create { $($create:tt)* } other { $($other:tt)* } common { $($common:tt)* } exchange { $($exchange:tt)* }) => {
-        types! { $($create)* $($other)* }
-        types! { @status $($common)* $($exchange)* }
-    };
-    (@status $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)*) => {
-        types! { $($name $signature(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status;)* }
-    };
-    ($($name:ident $signature:ident($($argument:ident: $kind:ty),*) $(-> $ret:ty)?;)*) => {$(
-        #[doc = concat!("`", stringify!($name), "`")]
-        pub type $signature = unsafe extern "C" fn($($argument: $kind),*) $(-> $ret)?;
-    )*};
-}
-functions!([types]);
+functions!([types] c: fmi2Component, fmi2Status);
