@@ -372,68 +372,16 @@ static DAMPING_POWER: [V; 1] = [V::output("der(energy.damping)", "W", "c z_M'^2:
     .partial_derivative(change!(damping_power))
     .get(|slave| slave.read(videg_model::Harvester::damping_power))];
 
-/// Number of variables.
-const COUNT: usize = PARAMETERS.len()
-    + CHOICES.len()
-    + CALCULATED.len()
-    + INPUTS.len()
-    + LEFT.len()
-    + RIGHT.len()
-    + MOTION.len()
-    + EVENTS.len()
-    + ENERGIES.len()
-    + CONTACT_TIME.len()
-    + LEFT_LOADS.len()
-    + RIGHT_LOADS.len()
-    + DERIVATIVES.len()
-    + TWINS.len()
-    + MOUNT_PARAMETERS.len()
-    + MOUNT_CHOICES.len()
-    + OTHER_ENERGIES.len()
-    + MOUNT.len()
-    + RECORDING_FILE.len()
-    + RECORDING_PARAMETERS.len()
-    + RECORDING_CHOICES.len()
-    + FILM_CHOICES.len()
-    + MEMBRANE_FILE.len()
-    + FILM_PARAMETERS.len()
-    + VISCOUS_PARAMETERS.len()
-    + EFFECTIVE_RESTITUTION.len()
-    + VISCOUS_ENERGY.len()
-    + DAMPING_POWER.len()
-    + KNOWN.len()
-    + IMPACTS.len();
-
-/// The table; the value reference of a variable is its index.
-pub static VARIABLES: [V; COUNT] = concat(&[
-    PARAMETERS,
-    CHOICES,
-    &CALCULATED,
-    &INPUTS,
-    &LEFT,
-    &RIGHT,
-    &MOTION,
-    &EVENTS,
-    &ENERGIES,
-    &CONTACT_TIME,
-    &LEFT_LOADS,
-    &RIGHT_LOADS,
-    &DERIVATIVES,
-    &TWINS,
-    MOUNT_PARAMETERS,
-    MOUNT_CHOICES,
-    &OTHER_ENERGIES,
-    &MOUNT,
-    &RECORDING_FILE,
-    RECORDING_PARAMETERS,
-    RECORDING_CHOICES,
-    FILM_CHOICES,
-    &MEMBRANE_FILE,
-    FILM_PARAMETERS,
-    VISCOUS_PARAMETERS,
-    &EFFECTIVE_RESTITUTION,
-    &VISCOUS_ENERGY,
-    &DAMPING_POWER,
-    &KNOWN,
-    &IMPACTS,
-]);
+/// The table of these groups, in this order.
+macro_rules! table {
+    ($($group:ident)*) => {
+        /// The table; the value reference of a variable is its index.
+        pub static VARIABLES: [V; 0 $(+ $group.len())*] = concat(&[$(&$group),*]);
+    };
+}
+table! {
+    PARAMETERS CHOICES CALCULATED INPUTS LEFT RIGHT MOTION EVENTS ENERGIES CONTACT_TIME LEFT_LOADS RIGHT_LOADS
+    DERIVATIVES TWINS MOUNT_PARAMETERS MOUNT_CHOICES OTHER_ENERGIES MOUNT RECORDING_FILE RECORDING_PARAMETERS
+    RECORDING_CHOICES FILM_CHOICES MEMBRANE_FILE FILM_PARAMETERS VISCOUS_PARAMETERS EFFECTIVE_RESTITUTION VISCOUS_ENERGY
+    DAMPING_POWER KNOWN IMPACTS
+}
