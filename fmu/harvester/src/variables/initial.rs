@@ -2,8 +2,9 @@
 //! starts on a membrane, or is put on it, may hit it at once or rest on it: then initial values are those after the impact.
 //! What shows in the last digits only, as the time of such an impact is rounded, is no dependency.
 
-/// The motion of cylinder and ball without the external force.
-const DRIVE: &[&str] = &[
+/// Whether the ball hits a membrane at the start or rests on it, how fast, and where it is then.
+pub(super) const IMPACT: &[&str] = &[
+    // The motion of cylinder and ball without the external force.
     "cylinder.mass",
     "excitation.amplitude",
     "excitation.frequency",
@@ -25,31 +26,7 @@ const DRIVE: &[&str] = &[
     "excitation.fileScale",
     "excitation.fileOffset",
     "excitation.fileRepeat",
-];
-
-/// Whether the ball hits a membrane at the start or rests on it, how fast, and where it is then.
-pub(super) const IMPACT: &[&str] = &[
-    DRIVE[0],
-    DRIVE[1],
-    DRIVE[2],
-    DRIVE[3],
-    DRIVE[4],
-    DRIVE[5],
-    DRIVE[6],
-    DRIVE[7],
-    DRIVE[8],
-    DRIVE[9],
-    DRIVE[10],
-    DRIVE[11],
-    DRIVE[12],
-    DRIVE[13],
-    DRIVE[14],
-    DRIVE[15],
-    DRIVE[16],
-    DRIVE[17],
-    DRIVE[18],
-    DRIVE[19],
-    DRIVE[20],
+    // How and where they begin, and what they meet.
     "cylinder.length",
     "frame.width",
     "ball.radius",
