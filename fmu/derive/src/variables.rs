@@ -86,66 +86,26 @@ mod tests {
         ] {
             assert_eq!(of(field.clone()), said, "{field}");
         }
-        assert_eq!(
-            refused(&parse_quote!(
-                enum Model {}
-            )),
-            "a model is a struct"
-        );
-        assert_eq!(
-            refused(&parse_quote!(
-                struct Model(f64);
-            )),
-            "a model is a struct whose fields have names"
-        );
-        assert_eq!(
-            refused(&parse_quote!(
-                struct Model<T> {
-                    x: T,
-                }
-            )),
-            "a model has no generic parameters"
-        );
+        for (model, said) in [
+            ("enum Model {}", "a model is a struct"),
+            ("struct Model(f64);", "a model is a struct whose fields have names"),
+            ("struct Model<T> { x: T }", "a model has no generic parameters"),
+        ] {
+            assert_eq!(refused(&syn::parse_str(model).unwrap()), said, "{model}");
+        }
     }
 
     #[test]
     fn what_is_no_choice_is_refused_with_its_reason() {
-        let refused = |input: DeriveInput| crate::choice::expand(&input).unwrap_err().to_string();
-        assert_eq!(
-            refused(parse_quote!(
-                struct Law {}
-            )),
-            "a choice is an enum"
-        );
-        assert_eq!(
-            refused(parse_quote!(
-                enum Law {}
-            )),
-            "a choice has at least one item"
-        );
-        assert_eq!(
-            refused(parse_quote!(
-                enum Law {
-                    A(f64),
-                }
-            )),
-            "an item of a choice has no fields"
-        );
-        assert_eq!(
-            refused(parse_quote!(
-                enum Law {
-                    A = 3,
-                }
-            )),
-            "items are numbered from 1 in their order"
-        );
-        assert_eq!(
-            refused(parse_quote!(
-                enum Law<T> {
-                    A,
-                }
-            )),
-            "a choice has no generic parameters"
-        );
+        for (choice, said) in [
+            ("struct Law {}", "a choice is an enum"),
+            ("enum Law {}", "a choice has at least one item"),
+            ("enum Law { A(f64) }", "an item of a choice has no fields"),
+            ("enum Law { A = 3 }", "items are numbered from 1 in their order"),
+            ("enum Law<T> { A }", "a choice has no generic parameters"),
+        ] {
+            let refusal = crate::choice::expand(&syn::parse_str(choice).unwrap()).unwrap_err();
+            assert_eq!(refusal.to_string(), said, "{choice}");
+        }
     }
 }
