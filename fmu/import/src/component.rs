@@ -37,7 +37,7 @@ impl Component {
         let (name, environment) = (arguments.name.to_owned(), Arc::clone(environment));
         let callbacks = Box::new(environment.callbacks());
         let (guid, resources) = (arguments.guid.as_ptr(), arguments.resources.as_ptr());
-        let (instantiate, debug) = (functions.instantiate, fmi2Boolean::from(arguments.debug));
+        let (instantiate, debug) = (functions.fmi2Instantiate, fmi2Boolean::from(arguments.debug));
         // SAFETY: name and callbacks live as long as the component.
         let handle = unsafe {
             instantiate(name.as_ptr(), fmi2CoSimulation, guid, resources, &raw const *callbacks, fmi2False, debug)
@@ -60,91 +60,93 @@ impl Component {
         match (request, results) {
             (Request::SetDebugLogging { on, categories }, _) => {
                 let names: Vec<_> = categories.iter().map(|name| name.as_ptr()).collect();
-                unsafe { (f.set_debug_logging)(c, (*on).into(), names.len(), names.as_ptr()) }
+                unsafe { (f.fmi2SetDebugLogging)(c, (*on).into(), names.len(), names.as_ptr()) }
             }
             (&Request::SetupExperiment { tolerance, start, stop }, _) => {
                 let (has_tolerance, has_stop) = (tolerance.is_some().into(), stop.is_some().into());
                 let (tolerance, stop) = (tolerance.unwrap_or(0.0), stop.unwrap_or(0.0));
-                unsafe { (f.setup_experiment)(c, has_tolerance, tolerance, start, has_stop, stop) }
+                unsafe { (f.fmi2SetupExperiment)(c, has_tolerance, tolerance, start, has_stop, stop) }
             }
-            (Request::EnterInitializationMode, _) => unsafe { (f.enter_initialization_mode)(c) },
-            (Request::ExitInitializationMode, _) => unsafe { (f.exit_initialization_mode)(c) },
-            (Request::Terminate, _) => unsafe { (f.terminate)(c) },
-            (Request::Reset, _) => unsafe { (f.reset)(c) },
+            (Request::EnterInitializationMode, _) => unsafe { (f.fmi2EnterInitializationMode)(c) },
+            (Request::ExitInitializationMode, _) => unsafe { (f.fmi2ExitInitializationMode)(c) },
+            (Request::Terminate, _) => unsafe { (f.fmi2Terminate)(c) },
+            (Request::Reset, _) => unsafe { (f.fmi2Reset)(c) },
             // The last argument promises nothing: a master may go back to earlier states.
-            (Request::DoStep { time, step }, _) => unsafe { (f.do_step)(c, *time, *step, fmi2False) },
+            (Request::DoStep { time, step }, _) => unsafe { (f.fmi2DoStep)(c, *time, *step, fmi2False) },
             (Request::GetReal { references: of }, Results::Reals(to)) if of.len() == to.len() => unsafe {
-                (f.get_real)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
+                (f.fmi2GetReal)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
             },
             (Request::GetInteger { references: of }, Results::Integers(to)) if of.len() == to.len() => unsafe {
-                (f.get_integer)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
+                (f.fmi2GetInteger)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
             },
             (Request::GetBoolean { references: of }, Results::Integers(to)) if of.len() == to.len() => unsafe {
-                (f.get_boolean)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
+                (f.fmi2GetBoolean)(c, of.as_ptr(), of.len(), to.as_mut_ptr())
             },
             (Request::GetString { references: of }, Results::Texts(to)) if of.len() == to.len() => {
                 self.get_string(of, to)
             }
             (Request::SetReal { references: of, values }, _) if of.len() == values.len() => unsafe {
-                (f.set_real)(c, of.as_ptr(), of.len(), values.as_ptr())
+                (f.fmi2SetReal)(c, of.as_ptr(), of.len(), values.as_ptr())
             },
             (Request::SetInteger { references: of, values }, _) if of.len() == values.len() => unsafe {
-                (f.set_integer)(c, of.as_ptr(), of.len(), values.as_ptr())
+                (f.fmi2SetInteger)(c, of.as_ptr(), of.len(), values.as_ptr())
             },
             (Request::SetBoolean { references: of, values }, _) if of.len() == values.len() => unsafe {
-                (f.set_boolean)(c, of.as_ptr(), of.len(), values.as_ptr())
+                (f.fmi2SetBoolean)(c, of.as_ptr(), of.len(), values.as_ptr())
             },
             (Request::SetString { references: of, values }, _) if of.len() == values.len() => {
                 let texts: Vec<_> = values.iter().map(|text| text.as_ptr()).collect();
-                unsafe { (f.set_string)(c, of.as_ptr(), of.len(), texts.as_ptr()) }
+                unsafe { (f.fmi2SetString)(c, of.as_ptr(), of.len(), texts.as_ptr()) }
             }
             (Request::SetInputDerivatives { references: of, orders, values }, _)
                 if [orders.len(), values.len()] == [of.len(); 2] =>
-            unsafe { (f.set_real_input_derivatives)(c, of.as_ptr(), of.len(), orders.as_ptr(), values.as_ptr()) },
+            unsafe { (f.fmi2SetRealInputDerivatives)(c, of.as_ptr(), of.len(), orders.as_ptr(), values.as_ptr()) },
             (Request::GetOutputDerivatives { references: of, orders }, Results::Reals(to))
                 if [orders.len(), to.len()] == [of.len(); 2] =>
-            unsafe { (f.get_real_output_derivatives)(c, of.as_ptr(), of.len(), orders.as_ptr(), to.as_mut_ptr()) },
+            unsafe { (f.fmi2GetRealOutputDerivatives)(c, of.as_ptr(), of.len(), orders.as_ptr(), to.as_mut_ptr()) },
             (Request::DirectionalDerivative { unknowns: of, knowns: by, seed }, Results::Reals(to))
                 if (of.len(), by.len()) == (to.len(), seed.len()) =>
             unsafe {
-                let derivative = f.get_directional_derivative;
+                let derivative = f.fmi2GetDirectionalDerivative;
                 derivative(c, of.as_ptr(), of.len(), by.as_ptr(), by.len(), seed.as_ptr(), to.as_mut_ptr())
             },
             (Request::GetState { state }, Results::Number(to)) => {
                 let mut state = pointer(*state);
-                let status = unsafe { (f.get_state)(c, &raw mut state) };
+                let status = unsafe { (f.fmi2GetFMUstate)(c, &raw mut state) };
                 *to = state.expose_provenance() as u64;
                 status
             }
-            (Request::SetState { state }, _) => unsafe { (f.set_state)(c, pointer(*state)) },
-            (Request::FreeState { state }, _) => unsafe { (f.free_state)(c, &mut pointer(*state)) },
+            (Request::SetState { state }, _) => unsafe { (f.fmi2SetFMUstate)(c, pointer(*state)) },
+            (Request::FreeState { state }, _) => unsafe { (f.fmi2FreeFMUstate)(c, &mut pointer(*state)) },
             (Request::StateSize { state }, Results::Number(to)) => {
                 let mut size = 0;
-                let status = unsafe { (f.serialized_state_size)(c, pointer(*state), &raw mut size) };
+                let status = unsafe { (f.fmi2SerializedFMUstateSize)(c, pointer(*state), &raw mut size) };
                 *to = size as u64;
                 status
             }
             (Request::SerializeState { state, .. }, Results::Bytes(to)) => unsafe {
-                (f.serialize_state)(c, pointer(*state), to.as_mut_ptr().cast::<c_char>(), to.len())
+                (f.fmi2SerializeFMUstate)(c, pointer(*state), to.as_mut_ptr().cast::<c_char>(), to.len())
             },
             (Request::DeserializeState { bytes }, Results::Number(to)) => {
                 let mut state = ptr::null_mut();
                 let from = bytes.as_ptr().cast::<c_char>();
-                let status = unsafe { (f.deserialize_state)(c, from, bytes.len(), &raw mut state) };
+                let status = unsafe { (f.fmi2DeSerializeFMUstate)(c, from, bytes.len(), &raw mut state) };
                 *to = state.expose_provenance() as u64;
                 status
             }
             (Request::LastSuccessfulTime, Results::Reals([to])) => unsafe {
-                (f.get_real_status)(c, fmi2LastSuccessfulTime, to)
+                (f.fmi2GetRealStatus)(c, fmi2LastSuccessfulTime, to)
             },
-            (Request::Terminated, Results::Integers([to])) => unsafe { (f.get_boolean_status)(c, fmi2Terminated, to) },
+            (Request::Terminated, Results::Integers([to])) => unsafe {
+                (f.fmi2GetBooleanStatus)(c, fmi2Terminated, to)
+            },
             _ => fmi2Error,
         }
     }
 
     fn get_string(&self, references: &[u32], values: &mut [CString]) -> fmi2Status {
         let mut texts = vec![ptr::null(); values.len()];
-        let (get, to) = (self.functions.get_string, texts.as_mut_ptr());
+        let (get, to) = (self.functions.fmi2GetString, texts.as_mut_ptr());
         // SAFETY: the component is live, and the arrays have one length.
         let status = unsafe { get(self.handle, references.as_ptr(), references.len(), to) };
         for (value, text) in values.iter_mut().zip(texts).filter(|(_, text)| is_done(status) && !text.is_null()) {
@@ -158,7 +160,7 @@ impl Component {
 impl Drop for Component {
     fn drop(&mut self) {
         // SAFETY: the component is live, and nothing uses it afterwards.
-        unsafe { (self.functions.free_instance)(self.handle) };
+        unsafe { (self.functions.fmi2FreeInstance)(self.handle) };
     }
 }
 

@@ -1,5 +1,6 @@
 //! An FMU in this program, for tests: it keeps five reals and three integers, and does on command what real ones do
 //! on bad days.
+#![allow(non_snake_case)] // names of the standard
 
 use std::ffi::{CStr, CString, c_char};
 
@@ -50,7 +51,7 @@ unsafe extern "C" fn version() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-unsafe extern "C" fn instantiate(
+unsafe extern "C" fn fmi2Instantiate(
     name: fmi2String,
     _: fmi2Type,
     guid: fmi2String,
@@ -75,14 +76,14 @@ unsafe extern "C" fn instantiate(
     }
 }
 
-unsafe extern "C" fn free_instance(component: fmi2Component) {
+unsafe extern "C" fn fmi2FreeInstance(component: fmi2Component) {
     let component = unsafe { Box::from_raw(component.cast::<Component>()) };
     if component.dead || component.states != 0 {
         std::process::abort();
     }
 }
 
-unsafe extern "C" fn do_step(component: fmi2Component, time: f64, step: f64, _: fmi2Boolean) -> fmi2Status {
+unsafe extern "C" fn fmi2DoStep(component: fmi2Component, time: f64, step: f64, _: fmi2Boolean) -> fmi2Status {
     unsafe {
         let component = of(component);
         if step >= TROUBLE {
@@ -113,23 +114,23 @@ macro_rules! access {
         }
     };
 }
-access!(get_real, set_real, f64, reals);
-access!(get_integer, set_integer, i32, integers);
-access!(get_boolean, set_boolean, fmi2Boolean, booleans);
+access!(fmi2GetReal, fmi2SetReal, f64, reals);
+access!(fmi2GetInteger, fmi2SetInteger, i32, integers);
+access!(fmi2GetBoolean, fmi2SetBoolean, fmi2Boolean, booleans);
 
-unsafe extern "C" fn get_string(c: fmi2Component, _: *const u32, n: usize, out: *mut fmi2String) -> fmi2Status {
+unsafe extern "C" fn fmi2GetString(c: fmi2Component, _: *const u32, n: usize, out: *mut fmi2String) -> fmi2Status {
     for i in 0..n {
         unsafe { *out.add(i) = of(c).text.as_ptr() };
     }
     fmi2OK
 }
 
-unsafe extern "C" fn set_string(c: fmi2Component, _: *const u32, _: usize, values: *const fmi2String) -> fmi2Status {
+unsafe extern "C" fn fmi2SetString(c: fmi2Component, _: *const u32, _: usize, values: *const fmi2String) -> fmi2Status {
     unsafe { of(c).text = CStr::from_ptr(*values).to_owned() };
     fmi2OK
 }
 
-unsafe extern "C" fn get_state(c: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
+unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
     unsafe {
         if (*state).is_null() {
             of(c).states += 1;
@@ -141,12 +142,12 @@ unsafe extern "C" fn get_state(c: fmi2Component, state: *mut fmi2FMUstate) -> fm
     fmi2OK
 }
 
-unsafe extern "C" fn set_state(c: fmi2Component, state: fmi2FMUstate) -> fmi2Status {
+unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, state: fmi2FMUstate) -> fmi2Status {
     unsafe { of(c).reals = *state.cast::<[f64; 5]>() };
     fmi2OK
 }
 
-unsafe extern "C" fn free_state(c: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
+unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
     unsafe {
         if of(c).dead {
             std::process::abort();
@@ -158,12 +159,12 @@ unsafe extern "C" fn free_state(c: fmi2Component, state: *mut fmi2FMUstate) -> f
     fmi2OK
 }
 
-unsafe extern "C" fn serialized_state_size(_: fmi2Component, _: fmi2FMUstate, size: *mut usize) -> fmi2Status {
+unsafe extern "C" fn fmi2SerializedFMUstateSize(_: fmi2Component, _: fmi2FMUstate, size: *mut usize) -> fmi2Status {
     unsafe { *size = 40 };
     fmi2OK
 }
 
-unsafe extern "C" fn serialize_state(
+unsafe extern "C" fn fmi2SerializeFMUstate(
     _: fmi2Component,
     state: fmi2FMUstate,
     to: *mut fmi2Byte,
@@ -173,7 +174,7 @@ unsafe extern "C" fn serialize_state(
     fmi2OK
 }
 
-unsafe extern "C" fn deserialize_state(
+unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
     from: *const fmi2Byte,
     size: usize,
@@ -183,13 +184,13 @@ unsafe extern "C" fn deserialize_state(
         return fmi2Error;
     }
     unsafe {
-        get_state(c, state);
+        fmi2GetFMUstate(c, state);
         from.copy_to((*state).cast(), size);
     }
     fmi2OK
 }
 
-unsafe extern "C" fn set_real_input_derivatives(
+unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
     _: *const u32,
     _: usize,
@@ -200,7 +201,7 @@ unsafe extern "C" fn set_real_input_derivatives(
     fmi2OK
 }
 
-unsafe extern "C" fn get_real_output_derivatives(
+unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
     _: *const u32,
     _: usize,
@@ -211,7 +212,7 @@ unsafe extern "C" fn get_real_output_derivatives(
     fmi2OK
 }
 
-unsafe extern "C" fn get_real_status(c: fmi2Component, kind: fmi2StatusKind, value: *mut f64) -> fmi2Status {
+unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, kind: fmi2StatusKind, value: *mut f64) -> fmi2Status {
     if kind != fmi2LastSuccessfulTime {
         return fmi2Discard;
     }
@@ -227,16 +228,16 @@ macro_rules! only_status {
 }
 only_status! {
     plain(fmi2Component) = fmi2OK;
-    setup_experiment(fmi2Component, i32, f64, f64, i32, f64) = fmi2OK;
-    get_directional_derivative(fmi2Component, *const u32, usize, *const u32, usize, *const f64, *mut f64) = fmi2Error;
+    fmi2SetupExperiment(fmi2Component, i32, f64, f64, i32, f64) = fmi2OK;
+    fmi2GetDirectionalDerivative(fmi2Component, *const u32, usize, *const u32, usize, *const f64, *mut f64) = fmi2Error;
 }
 
-unsafe extern "C" fn reset(c: fmi2Component) -> fmi2Status {
+unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
     unsafe { of(c).reals = [0.0; 5] };
     fmi2OK
 }
 
-unsafe extern "C" fn set_debug_logging(
+unsafe extern "C" fn fmi2SetDebugLogging(
     c: fmi2Component,
     on: fmi2Boolean,
     n: usize,
@@ -253,9 +254,9 @@ unsafe extern "C" fn no_status<T>(_: fmi2Component, _: fmi2StatusKind, _: *mut T
 }
 
 use self::{
-    no_status as get_status, no_status as get_integer_status, no_status as get_boolean_status,
-    no_status as get_string_status, plain as enter_initialization_mode, plain as exit_initialization_mode,
-    plain as terminate, plain as cancel_step, version as get_types_platform, version as get_version,
+    no_status as fmi2GetStatus, no_status as fmi2GetIntegerStatus, no_status as fmi2GetBooleanStatus,
+    no_status as fmi2GetStringStatus, plain as fmi2EnterInitializationMode, plain as fmi2ExitInitializationMode,
+    plain as fmi2Terminate, plain as fmi2CancelStep, version as fmi2GetTypesPlatform, version as fmi2GetVersion,
 };
 
 const FUNCTIONS: Functions = functions_in_scope!();

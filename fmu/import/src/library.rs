@@ -37,11 +37,15 @@ pub(super) fn entry_name(platform: &str, model_identifier: &str) -> String {
 }
 
 macro_rules! functions {
-    ($($field:ident: $type:ident = $symbol:literal),* $(,)?) => {
+    (; create { $($create:tt)* } other { $($other:tt)* } common { $($common:tt)* } exchange $exchange:tt) => {
+        functions! { $($other)* $($create)* $($common)* }
+    };
+    ($($name:ident $signature:ident $arguments:tt $(-> $ret:ty)?;)*) => {
         /// All functions of the co-simulation interface.
         #[derive(Clone, Copy)]
         #[allow(dead_code)] // some serve asynchronous steps only, but every FMU must export them
-        pub(super) struct Functions { $(pub(super) $field: abi::$type),* }
+        #[allow(non_snake_case)] // names of the standard
+        pub(super) struct Functions { $(pub(super) $name: abi::$signature),* }
 
         impl Functions {
             /// Finds every function in `library`, which lies at `path`.
@@ -50,10 +54,11 @@ macro_rules! functions {
             /// The library's functions of these names have the signatures of FMI 2.0.
             unsafe fn resolve(library: &Library, path: &Path) -> Result<Self> {
                 let missing = |symbol| move |_| FmiError::MissingSymbol { path: path.to_path_buf(), symbol };
-                Ok(Self {
+                Ok(Self {$(
                     // SAFETY: the caller vouches for the signatures.
-                    $($field: *unsafe { library.get::<abi::$type>($symbol) }.map_err(missing($symbol))?),*
-                })
+                    $name: *unsafe { library.get::<abi::$signature>(stringify!($name)) }
+                        .map_err(missing(stringify!($name)))?,
+                )*})
             }
         }
 
@@ -61,48 +66,12 @@ macro_rules! functions {
         #[cfg(test)]
         macro_rules! functions_in_scope {
             () => {
-                $crate::library::Functions { $($field),* }
+                $crate::library::Functions { $($name),* }
             };
         }
     };
 }
-
-functions! {
-    get_types_platform: fmi2GetTypesPlatformTYPE = "fmi2GetTypesPlatform",
-    get_version: fmi2GetVersionTYPE = "fmi2GetVersion",
-    set_debug_logging: fmi2SetDebugLoggingTYPE = "fmi2SetDebugLogging",
-    instantiate: fmi2InstantiateTYPE = "fmi2Instantiate",
-    free_instance: fmi2FreeInstanceTYPE = "fmi2FreeInstance",
-    setup_experiment: fmi2SetupExperimentTYPE = "fmi2SetupExperiment",
-    enter_initialization_mode: fmi2EnterInitializationModeTYPE = "fmi2EnterInitializationMode",
-    exit_initialization_mode: fmi2ExitInitializationModeTYPE = "fmi2ExitInitializationMode",
-    terminate: fmi2TerminateTYPE = "fmi2Terminate",
-    reset: fmi2ResetTYPE = "fmi2Reset",
-    get_real: fmi2GetRealTYPE = "fmi2GetReal",
-    get_integer: fmi2GetIntegerTYPE = "fmi2GetInteger",
-    get_boolean: fmi2GetBooleanTYPE = "fmi2GetBoolean",
-    get_string: fmi2GetStringTYPE = "fmi2GetString",
-    set_real: fmi2SetRealTYPE = "fmi2SetReal",
-    set_integer: fmi2SetIntegerTYPE = "fmi2SetInteger",
-    set_boolean: fmi2SetBooleanTYPE = "fmi2SetBoolean",
-    set_string: fmi2SetStringTYPE = "fmi2SetString",
-    get_state: fmi2GetFMUstateTYPE = "fmi2GetFMUstate",
-    set_state: fmi2SetFMUstateTYPE = "fmi2SetFMUstate",
-    free_state: fmi2FreeFMUstateTYPE = "fmi2FreeFMUstate",
-    serialized_state_size: fmi2SerializedFMUstateSizeTYPE = "fmi2SerializedFMUstateSize",
-    serialize_state: fmi2SerializeFMUstateTYPE = "fmi2SerializeFMUstate",
-    deserialize_state: fmi2DeSerializeFMUstateTYPE = "fmi2DeSerializeFMUstate",
-    get_directional_derivative: fmi2GetDirectionalDerivativeTYPE = "fmi2GetDirectionalDerivative",
-    set_real_input_derivatives: fmi2SetRealInputDerivativesTYPE = "fmi2SetRealInputDerivatives",
-    get_real_output_derivatives: fmi2GetRealOutputDerivativesTYPE = "fmi2GetRealOutputDerivatives",
-    do_step: fmi2DoStepTYPE = "fmi2DoStep",
-    cancel_step: fmi2CancelStepTYPE = "fmi2CancelStep",
-    get_status: fmi2GetStatusTYPE = "fmi2GetStatus",
-    get_real_status: fmi2GetRealStatusTYPE = "fmi2GetRealStatus",
-    get_integer_status: fmi2GetIntegerStatusTYPE = "fmi2GetIntegerStatus",
-    get_boolean_status: fmi2GetBooleanStatusTYPE = "fmi2GetBooleanStatus",
-    get_string_status: fmi2GetStringStatusTYPE = "fmi2GetStringStatus",
-}
+abi::functions!([functions]);
 
 macro_rules! names {
     (;
@@ -151,7 +120,7 @@ fn open(path: &Path) -> std::result::Result<Library, libloading::Error> {
 fn check(functions: &Functions, path: &Path) -> Result<()> {
     // SAFETY: the functions take nothing and return static strings.
     let (version, types) =
-        unsafe { (static_text((functions.get_version)()), static_text((functions.get_types_platform)())) };
+        unsafe { (static_text((functions.fmi2GetVersion)()), static_text((functions.fmi2GetTypesPlatform)())) };
     let (function, found, allowed) = if !version.starts_with("2.0") {
         ("fmi2GetVersion", version, "2.0")
     } else if types != "default" {
