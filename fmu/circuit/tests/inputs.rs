@@ -2,42 +2,30 @@
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
 use HarvestingCircuit::Harvesting;
-use fmu_export::{Causality, Kind, Logger, RealSpec, Slave};
+use fmu_export::{Logger, Slave};
+use fmu_host::slave::{self, get, set, step};
 
 const INPUTS: [&str; 2] = ["left.capacitance", "right.capacitance"];
 
-/// The real variables that `is` says.
-fn reals(is: impl Fn(&str, Causality) -> bool) -> impl Iterator<Item = &'static RealSpec<Harvesting>> {
-    Harvesting::variables().iter().filter_map(move |row| match row.kind() {
-        Kind::Real(spec) if is(row.name(), row.causality()) => Some(spec),
-        _ => None,
-    })
-}
-
-fn inputs(slave: &Harvesting) -> Vec<f64> {
-    reals(|_, causality| causality == Causality::Input).map(|spec| spec.get.get(slave)).collect()
-}
-
-fn set(slave: &mut Harvesting, capacitance: [f64; 2]) {
-    for (name, value) in INPUTS.into_iter().zip(capacitance) {
-        reals(|it, _| it == name).for_each(|spec| spec.set.expect("a setter").set(slave, value));
-    }
+fn inputs(slave: &Harvesting) -> [f64; 2] {
+    INPUTS.map(|name| get(slave, name))
 }
 
 /// All outputs after initialisation and after each step.
-fn outputs(slave: &mut Harvesting, capacitances: [[f64; 2]; 3]) -> Vec<Vec<f64>> {
-    let log = Logger::silent();
-    let mut step = |k: usize, capacitance| {
-        set(slave, capacitance);
+fn outputs(slave: &mut Harvesting, capacitances: [[f64; 2]; 3]) -> Vec<Vec<u64>> {
+    let mut at = |k: usize, capacitance| {
+        for (name, value) in INPUTS.into_iter().zip(capacitance) {
+            set(slave, name, value);
+        }
         if k == 0 {
             slave.update();
-            slave.initialize(&log).expect("initial values");
+            slave.initialize(&Logger::silent()).expect("initial values");
         } else {
-            slave.do_step(1e-3 * k as f64, 1e-3, &log).expect("a step");
+            step(slave, 1e-3 * k as f64, 1e-3);
         }
-        reals(|_, causality| causality == Causality::Output).map(|spec| spec.get.get(slave)).collect()
+        slave::outputs(slave)
     };
-    capacitances.into_iter().enumerate().map(|(k, capacitance)| step(k, capacitance)).collect()
+    capacitances.into_iter().enumerate().map(|(k, capacitance)| at(k, capacitance)).collect()
 }
 
 /// As from masters that start all signals at 0.

@@ -2,56 +2,23 @@
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
 use HarvestingCircuit::Harvesting;
-use fmu_export::{Causality, Kind, Logger, Slave, StateError, StateReader, StateWriter, value_reference};
-
-fn bytes(slave: &Harvesting) -> Vec<u8> {
-    let mut out = StateWriter::default();
-    slave.write_state(&mut out).expect("bytes");
-    out.into_bytes()
-}
+use fmu_export::{Slave, StateError};
+use fmu_host::slave::{self, bytes, initialized, outputs, set};
 
 fn restored(bytes: &[u8]) -> Result<Harvesting, StateError> {
-    let mut reader = StateReader::new(bytes);
-    let slave = Harvesting::read_state(&mut reader, &Harvesting::new())?;
-    reader.finish()?;
-    Ok(slave)
-}
-
-fn set(slave: &mut Harvesting, name: &str, value: f64) {
-    let reference = value_reference(Harvesting::variables(), name).expect(name);
-    match Harvesting::variables()[reference as usize].kind() {
-        Kind::Real(spec) => spec.set.expect("a setter").set(slave, value),
-        #[allow(clippy::cast_possible_truncation)]
-        Kind::Enumeration(spec) => spec.set.expect("a setter").set(slave, value as i32),
-        _ => unreachable!("{name}"),
-    }
-}
-
-fn outputs(slave: &Harvesting) -> Vec<f64> {
-    let outputs = Harvesting::variables().iter().filter(|v| v.causality() == Causality::Output);
-    outputs.map(|v| if let Kind::Real(spec) = v.kind() { spec.get.get(slave) } else { f64::NAN }).collect()
+    slave::restored(bytes, &Harvesting::new())
 }
 
 /// Steps number `from` to `to` of 10 ms with pulsating capacitances; the outputs after each.
-fn steps(slave: &mut Harvesting, from: u32, to: u32) -> Vec<Vec<f64>> {
+fn steps(slave: &mut Harvesting, from: u32, to: u32) -> Vec<Vec<u64>> {
     let step = |k: u32| {
         let swing = |shift: f64| 15e-12 + 6e-12 * (0.3 * f64::from(k) + shift).sin();
         set(slave, "left.capacitance", swing(0.0));
         set(slave, "right.capacitance", swing(2.0));
-        slave.do_step(0.01 * f64::from(k), 0.01, &Logger::silent()).expect("a step");
+        slave::step(slave, 0.01 * f64::from(k), 0.01);
         outputs(slave)
     };
     (from..to).map(step).collect()
-}
-
-fn initialized(settings: &[(&str, f64)]) -> Harvesting {
-    let mut slave = Harvesting::new();
-    for (name, value) in settings {
-        set(&mut slave, name, *value);
-    }
-    slave.update();
-    slave.initialize(&Logger::silent()).expect("parameters");
-    slave
 }
 
 #[test]
@@ -85,7 +52,7 @@ fn bytes_that_are_no_state_are_refused() {
     }
     assert!(restored(&[good.as_slice(), &[0]].concat()).is_err());
     let mut found = 0;
-    for value in outputs(&slave).into_iter().filter(|value| *value != 0.0) {
+    for value in outputs(&slave).into_iter().map(f64::from_bits).filter(|value| *value != 0.0) {
         let Some(offset) = good.windows(8).position(|window| window == value.to_le_bytes()) else { continue };
         found += 1;
         for nonsense in [f64::NAN, f64::INFINITY] {

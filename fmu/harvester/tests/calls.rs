@@ -1,9 +1,9 @@
 //! Calls of the FMU as it is exported: values and arguments that make no sense, one by one, and random sequences.
 
-mod common;
-
+use VibroImpactHarvester::Harvester;
 use fmu_export::abi::fmi3::*;
 use fmu_export::{Logger, Severity, Slave};
+use fmu_host::slave::{fresh, initialized, set, step};
 use fmu_host::{Fmu, fmi3, hostile, linked_functions, linked_functions3, run};
 
 fmu_host::linked_names3!();
@@ -41,13 +41,13 @@ fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {
             "communicationStepSize = 100000 s: it must be at most 97656.25 s, 100000000 times excitation.noiseHold",
         ),
     ] {
-        let mut slave = common::initialized(settings);
+        let mut slave: Harvester = initialized(settings);
         let error = slave.do_step(0.0, h, &Logger::silent()).unwrap_err();
         assert_eq!((error.severity(), error.to_string().as_str()), (Severity::Discard, bound));
-        common::step(&mut slave, 0.0, 1e-3);
+        step(&mut slave, 0.0, 1e-3);
     }
-    let mut compliant = common::fresh(noisy);
-    common::choose(&mut compliant, "contact.law", 2);
+    let mut compliant: Harvester = fresh(noisy);
+    set(&mut compliant, "contact.law", 2.0);
     compliant.initialize(&Logger::silent()).unwrap();
     let error = compliant.do_step(0.0, 1e4, &Logger::silent()).unwrap_err().to_string();
     assert!(error.ends_with("at most 9765.625 s, 10000000 times excitation.noiseHold"), "{error}");
@@ -55,8 +55,8 @@ fn a_step_of_more_work_than_anybody_waits_for_is_discarded() {
 
 #[test]
 fn model_exchange_is_refused_under_the_compliant_law() {
-    let mut slave = common::fresh(&[]);
-    common::choose(&mut slave, "contact.law", 2);
+    let mut slave: Harvester = fresh(&[]);
+    set(&mut slave, "contact.law", 2.0);
     slave.update();
     slave.initialize(&Logger::silent()).unwrap();
     let error = slave.place(0.0, None).unwrap_err().to_string();

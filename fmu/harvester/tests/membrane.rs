@@ -7,15 +7,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use VibroImpactHarvester::Harvester;
-use common::host::Host;
-use common::{choose, get, row, set, step};
+use common::host::{Host, reference};
 use fmu_export::abi::{fmi2CoSimulation, fmi2OK};
-use fmu_export::{Kind, Logger, Slave, StateReader, StateWriter, value_reference};
+use fmu_export::{Logger, Slave};
+use fmu_host::slave::{bytes, get, restored, set, set_text, step};
 use videg_model::{ForceTable, Harvester as Model, MembraneLaw, Parameters};
-
-fn reference(name: &str) -> u32 {
-    value_reference(Harvester::variables(), name).expect(name)
-}
 
 /// A membrane that is `factor` times as stiff as another, with a capacitance of its own.
 fn points(factor: f64) -> [Vec<f64>; 3] {
@@ -39,9 +35,8 @@ fn write(folder: &Path, name: &str, factor: f64) -> PathBuf {
 /// A slave with the membrane at `path` and a ball that flies, not yet initialised.
 fn with(path: &Path) -> Harvester {
     let mut slave = Harvester::new();
-    let Kind::String(file) = row("membrane.file").kind() else { unreachable!() };
-    file.set.expect("a setter").set(&mut slave, path.to_str().expect("UTF-8").to_owned());
-    choose(&mut slave, "membrane.law", 2);
+    set_text(&mut slave, "membrane.file", path.to_str().expect("UTF-8"));
+    set(&mut slave, "membrane.law", 2.0);
     set(&mut slave, "initial.ballVelocity", 0.2);
     slave.update();
     slave
@@ -90,23 +85,18 @@ fn states_go_back_to_their_own_membrane() {
     let mut slave = with(&path);
     slave.initialize(&Logger::silent()).unwrap();
     step(&mut slave, 0.0, 0.21);
-    let mut out = StateWriter::default();
-    slave.write_state(&mut out).expect("bytes");
-    let state = out.into_bytes();
-    let read = |present: &Harvester| {
-        Harvester::read_state(&mut StateReader::new(&state), present).map_err(|error| error.to_string())
-    };
+    let state = bytes(&slave);
     let go_on = |mut slave: Harvester| {
         step(&mut slave, 0.21, 0.5);
         shown(&slave)
     };
     let expected = go_on(slave.clone());
     write(folder.path(), "film.csv", 1.5);
-    assert_eq!(go_on(read(&slave).expect("its points are in memory")), expected);
-    let said = read(&Harvester::new()).err().expect("another table");
+    assert_eq!(go_on(restored(&state, &slave).expect("its points are in memory")), expected);
+    let said = restored(&state, &Harvester::new()).err().expect("another table").to_string();
     assert!(said.starts_with("membrane.file = ") && said.contains("another table"), "{said}");
     write(folder.path(), "film.csv", 1.0);
-    assert_eq!(go_on(read(&Harvester::new()).expect("the same points again")), expected);
+    assert_eq!(go_on(restored(&state, &Harvester::new()).expect("the same points again")), expected);
 }
 
 #[test]
@@ -129,11 +119,11 @@ fn what_is_no_membrane_is_an_error_that_names_file_and_value() {
     let found = complaint(with(Path::new("/dev/zero")));
     assert!(found.contains("not a regular file"), "{found}");
     let mut unused = with(&write(folder.path(), "film.csv", 1.0));
-    choose(&mut unused, "membrane.law", 1);
+    set(&mut unused, "membrane.law", 1.0);
     unused.update();
     assert!(complaint(unused).contains("needs membrane.law = table"));
     let mut missing = Harvester::new();
-    choose(&mut missing, "membrane.law", 2);
+    set(&mut missing, "membrane.law", 2.0);
     missing.update();
     assert!(complaint(missing).contains("set membrane.file"));
 }

@@ -7,20 +7,15 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use VibroImpactHarvester::Harvester;
-use common::host::Host;
-use common::{choose, get, row, set, step};
+use common::host::{Host, reference};
 use fmu_export::abi::{fmi2CoSimulation, fmi2ModelExchange, fmi2OK};
-use fmu_export::{Kind, Logger, Slave, StateReader, StateWriter, value_reference};
+use fmu_export::{Logger, Slave};
+use fmu_host::slave::{bytes, get, restored, set, set_text, step};
 use proptest::prelude::*;
 use videg_model::{ExcitationKind, Harvester as Model, Parameters, Recording};
 
-fn reference(name: &str) -> u32 {
-    value_reference(Harvester::variables(), name).expect(name)
-}
-
 fn set_file(slave: &mut Harvester, path: &Path) {
-    let Kind::String(file) = row("excitation.file").kind() else { unreachable!() };
-    file.set.expect("a setter").set(slave, path.to_str().expect("UTF-8").to_owned());
+    set_text(slave, "excitation.file", path.to_str().expect("UTF-8"));
 }
 
 /// Writes samples so that they read back to the same bits.
@@ -43,16 +38,6 @@ fn under(path: &Path) -> Harvester {
 
 fn complaint(mut slave: Harvester) -> String {
     slave.initialize(&Logger::silent()).expect_err("no recording").to_string()
-}
-
-fn bytes(slave: &Harvester) -> Vec<u8> {
-    let mut out = StateWriter::default();
-    slave.write_state(&mut out).expect("bytes");
-    out.into_bytes()
-}
-
-fn read(bytes: &[u8], present: &Harvester) -> Result<Harvester, String> {
-    Harvester::read_state(&mut StateReader::new(bytes), present).map_err(|error| error.to_string())
 }
 
 /// What shows every motion of cylinder and ball.
@@ -267,20 +252,20 @@ fn the_bytes_of_a_state_need_the_same_samples() {
     let expected = go_on(slave.clone());
 
     saw(folder.path(), "saw.csv", 0.5);
-    assert_eq!(go_on(read(&state, &slave).expect("its samples are in memory")), expected);
-    let said = read(&state, &Harvester::new()).err().expect("another recording");
+    assert_eq!(go_on(restored(&state, &slave).expect("its samples are in memory")), expected);
+    let said = restored(&state, &Harvester::new()).err().expect("another recording").to_string();
     assert!(said.starts_with("excitation.file = ") && said.contains("another recording"), "{said}");
     let present = under(&path);
-    assert!(read(&state, &present).is_err());
+    assert!(restored(&state, &present).is_err());
     std::fs::remove_file(&path).unwrap();
-    let said = read(&state, &Harvester::new()).err().expect("no recording");
+    let said = restored(&state, &Harvester::new()).err().expect("no recording").to_string();
     assert!(said.contains("No such file"), "{said}");
     saw(folder.path(), "saw.csv", 0.4);
-    assert_eq!(go_on(read(&state, &Harvester::new()).expect("the same samples again")), expected);
-    assert_eq!(go_on(read(&state, &present).expect("read again")), expected);
+    assert_eq!(go_on(restored(&state, &Harvester::new()).expect("the same samples again")), expected);
+    assert_eq!(go_on(restored(&state, &present).expect("read again")), expected);
     // Before initialisation there is nothing but parameters.
     let before = bytes(&under(&path));
-    assert_eq!(shown(&read(&before, &Harvester::new()).expect("a state")), shown(&under(&path)));
+    assert_eq!(shown(&restored(&before, &Harvester::new()).expect("a state")), shown(&under(&path)));
 }
 
 #[test]
@@ -289,8 +274,7 @@ fn a_step_over_more_samples_than_anybody_waits_for_is_discarded() {
     let path = folder.path().join("fast.csv");
     write(&path, ExcitationKind::Force, &[0.0, 1e-6, 3e-6], &[0.0, 1.0, 0.0]);
     let mut slave = under(&path);
-    let Kind::Boolean(repeat) = row("excitation.fileRepeat").kind() else { unreachable!() };
-    repeat.set.unwrap().set(&mut slave, true);
+    set(&mut slave, "excitation.fileRepeat", 1.0);
     slave.update();
     slave.initialize(&Logger::silent()).unwrap();
     let error = slave.do_step(0.0, 200.0, &Logger::silent()).unwrap_err().to_string();
@@ -303,7 +287,7 @@ fn a_recording_of_the_other_kind_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = saw(folder.path(), "saw.csv", 0.4);
     let mut slave = under(&path);
-    choose(&mut slave, "excitation.kind", 2);
+    set(&mut slave, "excitation.kind", 2.0);
     slave.update();
     assert!(complaint(slave).contains("allowed with it: excitation.kind = force"));
 }

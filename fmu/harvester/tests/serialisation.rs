@@ -1,11 +1,9 @@
 //! Serialised states: the run goes on to the last bit, in this process or in another; nonsense is refused.
 #![allow(clippy::expect_used)] // helpers outside of #[test] functions fail a test, too
 
-mod common;
-
 use VibroImpactHarvester::Harvester;
-use common::{choose, fresh, get, initialized, outputs, row, set, step};
-use fmu_export::{Kind, Logger, Slave, StateError, StateReader, StateWriter};
+use fmu_export::{Kind, Logger, Slave, StateError};
+use fmu_host::slave::{self, bytes, fresh, get, initialized, outputs, row, set, step};
 use std::process::Command;
 
 /// Noise on, r = 0.6, at the paper's size.
@@ -13,17 +11,8 @@ const NOISY: &[(&str, f64)] = &[("excitation.phaseNoise", 0.7), ("excitation.noi
 
 const STATE: &str = "VIDEG_TEST_SERIALISED_STATE";
 
-fn bytes(slave: &Harvester) -> Vec<u8> {
-    let mut out = StateWriter::default();
-    slave.write_state(&mut out).expect("bytes");
-    out.into_bytes()
-}
-
 fn restored(bytes: &[u8]) -> Result<Harvester, StateError> {
-    let mut reader = StateReader::new(bytes);
-    let slave = Harvester::read_state(&mut reader, &Harvester::new())?;
-    reader.finish()?;
-    Ok(slave)
+    slave::restored(bytes, &Harvester::new())
 }
 
 /// Outputs after each of some steps of different size from `time`, s, with an external force on the way.
@@ -71,14 +60,12 @@ fn a_restored_slave_goes_on_to_the_last_bit_with_noise_and_in_the_middle_of_puls
 
 #[test]
 fn a_contact_of_the_compliant_law_goes_on_to_the_last_bit() {
-    let mut original = fresh(&[("initial.ballVelocity", 0.3)]);
-    choose(&mut original, "contact.law", 2);
-    for name in ["contact.electrostaticFeedback", "contact.reaction"] {
-        let Kind::Boolean(option) = row(name).kind() else { unreachable!() };
-        option.set.expect("a setter").set(&mut original, true);
-    }
-    original.update();
-    original.initialize(&Logger::silent()).expect("valid parameters");
+    let mut original: Harvester = initialized(&[
+        ("initial.ballVelocity", 0.3),
+        ("contact.law", 2.0),
+        ("contact.electrostaticFeedback", 1.0),
+        ("contact.reaction", 1.0),
+    ]);
     let mut pressed = 0;
     for k in 0..300_u32 {
         let time = 0.003 * f64::from(k);
@@ -94,7 +81,7 @@ fn a_contact_of_the_compliant_law_goes_on_to_the_last_bit() {
 
 #[test]
 fn a_state_before_initialisation_keeps_what_was_set_even_if_it_is_contradictory() {
-    let mut slave = fresh(&[]);
+    let mut slave: Harvester = fresh(&[]);
     set(&mut slave, "ball.radius", 0.5);
     let mut copy = restored(&bytes(&slave)).expect("a state");
     assert_eq!(get(&copy, "ball.radius"), 0.5);
@@ -102,13 +89,13 @@ fn a_state_before_initialisation_keeps_what_was_set_even_if_it_is_contradictory(
     assert!(get(&copy, "left.capacitance").is_nan());
     set(&mut copy, "ball.radius", 0.005);
     copy.update();
-    assert_eq!(outputs(&copy), outputs(&fresh(&[])));
+    assert_eq!(outputs(&copy), outputs::<Harvester>(&fresh(&[])));
 }
 
 #[test]
 fn a_derivative_of_the_input_that_waits_for_the_next_step_is_part_of_the_state() {
     let mut original = run_to(&[], 0.3);
-    let Kind::Real(spec) = row("externalForce").kind() else { unreachable!() };
+    let Kind::Real(spec) = row::<Harvester>("externalForce").kind() else { unreachable!() };
     spec.input_derivatives.expect("derivatives").1(&mut original, 1, 0.4);
     let mut copy = restored(&bytes(&original)).expect("a state");
     assert_eq!(go_on(&mut copy, 0.3), go_on(&mut original, 0.3));
@@ -157,7 +144,7 @@ fn a_second_process_goes_on_to_the_last_bit() {
 #[test]
 fn a_state_of_model_exchange_goes_on_to_the_last_bit() {
     let log = fmu_export::Logger::silent();
-    let mut original = initialized(NOISY);
+    let mut original: Harvester = initialized(NOISY);
     original.place(0.0, None).expect("the start");
     original.place(0.0005, Some(&[0.023, 0.3, 0.001, -0.1, 1e-4])).expect("states");
     assert!(original.handle_events(&log).expect("an impact").states_changed);
@@ -175,7 +162,7 @@ fn a_state_of_model_exchange_goes_on_to_the_last_bit() {
 
 #[test]
 fn no_step_begins_long_after_the_time_of_the_state() {
-    let mut slave = restored(&bytes(&initialized(&[]))).expect("a state");
+    let mut slave = restored(&bytes::<Harvester>(&initialized(&[]))).expect("a state");
     let refusal = slave.do_step(1000.0, 0.01, &Logger::silent()).expect_err("1000 s lie between").to_string();
     assert!(refusal.contains("t = 1000 s, but the state is of t = 0 s"), "{refusal}");
     step(&mut slave, 0.0, 0.01);

@@ -1,7 +1,8 @@
 //! Reference results of an experiment, as importers get them that set inputs at each communication point and hold them.
 
+use crate::slave::{get, set};
 use core::fmt::Write as _;
-use fmu_export::{Experiment, Kind, Logger, Slave, value_reference};
+use fmu_export::{Experiment, Kind, Logger, Slave};
 
 /// Inputs against time: a table as the rules of the FMI cross-check have it, linear between its rows.
 pub struct Inputs {
@@ -36,21 +37,9 @@ impl Inputs {
     }
 }
 
-/// The Real accessors of a variable.
-#[allow(clippy::panic, clippy::expect_used)] // as in a test
-fn real<S: Slave>(name: &str) -> &'static fmu_export::RealSpec<S> {
-    let reference = value_reference(S::variables(), name).expect(name);
-    match S::variables()[reference as usize].kind() {
-        Kind::Real(spec) => spec,
-        _ => panic!("{name} is no Real"),
-    }
-}
-
 fn set_inputs<S: Slave>(slave: &mut S, inputs: &Inputs, time: f64) {
     for (name, value) in inputs.at(time) {
-        if let Some(set) = real::<S>(name).set {
-            set.set(slave, value);
-        }
+        set(slave, name, value);
     }
 }
 
@@ -76,7 +65,7 @@ pub fn reference<S: Slave>(
     let mut text = outputs.iter().fold("\"time\"".to_owned(), |line, name| line + ",\"" + name + "\"");
     for step in 0..=steps {
         let time = f64::from(step) * size;
-        let values = outputs.iter().map(|name| real::<S>(name).get.get(&slave));
+        let values = outputs.iter().map(|name| get(&slave, name));
         let cells: Vec<_> = core::iter::once(time).chain(values).map(rounded).collect();
         let _ = write!(text, "\n{}", cells.join(","));
         if step < steps {

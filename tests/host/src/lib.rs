@@ -22,6 +22,7 @@ mod instance;
 mod log;
 mod random;
 mod session;
+pub mod slave;
 
 pub use fmu_export::{Function, Interface, abi};
 pub use functions::{Exchange, Functions};

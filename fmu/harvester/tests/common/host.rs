@@ -1,10 +1,10 @@
 //! The FMU driven through its C functions, its variables by name.
 
-use super::row;
 use VibroImpactHarvester::Harvester;
 use core::ops::Deref;
 use fmu_export::abi::{fmi2CoSimulation, fmi2FMUstate, fmi2ModelExchange, fmi2Status, fmi2Type, fmi2Warning};
 use fmu_export::{Causality, Guid, Kind, Slave, Standard, Variability, Variable, value_reference};
+use fmu_host::slave::row;
 use fmu_host::{linked_functions, ok};
 
 /// Names of the Real variables that `is_listed`.
@@ -23,7 +23,7 @@ pub fn unknowns() -> Vec<&'static str> {
 
 /// The continuous ones among them.
 pub fn continuous_unknowns() -> Vec<&'static str> {
-    let is_continuous = |name: &&str| row(name).variability() == Variability::Continuous;
+    let is_continuous = |name: &&str| row::<Harvester>(name).variability() == Variability::Continuous;
     unknowns().into_iter().filter(is_continuous).collect()
 }
 
@@ -41,7 +41,7 @@ fn references(names: &[&str]) -> Vec<u32> {
     names.iter().map(|name| reference(name)).collect()
 }
 
-fn reference(name: &str) -> u32 {
+pub fn reference(name: &str) -> u32 {
     value_reference(Harvester::variables(), name).expect(name)
 }
 
