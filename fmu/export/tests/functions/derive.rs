@@ -1,8 +1,7 @@
 //! The table that is derived from the fields of a model: row by row that which the constructors give.
 
-use fmu_export::{
-    Choice, ClockInterval, IntegerWidth, Logger, ModelInfo, Slave, SlaveError, Standard, Variable, Variables,
-};
+use crate::common::slave;
+use fmu_export::{Choice, ClockInterval, IntegerWidth, ModelInfo, Standard, Variable, Variables};
 
 /// What the contact does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Choice)]
@@ -103,26 +102,7 @@ const LONGHAND: [V; 15] = [
     V::output("rung", "1", "At a ring").clocked_by(&["rings"]).discrete().get(|m| m.rung),
 ];
 
-macro_rules! model {
-    ($name:ident, $table:expr) => {
-        impl Slave for $name {
-            const INFO: ModelInfo = ModelInfo::new("Model");
-
-            fn variables() -> &'static [Variable<Self>] {
-                $table
-            }
-
-            fn new() -> Self {
-                Self::default()
-            }
-
-            fn do_step(&mut self, _t: f64, _h: f64, _log: &Logger) -> Result<(), SlaveError> {
-                Ok(())
-            }
-        }
-    };
-}
-model!(Derived, &Self::VARIABLES);
+slave!(Derived, ModelInfo::new("Model"), &Self::VARIABLES);
 
 /// The rows of both tables, and what they do, as text.
 fn shown(table: &[V]) -> Vec<String> {

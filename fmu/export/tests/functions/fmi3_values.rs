@@ -1,6 +1,7 @@
 //! Get and Set of FMI 3.0: the types, and which variables may be named in which state.
 
 use crate::common::fmi3::*;
+use crate::common::slave;
 use crate::common::toy::{self, Toy};
 use core::ffi::CStr;
 use core::fmt::Debug;
@@ -8,7 +9,7 @@ use core::ptr::{null, null_mut};
 use fmu_export::abi::fmi3::*;
 use fmu_export::ffi::Fmu;
 use fmu_export::fmi3 as of;
-use fmu_export::{Causality, Guid, Logger, ModelInfo, Slave, SlaveError, Standard, Variable};
+use fmu_export::{Causality, Guid, ModelInfo, Slave, SlaveError, Standard, Variable};
 
 type Get<T> = unsafe extern "C" fn(fmi3Instance, *const u32, usize, *mut T, usize) -> fmi3Status;
 type Set<T> = unsafe extern "C" fn(fmi3Instance, *const u32, usize, *const T, usize) -> fmi3Status;
@@ -175,29 +176,20 @@ fn the_variables_that_the_exporter_adds_follow_the_table() {
 }
 
 /// Neither a time of its own nor a state that jumps.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Bare(f64);
 
-impl Slave for Bare {
-    const INFO: ModelInfo = ModelInfo::new("Bare").model_exchange(2);
-
-    fn variables() -> &'static [Variable<Self>] {
+slave! {
+    Bare,
+    ModelInfo::new("Bare").model_exchange(2),
+    {
         type V = Variable<Bare>;
         static TABLE: [V; 2] = [
             V::output("x", "1", "A state").get(|m| m.0),
             V::output("v", "1/s", "Its rate").derivative_of("x").get(|_| 3.0),
         ];
         &TABLE
-    }
-
-    fn new() -> Self {
-        Self(0.5)
-    }
-
-    fn do_step(&mut self, _: f64, _: f64, _: &Logger) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
+    },
     fn place(&mut self, _: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
         self.0 = states.map_or(self.0, |states| states[0]);
         Ok(())

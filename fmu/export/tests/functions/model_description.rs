@@ -6,11 +6,11 @@
 
 use core::ffi::{CStr, c_char, c_int, c_void};
 
-use crate::common::toy::Toy;
+use crate::common::{slave, toy::Toy};
 use fmu_export::abi::describe::Take;
 use fmu_export::{
-    Causality, EnumerationType, Guid, Kind, Logger, ModelInfo, Slave, SlaveError, Standard, Variable,
-    model_description, terminals_and_icons,
+    Causality, EnumerationType, Guid, Kind, ModelInfo, Slave, Standard, Variable, model_description,
+    terminals_and_icons,
 };
 use videg_golden::Golden;
 
@@ -63,48 +63,33 @@ fn start_and_initial_stand_exactly_where_they_must() {
     }
 }
 
-/// Two tables that differ in one fact.
-macro_rules! slave {
-    (@ $name:ident, $info:expr, $($row:expr),*) => {
-        #[derive(Clone)]
+/// A model of one number with these rows.
+macro_rules! small {
+    ($name:ident $(model_exchange($indicators:literal))?, $($row:expr),* $(,)?) => {
+        #[derive(Clone, Default)]
         #[allow(dead_code)]
         struct $name(f64);
 
-        impl Slave for $name {
-            const INFO: ModelInfo = $info;
-            fn variables() -> &'static [Variable<Self>] {
-                type V = Variable<$name>;
-                static TABLE: &[V] = &[$($row),*];
-                TABLE
-            }
-            fn new() -> Self {
-                Self(0.0)
-            }
-            fn do_step(&mut self, _: f64, _: f64, _: &Logger) -> Result<(), SlaveError> {
-                Ok(())
-            }
-        }
-    };
-    ($name:ident, model_exchange($indicators:literal), $($row:expr),* $(,)?) => {
-        slave!(@ $name, ModelInfo::new("Small").model_exchange($indicators), $($row),*);
-    };
-    ($name:ident, $($row:expr),* $(,)?) => {
-        slave!(@ $name, ModelInfo::new("Small"), $($row),*);
+        slave!($name, ModelInfo::new("Small")$(.model_exchange($indicators))?, {
+            type V = Variable<$name>;
+            static TABLE: &[V] = &[$($row),*];
+            TABLE
+        });
     };
 }
 
 #[test]
 fn the_guid_changes_with_the_interface_but_not_with_a_description() {
-    slave!(Base, V::parameter("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Described, V::parameter("a", "m", 1.0, "other words").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Renamed, V::parameter("b", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Unit, V::parameter("a", "s", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Start, V::parameter("a", "m", 2.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Bound, V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v));
-    slave!(Tunable, V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v));
-    slave!(Input, V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    slave!(Output, V::output("a", "m", "one").get(|m| m.0));
-    slave!(Initial, V::output("a", "m", "one").initially_depends_on(&[]).get(|m| m.0));
+    small!(Base, V::parameter("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    small!(Described, V::parameter("a", "m", 1.0, "other words").access(|m| m.0, |m, v| m.0 = v));
+    small!(Renamed, V::parameter("b", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    small!(Unit, V::parameter("a", "s", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    small!(Start, V::parameter("a", "m", 2.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    small!(Bound, V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v));
+    small!(Tunable, V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v));
+    small!(Input, V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
+    small!(Output, V::output("a", "m", "one").get(|m| m.0));
+    small!(Initial, V::output("a", "m", "one").initially_depends_on(&[]).get(|m| m.0));
     let base = Guid::of::<Base>(Standard::Fmi2);
     assert_eq!(base, Guid::of::<Described>(Standard::Fmi2));
     let others = [
@@ -125,7 +110,7 @@ fn the_guid_changes_with_the_interface_but_not_with_a_description() {
 
 #[test]
 fn a_minimal_table_has_no_empty_elements() {
-    slave!(Minimal, V::parameter("a", "1", 1.0, "").access(|m| m.0, |m, v| m.0 = v));
+    small!(Minimal, V::parameter("a", "1", 1.0, "").access(|m| m.0, |m, v| m.0 = v));
     let text = model_description::<Minimal>(Standard::Fmi2).expect("a sound table");
     for element in ["UnitDefinitions", "TypeDefinitions", "DefaultExperiment", "Outputs", "description=\"\""] {
         assert!(!text.contains(element), "{element}");
@@ -140,15 +125,15 @@ fn mistakes_in_a_table_are_found_and_named() {
     }
     static LAW: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("a", "")] };
     static OTHER: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("b", "")] };
-    slave!(Twice, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
+    small!(Twice, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
     assert_eq!(mistake::<Twice>(), "the FMU is faulty: a: its name occurs twice");
-    slave!(Bounds, V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v));
+    small!(Bounds, V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v));
     assert_eq!(mistake::<Bounds>(), "the FMU is faulty: a: start 1: below its min 2 m");
-    slave!(Tunable, V::input("a", "m", 1.0, "").tunable().access(|m| m.0, |m, v| m.0 = v));
+    small!(Tunable, V::input("a", "m", 1.0, "").tunable().access(|m| m.0, |m, v| m.0 = v));
     assert_eq!(mistake::<Tunable>(), "the FMU is faulty: a: a Real cannot be a tunable input");
-    slave!(Unknown, V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0));
+    small!(Unknown, V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0));
     assert_eq!(mistake::<Unknown>(), "the FMU is faulty: a: it depends on b, which is not in the table");
-    slave!(
+    small!(
         Initially,
         V::output("a", "m", "").get(|m| m.0),
         V::output("b", "m", "").initially_depends_on(&[&["a"]]).get(|m| m.0)
@@ -157,19 +142,19 @@ fn mistakes_in_a_table_are_found_and_named() {
         mistake::<Initially>(),
         "the FMU is faulty: b: it initially depends on a, which is no input or parameter"
     );
-    slave!(Item, V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ()));
+    small!(Item, V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ()));
     assert_eq!(mistake::<Item>(), "the FMU is faulty: a: start 2: no item of Law; allowed: 1 (a)");
-    slave!(Types, V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1),);
+    small!(Types, V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1),);
     assert_eq!(mistake::<Types>(), "the FMU is faulty: b: there are two enumerations named Law");
-    slave!(Control, V::output("a", "m", "one\ntwo").get(|m| m.0));
+    small!(Control, V::output("a", "m", "one\ntwo").get(|m| m.0));
     assert!(mistake::<Control>().contains("control character"));
-    slave!(Times, V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0));
+    small!(Times, V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0));
     assert!(mistake::<Times>().contains("two independent variables"));
-    slave!(Jump, V::output("a", "1", "").reinit().get(|m| m.0));
+    small!(Jump, V::output("a", "1", "").reinit().get(|m| m.0));
     assert_eq!(mistake::<Jump>(), "the FMU is faulty: a: it jumps at events, but this FMU is not for model exchange");
-    slave!(NoState, model_exchange(0), V::output("a", "1", "").reinit().get(|m| m.0));
+    small!(NoState model_exchange(0), V::output("a", "1", "").reinit().get(|m| m.0));
     assert_eq!(mistake::<NoState>(), "the FMU is faulty: a: it jumps at events, but is no continuous state");
-    slave!(NoUnit, V::output("a", "", "").get(|m| m.0));
+    small!(NoUnit, V::output("a", "", "").get(|m| m.0));
     assert!(mistake::<NoUnit>().contains("its unit is empty"));
 }
 
@@ -198,7 +183,7 @@ fn the_library_gives_a_packager_the_same_texts_or_the_reason_why_not() {
         ];
         assert_eq!(texts, expected.map(|(name, text)| (name.to_owned(), text)));
     }
-    slave!(Twins, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
+    small!(Twins, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
     let of_twins = fmu_export::describe::fmu_export_describe_1::<Twins>;
     let texts = described(|r, i, take, context| unsafe { of_twins(r, i, take, context) }, false);
     assert_eq!(texts, [("error".to_owned(), "the FMU is faulty: a: its name occurs twice".to_owned())]);

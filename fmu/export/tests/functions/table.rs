@@ -1,9 +1,10 @@
 //! What the constructors of a table and of the facts about an FMU declare. The compiler evaluates those of a `static`; here they
 //! run.
 
+use crate::common::slave;
 use fmu_export::{
-    EnumerationType, Experiment, Initial, Kind, Logger, ModelInfo, Slave, SlaveError, StateError, StateReader,
-    StateWriter, Variability, Variable, concat,
+    EnumerationType, Experiment, Initial, Kind, Logger, ModelInfo, Slave, StateError, StateReader, StateWriter,
+    Variability, Variable, concat,
 };
 
 /// A model that has one of each and nothing to do.
@@ -18,21 +19,7 @@ struct Sample {
 
 type V = Variable<Sample>;
 
-impl Slave for Sample {
-    const INFO: ModelInfo = ModelInfo::new("Sample");
-
-    fn variables() -> &'static [V] {
-        &[]
-    }
-
-    fn new() -> Self {
-        Self::default()
-    }
-
-    fn do_step(&mut self, _t: f64, _h: f64, _log: &Logger) -> Result<(), SlaveError> {
-        Ok(())
-    }
-}
+slave!(Sample, ModelInfo::new("Sample"), &[]);
 
 static COLOUR: EnumerationType =
     EnumerationType { name: "Colour", description: "Of the ball", items: &[("red", "Like a rose"), ("blue", "")] };

@@ -17,6 +17,30 @@ use toy::Toy;
 
 fmu_host::linked_names!();
 
+/// Makes a type a slave that does nothing in a step: what it says of itself, its rows, and further functions.
+macro_rules! slave {
+    ($name:ty, $info:expr, $table:expr $(, $($more:tt)*)?) => {
+        impl ::fmu_export::Slave for $name {
+            const INFO: ::fmu_export::ModelInfo = $info;
+
+            fn variables() -> &'static [::fmu_export::Variable<Self>] {
+                $table
+            }
+
+            fn new() -> Self {
+                Self::default()
+            }
+
+            fn do_step(&mut self, _: f64, _: f64, _: &::fmu_export::Logger) -> Result<(), ::fmu_export::SlaveError> {
+                Ok(())
+            }
+
+            $($($more)*)?
+        }
+    };
+}
+pub(crate) use slave;
+
 pub fn guid() -> String {
     Guid::of::<Toy>(Standard::Fmi2).to_string()
 }
