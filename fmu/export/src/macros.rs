@@ -14,78 +14,54 @@ macro_rules! export_fmu {
 
             static FMU: $crate::ffi::Fmu = $crate::ffi::Fmu::new();
 
-            $crate::abi::functions!([$crate::__export_fmu] $slave $(, $model_exchange)?);
-            $crate::abi::functions3!([$crate::__export_fmu3] $slave);
+            $crate::abi::functions!(
+                [$crate::__export_functions] [$($model_exchange)?] $slave, ffi(c: fmi2Component) -> fmi2Status
+            );
+            $crate::abi::functions3!([$crate::__export_functions] [] $slave, fmi3(instance: fmi3Instance) -> fmi3Status);
             $crate::__export_description!($slave);
         };
     };
 }
 
-/// Defines the functions of [`abi::functions`](crate::abi::functions) for a slave.
+/// Defines the functions of [`abi::functions`](crate::abi::functions), without those of model exchange unless asked for, or of
+/// [`abi::functions3`](crate::abi::functions3) for a slave: the bodies are in a module of this crate.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! __export_fmu {
-    ($slave:ty, model_exchange;
-        create { $($create:tt)* } other { $($other:tt)* } common { $($common:tt)* } exchange { $($exchange:tt)* }
-    ) => {
-        $crate::__export_fmu! {
-            $slave; create { $($create)* } other { $($other)* } common { $($common)* $($exchange)* } exchange {}
-        }
-    };
-    ($slave:ty;
-        create { $create:ident $create_type:ident($($part:ident: $part_type:ty),*) -> $component:ty; }
-        other { $($other:ident $other_type:ident($($c:ident: $c_type:ty)?) $(-> $ret:ty)?;)* }
-        common { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
-        exchange { $($exchange:tt)* }
-    ) => {
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $create($($part: $part_type),*) -> $component {
-            // SAFETY: the importer keeps the contract of the C function; so below.
-            unsafe { $crate::ffi::$create::<$slave>(&FMU, $($part),*) }
-        }
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $other($($c: $c_type)?) $(-> $ret)? {
-                unsafe { $crate::ffi::$other::<$slave>($($c)?) }
-            }
-        )*
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(c: fmi2Component $(, $argument: $kind)*) -> fmi2Status {
-                unsafe { $crate::ffi::$name::<$slave>(c $(, $argument)*) }
-            }
-        )*
-    };
-}
-
-/// Defines the functions of [`abi::functions3`](crate::abi::functions3) for a slave.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! __export_fmu3 {
-    ($slave:ty;
+macro_rules! __export_functions {
+    (@ $slave:ty, $module:ident($instance:ident: $instance_type:ty) -> $status:ty;
         create { $($create:ident $create_type:ident($($part:ident: $part_type:ty),*) -> $component:ty;)* }
         other { $($other:ident $other_type:ident($($c:ident: $c_type:ty)?) $(-> $ret:ty)?;)* }
-        status { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* }
+        $($group:ident { $($name:ident $signature:ident($($argument:ident: $kind:ty),*);)* })*
     ) => {
         $(
             #[unsafe(no_mangle)]
             unsafe extern "C" fn $create($($part: $part_type),*) -> $component {
                 // SAFETY: the importer keeps the contract of the C function; so below.
-                unsafe { $crate::fmi3::$create::<$slave>(&FMU, $($part),*) }
+                unsafe { $crate::$module::$create::<$slave>(&FMU, $($part),*) }
             }
         )*
         $(
             #[unsafe(no_mangle)]
             unsafe extern "C" fn $other($($c: $c_type)?) $(-> $ret)? {
-                unsafe { $crate::fmi3::$other::<$slave>($($c)?) }
+                unsafe { $crate::$module::$other::<$slave>($($c)?) }
             }
         )*
-        $(
+        $($(
             #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(instance: fmi3Instance $(, $argument: $kind)*) -> fmi3Status {
-                unsafe { $crate::fmi3::$name::<$slave>(instance $(, $argument)*) }
+            unsafe extern "C" fn $name($instance: $instance_type $(, $argument: $kind)*) -> $status {
+                unsafe { $crate::$module::$name::<$slave>($instance $(, $argument)*) }
             }
-        )*
+        )*)*
+    };
+    ([] $slave:ty, $module:ident $instance:tt -> $status:ty;
+        create $create:tt other $other:tt common $common:tt exchange $exchange:tt
+    ) => {
+        $crate::__export_functions! {
+            @ $slave, $module $instance -> $status; create $create other $other common $common
+        }
+    };
+    ([$(model_exchange)?] $($functions:tt)*) => {
+        $crate::__export_functions! { @ $($functions)* }
     };
 }
 
