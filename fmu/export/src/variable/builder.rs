@@ -108,18 +108,8 @@ const fn enumeration<M>(of: &'static EnumerationType, start: Option<i32>) -> Enu
     EnumerationSpec { of, start, get: Getter::Field(|_| 0), set: None }
 }
 
-/// Constructors of Real variables. `unit` is `"1"` where there is none.
+/// Further constructors of Real variables.
 impl<M> Variable<M> {
-    /// A fixed Real parameter; [`tunable`](Declaration::tunable) lets it change between steps.
-    pub const fn parameter(
-        name: &'static str,
-        unit: &'static str,
-        start: f64,
-        description: &'static str,
-    ) -> Real<M, Settable> {
-        declare(PARAMETER, name, description, real(unit, Some(start)))
-    }
-
     /// A Real that follows from the parameters.
     pub const fn calculated_parameter(
         name: &'static str,
@@ -127,21 +117,6 @@ impl<M> Variable<M> {
         description: &'static str,
     ) -> Real<M, ReadOnly> {
         declare(CALCULATED, name, description, real(unit, None))
-    }
-
-    /// A continuous Real input.
-    pub const fn input(
-        name: &'static str,
-        unit: &'static str,
-        start: f64,
-        description: &'static str,
-    ) -> Real<M, Settable> {
-        declare(INPUT, name, description, real(unit, Some(start)))
-    }
-
-    /// A continuous Real output, calculated from the start.
-    pub const fn output(name: &'static str, unit: &'static str, description: &'static str) -> Real<M, ReadOnly> {
-        declare(OUTPUT, name, description, real(unit, None))
     }
 
     /// The independent variable, time.
@@ -152,10 +127,11 @@ impl<M> Variable<M> {
 }
 
 macro_rules! constructors {
-    ($($row:ident($spec:expr)
+    ($($row:ident($spec:ident, $in:ident, $out:ident)
         $parameter:ident $parameter_doc:literal $input:ident $input_doc:literal $output:ident $output_doc:literal
         ($($of:ident: $of_type:ty)?) $start:ident: $start_type:ty;)*) => {
-        /// Constructors of Integer, Boolean, String and enumeration variables. Inputs and outputs are discrete.
+        /// Constructors of variables. The `unit` of a Real is `"1"` where there is none. Inputs and outputs are discrete unless
+        /// they are Reals.
         impl<M> Variable<M> {$(
             #[doc = $parameter_doc]
             pub const fn $parameter(
@@ -174,7 +150,7 @@ macro_rules! constructors {
                 $start: $start_type,
                 description: &'static str,
             ) -> $row<M, Settable> {
-                declare(DISCRETE_INPUT, name, description, $spec($($of,)? Some($start)))
+                declare($in, name, description, $spec($($of,)? Some($start)))
             }
 
             #[doc = $output_doc]
@@ -183,19 +159,26 @@ macro_rules! constructors {
                 $($of: $of_type,)?
                 description: &'static str,
             ) -> $row<M, ReadOnly> {
-                declare(DISCRETE_OUTPUT, name, description, $spec($($of,)? None))
+                declare($out, name, description, $spec($($of,)? None))
             }
         )*}
     };
 }
 constructors! {
-    Integer(integer) integer_parameter "A fixed Integer parameter." integer_input "An Integer input."
+    Real(real, INPUT, OUTPUT)
+        parameter "A fixed Real parameter; [`tunable`](Declaration::tunable) lets it change between steps."
+        input "A continuous Real input." output "A continuous Real output, calculated from the start."
+        (unit: &'static str) start: f64;
+    Integer(integer, DISCRETE_INPUT, DISCRETE_OUTPUT)
+        integer_parameter "A fixed Integer parameter." integer_input "An Integer input."
         integer_output "An Integer output." () start: i64;
-    Boolean(boolean) boolean_parameter "A fixed Boolean parameter." boolean_input "A Boolean input."
+    Boolean(boolean, DISCRETE_INPUT, DISCRETE_OUTPUT)
+        boolean_parameter "A fixed Boolean parameter." boolean_input "A Boolean input."
         boolean_output "A Boolean output." () start: bool;
-    Text(text) string_parameter "A fixed String parameter." string_input "A String input."
+    Text(text, DISCRETE_INPUT, DISCRETE_OUTPUT)
+        string_parameter "A fixed String parameter." string_input "A String input."
         string_output "A String output." () start: &'static str;
-    Enumeration(enumeration)
+    Enumeration(enumeration, DISCRETE_INPUT, DISCRETE_OUTPUT)
         enumeration_parameter "A fixed parameter that chooses an item; `start` is its number, from 1."
         enumeration_input "An input that chooses an item; `start` is its number, from 1."
         enumeration_output "An output that tells an item." (of: &'static EnumerationType) start: i32;
