@@ -4,6 +4,7 @@
 //! `UPDATE_GOLDEN=1`, validated against the schemas of FMI 2.0 and 3.0 with FMPy 0.3.32 by hand.
 #![cfg(feature = "model-description")]
 
+use core::cell::Cell;
 use core::ffi::{CStr, c_char, c_int, c_void};
 
 use crate::common::{slave, toy::Toy};
@@ -63,99 +64,126 @@ fn start_and_initial_stand_exactly_where_they_must() {
     }
 }
 
-/// A model of one number with these rows.
-macro_rules! small {
-    ($name:ident $(model_exchange($indicators:literal))?, $($row:expr),* $(,)?) => {
-        #[derive(Clone, Default)]
-        #[allow(dead_code)]
-        struct $name(f64);
+/// A model of one number that has the rows which a test sets: one type for all, as what writes a description is compiled for each.
+#[derive(Clone, Default)]
+struct Small(f64);
 
-        slave!($name, ModelInfo::new("Small")$(.model_exchange($indicators))?, {
-            type V = Variable<$name>;
-            static TABLE: &[V] = &[$($row),*];
-            TABLE
-        });
-    };
+type V = Variable<Small>;
+
+thread_local! {
+    static ROWS: Cell<&'static [V]> = const { Cell::new(&[]) };
+}
+
+slave!(Small, ModelInfo::new("Small"), ROWS.get());
+
+macro_rules! rows {
+    ($($row:expr),*) => {{
+        const ROWS: &[V] = &[$($row),*];
+        ROWS
+    }};
+}
+
+fn text_of(rows: &'static [V]) -> Result<String, String> {
+    ROWS.set(rows);
+    model_description::<Small>(Standard::Fmi2).map_err(|error| error.to_string())
 }
 
 #[test]
 fn the_guid_changes_with_the_interface_but_not_with_a_description() {
-    small!(Base, V::parameter("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    small!(Described, V::parameter("a", "m", 1.0, "other words").access(|m| m.0, |m, v| m.0 = v));
-    small!(Renamed, V::parameter("b", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    small!(Unit, V::parameter("a", "s", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    small!(Start, V::parameter("a", "m", 2.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    small!(Bound, V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v));
-    small!(Tunable, V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v));
-    small!(Input, V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v));
-    small!(Output, V::output("a", "m", "one").get(|m| m.0));
-    small!(Initial, V::output("a", "m", "one").initially_depends_on(&[]).get(|m| m.0));
-    let base = Guid::of::<Base>(Standard::Fmi2);
-    assert_eq!(base, Guid::of::<Described>(Standard::Fmi2));
-    let others = [
-        Guid::of::<Renamed>(Standard::Fmi2),
-        Guid::of::<Unit>(Standard::Fmi2),
-        Guid::of::<Start>(Standard::Fmi2),
-        Guid::of::<Bound>(Standard::Fmi2),
-        Guid::of::<Tunable>(Standard::Fmi2),
-        Guid::of::<Input>(Standard::Fmi2),
-        Guid::of::<Output>(Standard::Fmi2),
-        Guid::of::<Initial>(Standard::Fmi2),
-    ];
-    for (i, other) in others.iter().enumerate() {
-        assert_ne!(*other, base, "{i}");
-        assert!(!others[..i].contains(other), "{i}");
+    let guid = |rows| {
+        ROWS.set(rows);
+        Guid::of::<Small>(Standard::Fmi2)
+    };
+    let mut found = vec![guid(rows![V::parameter("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v)])];
+    let described = guid(rows![V::parameter("a", "m", 1.0, "other words").access(|m| m.0, |m, v| m.0 = v)]);
+    assert_eq!(described, found[0]);
+    for (k, rows) in [
+        rows![V::parameter("b", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::parameter("a", "s", 1.0, "one").access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::parameter("a", "m", 2.0, "one").access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::parameter("a", "m", 1.0, "one").min(0.0).access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::parameter("a", "m", 1.0, "one").tunable().access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::input("a", "m", 1.0, "one").access(|m| m.0, |m, v| m.0 = v)],
+        rows![V::output("a", "m", "one").get(|m| m.0)],
+        rows![V::output("a", "m", "one").initially_depends_on(&[]).get(|m| m.0)],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let guid = guid(rows);
+        assert!(!found.contains(&guid), "{k}");
+        found.push(guid);
     }
 }
 
 #[test]
 fn a_minimal_table_has_no_empty_elements() {
-    small!(Minimal, V::parameter("a", "1", 1.0, "").access(|m| m.0, |m, v| m.0 = v));
-    let text = model_description::<Minimal>(Standard::Fmi2).expect("a sound table");
+    let text = text_of(rows![V::parameter("a", "1", 1.0, "").access(|m| m.0, |m, v| m.0 = v)]).expect("a sound table");
     for element in ["UnitDefinitions", "TypeDefinitions", "DefaultExperiment", "Outputs", "description=\"\""] {
         assert!(!text.contains(element), "{element}");
     }
     assert!(text.contains("<ModelStructure"));
 }
 
+const TWINS: &[V] = rows![V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0)];
+
 #[test]
 fn mistakes_in_a_table_are_found_and_named() {
-    fn mistake<S: Slave>() -> String {
-        model_description::<S>(Standard::Fmi2).expect_err("a mistake").to_string()
-    }
     static LAW: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("a", "")] };
     static OTHER: EnumerationType = EnumerationType { name: "Law", description: "", items: &[("b", "")] };
-    small!(Twice, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
-    assert_eq!(mistake::<Twice>(), "the FMU is faulty: a: its name occurs twice");
-    small!(Bounds, V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v));
-    assert_eq!(mistake::<Bounds>(), "the FMU is faulty: a: start 1: below its min 2 m");
-    small!(Tunable, V::input("a", "m", 1.0, "").tunable().access(|m| m.0, |m, v| m.0 = v));
-    assert_eq!(mistake::<Tunable>(), "the FMU is faulty: a: a Real cannot be a tunable input");
-    small!(Unknown, V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0));
-    assert_eq!(mistake::<Unknown>(), "the FMU is faulty: a: it depends on b, which is not in the table");
-    small!(
-        Initially,
-        V::output("a", "m", "").get(|m| m.0),
-        V::output("b", "m", "").initially_depends_on(&[&["a"]]).get(|m| m.0)
-    );
-    assert_eq!(
-        mistake::<Initially>(),
-        "the FMU is faulty: b: it initially depends on a, which is no input or parameter"
-    );
-    small!(Item, V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ()));
-    assert_eq!(mistake::<Item>(), "the FMU is faulty: a: start 2: no item of Law; allowed: 1 (a)");
-    small!(Types, V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1),);
-    assert_eq!(mistake::<Types>(), "the FMU is faulty: b: there are two enumerations named Law");
-    small!(Control, V::output("a", "m", "one\ntwo").get(|m| m.0));
-    assert!(mistake::<Control>().contains("control character"));
-    small!(Times, V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0));
-    assert!(mistake::<Times>().contains("two independent variables"));
-    small!(Jump, V::output("a", "1", "").reinit().get(|m| m.0));
-    assert_eq!(mistake::<Jump>(), "the FMU is faulty: a: it jumps at events, but this FMU is not for model exchange");
-    small!(NoState model_exchange(0), V::output("a", "1", "").reinit().get(|m| m.0));
-    assert_eq!(mistake::<NoState>(), "the FMU is faulty: a: it jumps at events, but is no continuous state");
-    small!(NoUnit, V::output("a", "", "").get(|m| m.0));
-    assert!(mistake::<NoUnit>().contains("its unit is empty"));
+    for (rows, mistake) in [
+        (TWINS, "a: its name occurs twice"),
+        (
+            rows![V::parameter("a", "m", 1.0, "").min(2.0).access(|m| m.0, |m, v| m.0 = v)],
+            "a: start 1: below its min 2 m",
+        ),
+        (
+            rows![V::input("a", "m", 1.0, "").tunable().access(|m| m.0, |m, v| m.0 = v)],
+            "a: a Real cannot be a tunable input",
+        ),
+        (
+            rows![V::output("a", "m", "").depends_on(&["b"]).get(|m| m.0)],
+            "a: it depends on b, which is not in the table",
+        ),
+        (
+            rows![
+                V::output("a", "m", "").get(|m| m.0),
+                V::output("b", "m", "").initially_depends_on(&[&["a"]]).get(|m| m.0)
+            ],
+            "b: it initially depends on a, which is no input or parameter",
+        ),
+        (
+            rows![V::enumeration_parameter("a", &LAW, 2, "").access(|_| 1, |_, _| ())],
+            "a: start 2: no item of Law; allowed: 1 (a)",
+        ),
+        (
+            rows![V::enumeration_output("a", &LAW, "").get(|_| 1), V::enumeration_output("b", &OTHER, "").get(|_| 1)],
+            "b: there are two enumerations named Law",
+        ),
+        (rows![V::output("a", "m", "one\ntwo").get(|m| m.0)], "a: \"one\\ntwo\" contains a control character"),
+        (
+            rows![V::independent("t", "").get(|m| m.0), V::independent("u", "").get(|m| m.0)],
+            "table: there are two independent variables",
+        ),
+        (
+            rows![V::output("a", "1", "").reinit().get(|m| m.0)],
+            "a: it jumps at events, but this FMU is not for model exchange",
+        ),
+        (rows![V::output("a", "", "").get(|m| m.0)], "a: its unit is empty; use \"1\" for none"),
+    ] {
+        assert_eq!(text_of(rows), Err(format!("the FMU is faulty: {mistake}")));
+    }
+}
+
+#[test]
+fn what_jumps_in_model_exchange_is_a_continuous_state() {
+    #[derive(Clone, Default)]
+    struct NoState(f64);
+    slave!(NoState, ModelInfo::new("Small").model_exchange(0), {
+        const { &[Variable::<NoState>::output("a", "1", "").reinit().get(|m| m.0)] }
+    });
+    let mistake = model_description::<NoState>(Standard::Fmi2).expect_err("a mistake").to_string();
+    assert_eq!(mistake, "the FMU is faulty: a: it jumps at events, but is no continuous state");
 }
 
 /// Names and texts that the library gives a packager.
@@ -183,8 +211,8 @@ fn the_library_gives_a_packager_the_same_texts_or_the_reason_why_not() {
         ];
         assert_eq!(texts, expected.map(|(name, text)| (name.to_owned(), text)));
     }
-    small!(Twins, V::output("a", "1", "").get(|m| m.0), V::output("a", "1", "").get(|m| m.0));
-    let of_twins = fmu_export::describe::fmu_export_describe_1::<Twins>;
+    ROWS.set(TWINS);
+    let of_twins = fmu_export::describe::fmu_export_describe_1::<Small>;
     let texts = described(|r, i, take, context| unsafe { of_twins(r, i, take, context) }, false);
     assert_eq!(texts, [("error".to_owned(), "the FMU is faulty: a: its name occurs twice".to_owned())]);
 }
