@@ -10,11 +10,10 @@
 //! # }
 //! ```
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use fmu_import::{Causality, FmiError, Kind, ModelDescription, Value, Variable};
-use serde::Serialize;
+use fmu_import::{Causality, EnumerationItem, FmiError, Kind, ModelDescription, Value, Variable};
+use serde_json::{Map, Value as Json, json};
 use thiserror::Error;
 use videg_circuit::Settings;
 use videg_model::Case;
@@ -44,76 +43,6 @@ pub enum ExplorerError {
     Description(#[from] FmiError),
     #[error("the page has no place for what it must know of variables and cases; build it anew")]
     NoPlace,
-    #[error("cannot write what the page knows: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
-/// What the page knows of the program that made it.
-#[derive(Serialize)]
-struct Description<'a> {
-    version: &'static str,
-    variables: Vec<Parameter<'a>>,
-    cases: Vec<Published>,
-    state: State,
-}
-
-/// A parameter, as the reference lists it.
-#[derive(Serialize)]
-struct Parameter<'a> {
-    name: &'a str,
-    /// `harvester` or `circuit`.
-    part: &'static str,
-    kind: &'static str,
-    unit: Option<&'a str>,
-    start: Option<Number>,
-    min: Option<f64>,
-    max: Option<f64>,
-    items: Vec<Item<'a>>,
-    description: &'a str,
-}
-
-#[derive(Serialize)]
-struct Item<'a> {
-    name: &'a str,
-    value: i32,
-    description: Option<&'a str>,
-}
-
-/// A value of a parameter; choices by name.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Number {
-    Real(f64),
-    /// Numbers that JSON does not have.
-    Text(String),
-    Integer(i64),
-    Switch(bool),
-}
-
-/// A published case.
-#[derive(Serialize)]
-struct Published {
-    name: &'static str,
-    description: &'static str,
-    source: &'static str,
-    settings: BTreeMap<String, Number>,
-}
-
-/// What the page begins with.
-#[derive(Serialize)]
-struct State {
-    case: &'static str,
-    set: BTreeMap<String, Number>,
-    files: BTreeMap<String, File>,
-    until: f64,
-    from: f64,
-    begin: f64,
-}
-
-#[derive(Serialize)]
-struct File {
-    name: String,
-    text: String,
 }
 
 /// The page, which begins with `scenario`.
@@ -122,14 +51,13 @@ struct File {
 /// A setting that neither harvester nor circuit takes; a file that cannot be read; a page that cannot be built.
 pub fn page(scenario: &Scenario, options: &package::Options) -> Result<String, ExplorerError> {
     let description = system_description()?;
-    let description = Description {
-        version: env!("CARGO_PKG_VERSION"),
-        variables: parameters(&description)?,
-        cases: Case::ALL.iter().map(|case| published(&description, case)).collect::<Result<_, _>>()?,
-        state: state(&description, scenario)?,
-    };
-    let json = videg_report::inert(&serde_json::to_string(&description)?);
-    with_description(&package::explorer(options)?, &json).ok_or(ExplorerError::NoPlace)
+    let cases = Case::ALL.iter().map(|case| published(&description, case)).collect::<Result<Vec<_>, _>>()?;
+    let known = json!({
+        "version": env!("CARGO_PKG_VERSION"), "variables": parameters(&description)?, "cases": cases,
+        "state": state(&description, scenario)?,
+    });
+    with_description(&package::explorer(options)?, &videg_report::inert(&known.to_string()))
+        .ok_or(ExplorerError::NoPlace)
 }
 
 /// The `page` with another description: it has one element for that, which may be empty or of another machine.
@@ -141,7 +69,7 @@ fn with_description(page: &str, json: &str) -> Option<String> {
 }
 
 /// Parameters of the harvester, then those of the circuit that can be set without an FMU.
-fn parameters(description: &ModelDescription) -> Result<Vec<Parameter<'_>>, ExplorerError> {
+fn parameters(description: &ModelDescription) -> Result<Vec<Json>, ExplorerError> {
     let harvester = harvester_description()?;
     let quantities = Settings::QUANTITIES.iter().map(|it| it.name);
     let of_circuit: Vec<_> = quantities.chain(Settings::CHOICES.iter().map(|it| it.name)).collect();
@@ -154,43 +82,37 @@ fn parameters(description: &ModelDescription) -> Result<Vec<Parameter<'_>>, Expl
     Ok(are_set.filter_map(|variable| Some(parameter(description, variable, part(variable)?))).collect())
 }
 
-fn parameter<'a>(description: &'a ModelDescription, variable: &'a Variable, part: &'static str) -> Parameter<'a> {
-    let enumeration = description.enumeration(variable);
-    let items = enumeration.map_or(&[][..], |enumeration| &enumeration.items).iter();
-    let item = |value: i32| items.clone().find(|item| item.value == value).map(|item| Number::Text(item.name.clone()));
-    let (kind, start) = match &variable.kind {
-        Kind::Real { start, .. } => ("real", start.map(real)),
-        Kind::Integer { start, .. } => ("integer", start.map(Number::Integer)),
-        Kind::Boolean { start } => ("boolean", start.map(Number::Switch)),
-        Kind::String { .. } | Kind::Other => ("string", None),
-        Kind::Enumeration { start } => ("enumeration", start.and_then(item)),
+/// A parameter, as the reference lists it; `part` is harvester or circuit.
+fn parameter(description: &ModelDescription, variable: &Variable, part: &str) -> Json {
+    let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
+    let item = |value: i32| items.iter().find(|item| item.value == value).map(|item| item.name.as_str().into());
+    let start = match &variable.kind {
+        Kind::Real { start, .. } => start.map(real),
+        Kind::Integer { start, .. } => start.map(Json::from),
+        Kind::Boolean { start } => start.map(Json::from),
+        Kind::String { .. } | Kind::Other => None,
+        Kind::Enumeration { start } => start.and_then(item),
     };
+    let item = |it: &EnumerationItem| json!({ "name": it.name, "value": it.value, "description": it.description });
     let [min, max] = variable.kind.bounds();
-    Parameter {
-        name: &variable.name,
-        part,
-        kind,
-        unit: variable.unit().filter(|unit| *unit != "1"),
-        start,
-        min,
-        max,
-        items: items
-            .clone()
-            .map(|item| Item { name: &item.name, value: item.value, description: item.description.as_deref() })
-            .collect(),
-        description: variable.description.as_deref().unwrap_or_default(),
-    }
+    json!({
+        "name": variable.name, "part": part, "kind": variable.kind.name().to_lowercase(),
+        "unit": variable.unit().filter(|unit| *unit != "1"), "start": start, "min": min, "max": max,
+        "items": items.iter().map(item).collect::<Vec<_>>(),
+        "description": variable.description.as_deref().unwrap_or_default(),
+    })
 }
 
-fn published(description: &ModelDescription, case: &'static Case) -> Result<Published, ExplorerError> {
+fn published(description: &ModelDescription, case: &Case) -> Result<Json, ExplorerError> {
     let scenario = Request { case: Some(case.name.to_owned()), ..Request::default() }.resolve()?;
     let settings = scenario.settings.iter().map(|setting| Ok((setting.name.clone(), number(description, setting)?)));
-    let settings = settings.collect::<Result<_, ExplorerError>>()?;
-    Ok(Published { name: case.name, description: case.description, source: case.source, settings })
+    let settings = settings.collect::<Result<Map<_, _>, ExplorerError>>()?;
+    Ok(json!({ "name": case.name, "description": case.description, "source": case.source, "settings": settings }))
 }
 
-fn state(description: &ModelDescription, scenario: &Scenario) -> Result<State, ExplorerError> {
-    let (mut set, mut files) = (BTreeMap::new(), BTreeMap::new());
+/// What the page begins with.
+fn state(description: &ModelDescription, scenario: &Scenario) -> Result<Json, ExplorerError> {
+    let (mut set, mut files) = (Map::new(), Map::new());
     for setting in scenario.changes() {
         let is_file = description.variable(&setting.name).is_ok_and(|it| matches!(it.kind, Kind::String { .. }));
         if !is_file {
@@ -200,27 +122,27 @@ fn state(description: &ModelDescription, scenario: &Scenario) -> Result<State, E
         }
     }
     let [from, until] = [scenario.window[0], scenario.until];
-    Ok(State { case: scenario.case, set, files, until, from, begin: from })
+    Ok(json!({ "case": scenario.case, "set": set, "files": files, "until": until, "from": from, "begin": from }))
 }
 
 /// The value of a setting, of the type of its variable.
-fn number(description: &ModelDescription, setting: &Setting) -> Result<Number, ExplorerError> {
+fn number(description: &ModelDescription, setting: &Setting) -> Result<Json, ExplorerError> {
     let failed = |reason: String| ExplorerError::Setting { place: setting.place(), reason };
     let variable = description.variable(&setting.name).map_err(|error| failed(error.to_string()))?;
     Ok(match Value::parse(description, variable, &setting.value).map_err(|error| failed(error.to_string()))? {
         Value::Real(value) => real(value),
-        Value::Integer(value) => Number::Integer(value.into()),
-        Value::Boolean(on) => Number::Switch(on),
-        Value::Enumeration { name, .. } => Number::Text(name),
-        Value::String(text) => Number::Text(text),
+        Value::Integer(value) => value.into(),
+        Value::Boolean(on) => on.into(),
+        Value::Enumeration { name: text, .. } | Value::String(text) => text.into(),
     })
 }
 
-fn real(value: f64) -> Number {
-    if value == f64::INFINITY { Number::Text("Infinity".to_owned()) } else { Number::Real(value) }
+/// JSON has no infinity.
+fn real(value: f64) -> Json {
+    if value == f64::INFINITY { "Infinity".into() } else { value.into() }
 }
 
-fn file(setting: &Setting) -> Result<File, ExplorerError> {
+fn file(setting: &Setting) -> Result<Json, ExplorerError> {
     let path = setting.value_for_fmu();
     let failed = |cause| ExplorerError::File { place: setting.place(), path: setting.value.clone(), cause };
     let size = std::fs::metadata(&*path).map_err(failed)?.len();
@@ -230,7 +152,7 @@ fn file(setting: &Setting) -> Result<File, ExplorerError> {
     let text = videg_input::read_text(Path::new(&*path)).map_err(failed)?;
     let name =
         Path::new(&setting.value).file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    Ok(File { name, text })
+    Ok(json!({ "name": name, "text": text }))
 }
 
 #[cfg(test)]
@@ -251,7 +173,7 @@ mod tests {
     fn every_parameter_of_harvester_and_circuit_is_on_the_page_once() {
         let description = system_description().unwrap();
         let parameters = parameters(&description).unwrap();
-        let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
+        let names: Vec<_> = parameters.iter().map(|it| &it["name"]).collect();
         let model = videg_model::Parameters::TABLE.iter().map(|it| it.name);
         let model = model.chain(videg_model::Parameters::CHOICES.iter().map(|it| it.name));
         let circuit = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
@@ -266,11 +188,11 @@ mod tests {
         let settings = settings.map(|text| Setting::parse(text).unwrap()).to_vec();
         let request = Request { case: Some("fig15".to_owned()), settings, until: Some(20.0), ..Request::default() };
         let state = state(&system_description().unwrap(), &request.resolve().unwrap()).unwrap();
-        let expected = concat!(
-            "{\"case\":\"fig15\",\"set\":{\"contact.reaction\":true,\"excitation.seed\":7,\"load.resistance\":\"Infinity\",",
-            "\"topology\":\"isolated\"},\"files\":{},\"until\":20.0,\"from\":10.0,\"begin\":10.0}"
-        );
-        assert_eq!(serde_json::to_string(&state).unwrap(), expected);
+        let set = json!({
+            "contact.reaction": true, "excitation.seed": 7, "load.resistance": "Infinity", "topology": "isolated",
+        });
+        let expected = json!({ "case": "fig15", "set": set, "files": {}, "until": 20.0, "from": 10.0, "begin": 10.0 });
+        assert_eq!(state, expected);
         let wrong = Setting::parse("topology=star").unwrap();
         let error = number(&system_description().unwrap(), &wrong).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains("--set topology") && error.contains("star"), "{error}");
