@@ -85,19 +85,12 @@ fn parameters(description: &ModelDescription) -> Result<Vec<Json>, ExplorerError
 /// A parameter, as the reference lists it; `part` is harvester or circuit.
 fn parameter(description: &ModelDescription, variable: &Variable, part: &str) -> Json {
     let items = description.enumeration(variable).map_or(&[][..], |enumeration| &enumeration.items);
-    let item = |value: i32| items.iter().find(|item| item.value == value).map(|item| item.name.as_str().into());
-    let start = match &variable.kind {
-        Kind::Real { start, .. } => start.map(real),
-        Kind::Integer { start, .. } => start.map(Json::from),
-        Kind::Boolean { start } => start.map(Json::from),
-        Kind::String { .. } | Kind::Other => None,
-        Kind::Enumeration { start } => start.and_then(item),
-    };
+    let start = description.start(variable).filter(|start| !matches!(start, Value::String(_)));
     let item = |it: &EnumerationItem| json!({ "name": it.name, "value": it.value, "description": it.description });
     let [min, max] = variable.kind.bounds();
     json!({
         "name": variable.name, "part": part, "kind": variable.kind.name().to_lowercase(),
-        "unit": variable.unit().filter(|unit| *unit != "1"), "start": start, "min": min, "max": max,
+        "unit": variable.unit().filter(|unit| *unit != "1"), "start": start.map(as_json), "min": min, "max": max,
         "items": items.iter().map(item).collect::<Vec<_>>(),
         "description": variable.description.as_deref().unwrap_or_default(),
     })
@@ -129,17 +122,18 @@ fn state(description: &ModelDescription, scenario: &Scenario) -> Result<Json, Ex
 fn number(description: &ModelDescription, setting: &Setting) -> Result<Json, ExplorerError> {
     let failed = |reason: String| ExplorerError::Setting { place: setting.place(), reason };
     let variable = description.variable(&setting.name).map_err(|error| failed(error.to_string()))?;
-    Ok(match Value::parse(description, variable, &setting.value).map_err(|error| failed(error.to_string()))? {
-        Value::Real(value) => real(value),
+    Value::parse(description, variable, &setting.value).map(as_json).map_err(|error| failed(error.to_string()))
+}
+
+fn as_json(value: Value) -> Json {
+    match value {
+        // JSON has no infinity.
+        Value::Real(f64::INFINITY) => "Infinity".into(),
+        Value::Real(value) => value.into(),
         Value::Integer(value) => value.into(),
         Value::Boolean(on) => on.into(),
         Value::Enumeration { name: text, .. } | Value::String(text) => text.into(),
-    })
-}
-
-/// JSON has no infinity.
-fn real(value: f64) -> Json {
-    if value == f64::INFINITY { "Infinity".into() } else { value.into() }
+    }
 }
 
 fn file(setting: &Setting) -> Result<Json, ExplorerError> {

@@ -181,7 +181,7 @@ impl Part<'_> {
         for variable in &self.description.variables {
             let Some(setting) = self.settings.iter().rfind(|setting| setting.name == variable.name) else { continue };
             let value = Value::parse(self.description, variable, &setting.value).map_err(fmu_import::FmiError::from)?;
-            if !is_start(variable, &value) {
+            if self.description.start(variable).as_ref() != Some(&value) {
                 parameters.push(Parameter { name: variable.name.clone(), value });
             }
         }
@@ -201,17 +201,6 @@ impl Part<'_> {
             Some(Connector { name: &variable.name, kind, unit: variable.unit() })
         });
         connectors.collect()
-    }
-}
-
-fn is_start(variable: &Variable, value: &Value) -> bool {
-    match (&variable.kind, value) {
-        (Kind::Real { start, .. }, Value::Real(value)) => *start == Some(*value),
-        (Kind::Integer { start, .. }, Value::Integer(value)) => *start == Some((*value).into()),
-        (Kind::Enumeration { start }, Value::Enumeration { value, .. }) => *start == Some(*value),
-        (Kind::Boolean { start }, Value::Boolean(value)) => *start == Some(*value),
-        (Kind::String { start }, Value::String(value)) => start.as_ref() == Some(value),
-        _ => false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! All parameters of the harvester as a scenario has them, for tools that start its FMU themselves.
 
-use fmu_import::{Causality, FmiError, Kind, ModelDescription, Value, Variable};
+use fmu_import::{Causality, FmiError, ModelDescription, Value, Variable};
 
 use super::Scenario;
 use super::harvester::harvester_description;
@@ -34,23 +34,15 @@ fn start_value(
     scenario: &Scenario,
 ) -> Result<StartValue, FmiError> {
     let set = scenario.settings.iter().rfind(|setting| setting.name == variable.name);
-    let text = set.map_or_else(|| start(variable), |setting| setting.value_for_fmu().into_owned());
+    let value = match set {
+        Some(setting) => Value::parse(description, variable, &setting.value_for_fmu())?,
+        // Every parameter of the harvester has one.
+        None => description.start(variable).unwrap_or(Value::String(String::new())),
+    };
     Ok(StartValue {
         name: variable.name.clone(),
-        value: Value::parse(description, variable, &text)?,
+        value,
         unit: variable.unit().filter(|unit| *unit != "1").map(str::to_owned),
         description: variable.description.clone().unwrap_or_default(),
     })
-}
-
-/// The start value as a user types it. Every parameter of the harvester has one.
-fn start(variable: &Variable) -> String {
-    match &variable.kind {
-        Kind::Real { start, .. } => format!("{:?}", start.unwrap_or_default()),
-        Kind::Integer { start, .. } => start.unwrap_or_default().to_string(),
-        Kind::Enumeration { start } => start.unwrap_or_default().to_string(),
-        Kind::Boolean { start } => start.unwrap_or_default().to_string(),
-        Kind::String { start } => start.clone().unwrap_or_default(),
-        Kind::Other => String::new(),
-    }
 }

@@ -1,4 +1,4 @@
-use crate::{Causality, FmiError, Initial, Kind, ModelDescription, Variability};
+use crate::{Causality, FmiError, Initial, Kind, ModelDescription, Value, Variability};
 
 const GOOD: &str = include_str!("../testdata/good.xml");
 
@@ -42,6 +42,13 @@ fn variables_take_defaults_and_the_attributes_of_their_type() {
     let law = description.variable("law").unwrap();
     assert_eq!(description.enumeration(law).unwrap().items[1].name, "compliant");
     assert_eq!(description.variable("enabled").unwrap().variability, Variability::Fixed);
+    let start = |name| description.start(description.variable(name).unwrap());
+    assert_eq!(start("mass"), Some(Value::Real(1.5)));
+    assert_eq!(start("seed"), Some(Value::Integer(7)));
+    assert_eq!(start("enabled"), Some(Value::Boolean(true)));
+    assert_eq!(start("label"), Some(Value::String("a & b".to_owned())));
+    assert_eq!(start("law"), Some(Value::Enumeration { value: 1, name: "impulsive".to_owned() }));
+    assert_eq!(start("position"), None);
 }
 
 #[test]
@@ -162,6 +169,7 @@ fn fmi_3_has_other_elements_for_the_same_facts() {
     assert_eq!(kind("vector"), ("Float32", vector), "of an array the first value");
     assert_eq!(kind("count"), ("Int32", Kind::Integer { start: Some(2), min: Some(1), max: Some(9) }));
     assert_eq!(kind("large"), ("UInt64", Kind::Integer { start: Some(i64::MAX), min: None, max: None }));
+    assert_eq!(description.start(description.variable("large").unwrap()), None, "beyond 32 bits");
     assert_eq!(kind("enabled"), ("Boolean", Kind::Boolean { start: Some(true) }));
     assert_eq!(kind("label"), ("String", Kind::String { start: Some("a & b".to_owned()) }));
     assert_eq!(kind("law"), ("Enumeration", Kind::Enumeration { start: Some(2) }));
