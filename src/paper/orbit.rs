@@ -9,8 +9,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use nalgebra::DMatrix;
+
 use super::excitation::set;
 use super::{PaperError, Study};
+use crate::dynamics::orbits::Multipliers;
 use crate::scenario::Setting;
 
 /// At which turning point of the cylinder the ball hits a membrane.
@@ -32,35 +35,6 @@ pub(super) struct SawTooth {
     pub(super) half_travel: f64,
     /// A / M, m/s^2.
     pub(super) acceleration: f64,
-}
-
-/// How a small distance from an orbit changes within one period.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Multipliers {
-    /// Real ones: the larger and the smaller by modulus.
-    Saddle([f64; 2]),
-    /// A conjugate pair: modulus and angle, rad.
-    Centre([f64; 2]),
-}
-
-impl Multipliers {
-    /// Eigenvalues of a matrix of two rows.
-    pub(super) fn of(matrix: [[f64; 2]; 2]) -> Self {
-        let [[a, b], [c, d]] = matrix;
-        let (middle, determinant) = (0.5 * (a + d), a * d - b * c);
-        let discriminant = middle * middle - determinant;
-        if discriminant < 0.0 {
-            return Self::Centre([determinant.sqrt(), (-discriminant).sqrt().atan2(middle)]);
-        }
-        let larger = middle + discriminant.sqrt().copysign(middle);
-        Self::Saddle([larger, determinant / larger])
-    }
-
-    /// Modulus of the larger one.
-    pub(super) fn largest(self) -> f64 {
-        let (Self::Saddle([largest, _]) | Self::Centre([largest, _])) = self;
-        largest.abs()
-    }
 }
 
 impl SawTooth {
@@ -132,8 +106,8 @@ impl SawTooth {
         let tau = self.period() / (2.0 * self.speed());
         let g = k / tau;
         // (dt, q) after half a period; the other half is its mirror image.
-        let half = [[1.0, -tau], [-2.0 * g, 1.0 + 2.0 * g * tau]];
-        Multipliers::of(product(half, half))
+        let half = DMatrix::from_row_slice(2, 2, &[1.0, -tau, -2.0 * g, 1.0 + 2.0 * g * tau]);
+        Multipliers::of(&(&half * &half)).unwrap_or_default()
     }
 
     /// Multipliers by central differences of runs of the FMU over one period; `settings` are those of the case.
@@ -142,7 +116,7 @@ impl SawTooth {
         const STEP: f64 = 1e-5;
         let scale = [self.half_travel, self.speed()];
         let middle = self.in_the_middle();
-        let mut matrix = [[0.0; 2]; 2];
+        let mut matrix = DMatrix::zeros(2, 2);
         for column in 0..2 {
             let after = |step: f64| {
                 let mut state = middle;
@@ -151,10 +125,10 @@ impl SawTooth {
             };
             let (ahead, behind) = (after(STEP)?, after(-STEP)?);
             for row in 0..2 {
-                matrix[row][column] = (ahead[row] - behind[row]) / (2.0 * STEP * scale[row]);
+                matrix[(row, column)] = (ahead[row] - behind[row]) / (2.0 * STEP * scale[row]);
             }
         }
-        Ok(Multipliers::of(matrix))
+        Ok(Multipliers::of(&matrix).unwrap_or_default())
     }
 
     fn after_a_period(&self, study: &Study<'_>, settings: &[Setting], state: [f64; 2]) -> Result<[f64; 2], PaperError> {
@@ -164,26 +138,10 @@ impl SawTooth {
     }
 }
 
-fn product(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    [0, 1].map(|row| [0, 1].map(|column| a[row][0] * b[0][column] + a[row][1] * b[1][column]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-
-    #[test]
-    fn multipliers_are_eigenvalues() {
-        assert_eq!(Multipliers::of([[2.0, 0.0], [7.0, 0.5]]), Multipliers::Saddle([2.0, 0.5]));
-        assert_eq!(Multipliers::of([[-0.5, 0.0], [0.0, -2.0]]), Multipliers::Saddle([-2.0, -0.5]));
-        let (sin, cos) = 0.7_f64.sin_cos();
-        let Multipliers::Centre([modulus, angle]) = Multipliers::of([[cos, -sin], [sin, cos]]) else {
-            panic!("saddle")
-        };
-        assert_relative_eq!(modulus, 1.0);
-        assert_relative_eq!(angle, 0.7, max_relative = 1e-12);
-    }
 
     #[test]
     fn the_closed_form_has_the_trace_of_half_a_period() {
@@ -191,18 +149,16 @@ mod tests {
         for phase in [Phase::Paper, Phase::Opposite] {
             let orbit = SawTooth { phase, frequency: 2.0, half_travel: 0.022, acceleration: 0.01 / 0.1245 };
             let k = orbit.acceleration * orbit.period() / (2.0 * orbit.speed());
-            match orbit.closed_form() {
-                Multipliers::Saddle([large, small]) => {
-                    assert!(phase == Phase::Paper);
-                    assert_relative_eq!(large.sqrt() + small.sqrt(), 2.0 + 2.0 * k, max_relative = 1e-12);
-                    assert_relative_eq!(large * small, 1.0, max_relative = 1e-12);
-                }
-                Multipliers::Centre([modulus, angle]) => {
-                    assert!(phase == Phase::Opposite);
-                    assert_relative_eq!(modulus, 1.0, max_relative = 1e-12);
-                    assert_relative_eq!(2.0 * (angle / 2.0).cos(), 2.0 - 2.0 * k, max_relative = 1e-12);
-                }
+            let found = orbit.closed_form();
+            let [large, small] = found.0[..] else { panic!("{found:?}") };
+            if phase == Phase::Paper {
+                assert_relative_eq!(large.re.sqrt() + small.re.sqrt(), 2.0 + 2.0 * k, max_relative = 1e-12);
+                assert_relative_eq!(large.re * small.re, 1.0, max_relative = 1e-12);
+            } else {
+                assert_relative_eq!(found.largest(), 1.0, max_relative = 1e-12);
+                assert_relative_eq!(2.0 * (large.arg() / 2.0).cos(), 2.0 - 2.0 * k, max_relative = 1e-12);
             }
+            assert_eq!(large.im == 0.0, phase == Phase::Paper);
         }
     }
 }

@@ -4,9 +4,10 @@ use videg_model::{Case, FixedStep};
 
 use super::excitation::set;
 use super::motion;
-use super::orbit::{Multipliers, Phase, SawTooth};
+use super::orbit::{Phase, SawTooth};
 use super::statistics::slope;
 use super::{Artefact, Finding, PaperError, Picture, Run, Sheet, Study};
+use crate::dynamics::orbits::Multipliers;
 use crate::scenario::Setting;
 use videg_report::{Figure, Panel, Series, Style};
 
@@ -116,9 +117,9 @@ impl Stability {
             Finding::new("Figure 10", quantity, unit, videg).reason(reason)
         };
         let closed = self.closed_form.largest();
-        let opposite = match self.opposite_by_differences {
-            Multipliers::Centre([_, angle]) => format!("a pair at an angle of +-{angle:.3} rad: neutrally stable"),
-            Multipliers::Saddle(_) => "real".to_owned(),
+        let opposite = match self.opposite_by_differences.0.first() {
+            Some(one) if one.im != 0.0 => format!("a pair at an angle of +-{:.3} rad: neutrally stable", one.arg()),
+            _ => "real".to_owned(),
         };
         let multiplier = self.by_differences.largest();
         let unstable = format!("above 1: the orbit is unstable; closed form {closed:.6}, the other is its inverse");

@@ -9,7 +9,7 @@ const ROUNDING: f64 = 1e-7;
 const TURNS: usize = 10_000;
 
 /// The multipliers of an orbit: the eigenvalues of the derivative of its return map, by falling modulus.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Multipliers(pub Vec<Complex<f64>>);
 
 impl Multipliers {
