@@ -25,44 +25,14 @@ pub struct Drive {
 /// Results of a [`Drive`].
 #[derive(Debug, Clone)]
 pub struct Driven {
-    /// Averages of the circuits over the window, in their order.
-    pub power: Vec<Power>,
+    /// Mean flows in the circuits over the window, W, in their order.
+    pub power: Vec<Ledger>,
     /// Highest voltages of the membranes in the window, V, in the order of the circuits.
     pub peaks: Vec<f64>,
     /// Those in the window.
     pub impacts: Impacts,
     /// P, Eq. (14), W, over the window.
     pub eq14: f64,
-}
-
-/// Mean power in a circuit, W.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Power {
-    /// From the supply.
-    pub supply: f64,
-    /// Into the load.
-    pub load: f64,
-    /// Into the Zener diodes.
-    pub zener: f64,
-    /// Into the films that leak.
-    pub leakage: f64,
-}
-
-impl Power {
-    /// Net gain, load - supply, W.
-    pub fn surplus(&self) -> f64 {
-        self.load - self.supply
-    }
-
-    fn between(start: &Ledger, end: &Ledger, time: f64) -> Self {
-        let mean = |energy: fn(&Ledger) -> f64| (energy(end) - energy(start)) / time;
-        Self {
-            supply: mean(|l| l.supply),
-            load: mean(|l| l.load),
-            zener: mean(|l| l.zener),
-            leakage: mean(|l| l.leakage),
-        }
-    }
 }
 
 impl Drive {
@@ -84,7 +54,7 @@ impl Drive {
         let ends = recorder.start.iter().flatten().zip(&outcome.circuits);
         let ratios = log.impacts.iter().filter(|impact| impact.time > from).map(|impact| impact.ratio).collect();
         Ok(Driven {
-            power: ends.map(|(start, end)| Power::between(start, &end.ledger, to - from)).collect(),
+            power: ends.map(|(start, end)| end.ledger.flows_since(start, to - from)).collect(),
             peaks: recorder.peaks,
             impacts: Impacts { ratios, time: to - from, rest_capacitance: rest_capacitance[0], bias_voltage },
             eq14: outcome.mechanics.average_power_eq13,

@@ -1,8 +1,8 @@
 //! Beyond the paper: the load and the net gain of Figure 14 with films that leak.
 
-use videg_circuit::{Release, Topology};
+use videg_circuit::{Ledger, Release, Topology};
 
-use super::coupled::{Power, circuit};
+use super::coupled::circuit;
 use super::tuning::drive;
 use super::{Artefact, Finding, PaperError, Picture, Sheet, Study};
 use videg_report::{Figure, Panel, Series, Style};
@@ -35,7 +35,7 @@ struct Best {
 struct Row {
     /// Power of ten of a second; infinite without leakage.
     exponent: f64,
-    power: Vec<Power>,
+    power: Vec<Ledger>,
     best: Best,
 }
 
@@ -62,7 +62,7 @@ impl Row {
             })
             .collect();
         let power = drive().run(study, &circuits)?.power;
-        let gains: Vec<f64> = power.iter().map(Power::surplus).collect();
+        let gains: Vec<f64> = power.iter().map(Ledger::surplus).collect();
         let middle = 1..gains.len() - 1;
         let index = middle.max_by(|a, b| gains[*a].total_cmp(&gains[*b])).unwrap_or(1);
         let (shift, gain) = top([gains[index - 1], gains[index], gains[index + 1]]);
@@ -182,7 +182,7 @@ fn picture(loads: &[f64], rows: &[Row]) -> Result<Picture, PaperError> {
 
 fn sheets(loads: &[f64], rows: &[Row]) -> Vec<Sheet> {
     let cells = rows.iter().flat_map(|row| {
-        let cell = |(load, power): (&f64, &Power)| {
+        let cell = |(load, power): (&f64, &Ledger)| {
             vec![row.best.time_constant, 10.0_f64.powf(*load), 1e6 * power.surplus(), 1e6 * power.leakage]
         };
         loads.iter().zip(&row.power).map(cell).collect::<Vec<_>>()
