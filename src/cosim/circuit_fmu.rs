@@ -1,10 +1,10 @@
 //! An FMU as a circuit that the master can step: `HarvestingCircuit`, or a user's with a [`Mapping`].
 
-use super::instance::SavedState;
+use super::instance::{SavedState, begin};
 use super::mapping::{Connection, Mapping, Wire};
 use super::{CircuitSample, CircuitSlave, CosimError};
 use crate::scenario::Setting;
-use fmu_import::{Fmu, Instance, Kind, Logging, nearest_name};
+use fmu_import::{Fmu, Instance, Kind, nearest_name};
 use videg_circuit::Settings;
 
 /// A circuit FMU of the user, and what of it counts.
@@ -96,22 +96,21 @@ impl FmuCircuit {
         capacitance: [f64; 2],
         until: f64,
     ) -> Result<Self, CosimError> {
-        Self::with(label, fmu, Mapping::default().connect(fmu.description())?, settings, capacitance, until)
+        Self::with(label, fmu, Mapping::default().connect(fmu.description())?, &[], settings, capacitance, until)
     }
 
-    /// The circuit of a user with the variables of `connection`; the rest as in [`FmuCircuit::new`].
-    pub(super) fn of_user(
-        user: &ForeignCircuit<'_>,
+    /// The same with the variables of `connection`, and with the waveforms of `probes`.
+    pub(super) fn with(
+        label: &str,
+        fmu: &Fmu,
         connection: Connection,
+        probes: &[String],
         settings: &[Setting],
         capacitance: [f64; 2],
         until: f64,
     ) -> Result<Self, CosimError> {
-        let description = user.fmu.description();
-        let mut probe_references = Vec::new();
-        for name in user.probes {
-            probe_references.push(real(description, name)?);
-        }
+        let description = fmu.description();
+        let probe_references = probes.iter().map(|name| real(description, name)).collect::<Result<Vec<_>, _>>()?;
         let mut notes = Vec::new();
         if !connection.interpolates {
             notes.push(format!(
@@ -120,31 +119,7 @@ impl FmuCircuit {
                 description.model_name
             ));
         }
-        let mut circuit = Self::with(&description.model_name, user.fmu, connection, settings, capacitance, until)?;
-        circuit.probed = vec![0.0; probe_references.len()];
-        let begun = Self { probes: user.probes.to_vec(), probe_references, notes, ..circuit };
-        Ok(begun.probed()?)
-    }
-
-    fn with(
-        label: &str,
-        fmu: &Fmu,
-        connection: Connection,
-        settings: &[Setting],
-        capacitance: [f64; 2],
-        until: f64,
-    ) -> Result<Self, CosimError> {
-        let mut instance = fmu.instantiate("circuit", Logging::default())?;
-        instance.begin_initialization(
-            0.0,
-            Some(until),
-            settings,
-            |it| fmu.description().is_input(&it.name),
-            |instance, setting| {
-                let set = instance.set_by_name(&setting.name, &setting.value);
-                set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
-            },
-        )?;
+        let mut instance = begin(fmu, "circuit", Some(until), settings, |setting| setting.value.as_str().into())?;
         let references = |wires: &[Wire]| wires.iter().map(|wire| wire.reference).collect::<Vec<_>>();
         let (inputs, outputs) = (references(&connection.inputs), references(&connection.outputs));
         instance.set_real(&inputs, &connection.scaled(capacitance)[..inputs.len()])?;
@@ -158,12 +133,13 @@ impl FmuCircuit {
             sample: CircuitSample::default(),
             membranes: MembraneEnergy::default(),
             saved: (SavedState::default(), CircuitSample::default(), MembraneEnergy::default()),
-            probes: Vec::new(),
-            probe_references: Vec::new(),
-            probed: Vec::new(),
-            notes: Vec::new(),
+            probes: probes.to_vec(),
+            probed: vec![0.0; probe_references.len()],
+            probe_references,
+            notes,
         };
         let sample = circuit.read()?;
+        circuit.instance.get_real(&circuit.probe_references, &mut circuit.probed)?;
         circuit.membranes = MembraneEnergy::new(capacitance, sample.voltage);
         circuit.sample = circuit.membranes.complete(sample);
         Ok(circuit)
@@ -179,12 +155,6 @@ impl FmuCircuit {
             return Err(CosimError::NotFinite { label: self.label.clone(), variable, value: values[index] });
         }
         Ok(CircuitSample::from_columns(self.connection.columns(values)))
-    }
-
-    /// The same with the values of its probes.
-    fn probed(mut self) -> Result<Self, fmu_import::FmiError> {
-        self.instance.get_real(&self.probe_references, &mut self.probed)?;
-        Ok(self)
     }
 
     /// Every setting as text for the FMU. Numbers read back to the same bits.

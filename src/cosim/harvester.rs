@@ -2,7 +2,7 @@
 
 use super::CosimError;
 use super::balance::ENERGIES;
-use super::instance::{SavedState, read, references};
+use super::instance::{SavedState, begin, read, references};
 use crate::scenario::{Scenario, Setting};
 use fmu_import::{Causality, Fmu, Instance, Logging, Status, Value, Variable};
 use videg_model::Parameters;
@@ -113,17 +113,7 @@ struct Feedback {
 /// # Errors
 /// A setting that the FMU refuses.
 pub(crate) fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result<Instance, CosimError> {
-    let mut instance = fmu.instantiate("harvester", Logging::default())?;
-    instance.begin_initialization(
-        0.0,
-        stop,
-        settings,
-        |it| fmu.description().is_input(&it.name),
-        |instance, setting| {
-            let set = instance.set_by_name(&setting.name, &setting.value_for_fmu());
-            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
-        },
-    )?;
+    let mut instance = begin(fmu, "harvester", stop, settings, Setting::value_for_fmu)?;
     instance.exit_initialization_mode()?;
     Ok(instance)
 }

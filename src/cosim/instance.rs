@@ -1,7 +1,32 @@
 //! Access of the master to an instance of an FMU: references to variables, values, and a state to go back to.
 
+use std::borrow::Cow;
+
 use super::CosimError;
-use fmu_import::{Fmu, FmuState, Instance};
+use crate::scenario::Setting;
+use fmu_import::{Fmu, FmuState, Instance, Logging};
+
+/// An instance of `fmu` in initialization mode, with `settings` for a run from 0 s to `stop`, s; `value` is that of a setting for the FMU.
+pub(super) fn begin(
+    fmu: &Fmu,
+    name: &str,
+    stop: Option<f64>,
+    settings: &[Setting],
+    value: fn(&Setting) -> Cow<'_, str>,
+) -> Result<Instance, CosimError> {
+    let mut instance = fmu.instantiate(name, Logging::default())?;
+    instance.begin_initialization(
+        0.0,
+        stop,
+        settings,
+        |it| fmu.description().is_input(&it.name),
+        |instance, setting| {
+            let set = instance.set_by_name(&setting.name, &value(setting));
+            set.map_err(|cause| CosimError::Refused { place: setting.place(), cause: Box::new(cause) })
+        },
+    )?;
+    Ok(instance)
+}
 
 /// References to the variables called `names`.
 pub fn references<const N: usize>(fmu: &Fmu, names: [&str; N]) -> Result<[u32; N], CosimError> {

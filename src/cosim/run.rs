@@ -149,7 +149,8 @@ impl<'a> Cosimulation<'a> {
         let connection = user.mapping.resolve(description, &settings, &coupling, scenario)?;
         let harvester = HarvesterFmu::new(fmu, scenario, &mechanical)?;
         let (bias_voltage, capacitance) = (harvester.bias_voltage(), harvester.sample()?.capacitance());
-        let circuit = FmuCircuit::of_user(user, connection, &settings, capacitance, scenario.until)?;
+        let (label, probes, until) = (&description.model_name, user.probes, scenario.until);
+        let circuit = FmuCircuit::with(label, user.fmu, connection, probes, &settings, capacitance, until)?;
         let labels = vec![circuit.label().to_owned()];
         let master = Master::new(harvester, vec![Box::new(circuit)], scenario, coupling)?;
         Ok(Self { master, scenario, labels, asked: None, bias_voltage })
