@@ -52,7 +52,7 @@ impl Coupling {
 }
 
 /// Steps and error of the coupling. Field names are the keys of `--json`; units are SI.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct CouplingSummary {
     /// The method.
     pub master: Method,
@@ -71,9 +71,26 @@ pub struct CouplingSummary {
     pub residual: f64,
     /// The difference over the energy moved in both directions.
     pub relative_residual: f64,
+    /// The work by the circuit, without signs, J.
+    #[serde(skip)]
+    moved: f64,
 }
 
 impl CouplingSummary {
+    /// That of a run which has not begun.
+    pub(super) fn new(coupling: Coupling) -> Self {
+        Self { master: coupling.method, tolerance: coupling.tolerance, ..Self::default() }
+    }
+
+    /// Adds the work of a step.
+    pub(super) fn add(&mut self, by_circuit: f64, by_harvester: f64) {
+        self.circuit_work += by_circuit;
+        self.harvester_work += by_harvester;
+        self.moved += by_circuit.abs();
+        self.residual = self.circuit_work - self.harvester_work;
+        self.relative_residual = if self.moved > 0.0 { self.residual.abs() / self.moved } else { 0.0 };
+    }
+
     /// The warning about a coupling whose error in energy makes the surplus meaningless.
     pub(super) fn warning(&self) -> Option<String> {
         /// In units of the energy moved.
@@ -87,44 +104,5 @@ impl CouplingSummary {
                 100.0 * LARGEST_RESIDUAL
             )
         })
-    }
-}
-
-/// Steps of a run, and the work of the mechanics as both sides sum it, J.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct CouplingWork {
-    /// Steps taken.
-    pub steps: u64,
-    /// Steps tried and undone.
-    pub rejected: u64,
-    /// By the circuit.
-    pub circuit: f64,
-    /// By the harvester.
-    pub harvester: f64,
-    /// The circuit's sum, without signs.
-    pub moved: f64,
-}
-
-impl CouplingWork {
-    /// Adds the work of a step.
-    pub(super) fn add(&mut self, by_circuit: f64, by_harvester: f64) {
-        self.circuit += by_circuit;
-        self.harvester += by_harvester;
-        self.moved += by_circuit.abs();
-    }
-
-    /// The sums under `coupling`.
-    pub(super) fn summary(&self, coupling: &Coupling) -> CouplingSummary {
-        let residual = self.circuit - self.harvester;
-        CouplingSummary {
-            master: coupling.method,
-            tolerance: coupling.tolerance,
-            steps: self.steps,
-            rejected: self.rejected,
-            circuit_work: self.circuit,
-            harvester_work: self.harvester,
-            residual,
-            relative_residual: if self.moved > 0.0 { residual.abs() / self.moved } else { 0.0 },
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! The master: one harvester, any number of circuits.
 
 use super::adaptive::StepControl;
-use super::coupling::CouplingWork;
 use super::signal::{Curve, Line};
 use super::{
     Averages, CircuitSample, CircuitSlave, CosimError, Coupling, CouplingSummary, ElementEnergy, EnergyBalance, Flows,
@@ -63,9 +62,8 @@ pub struct Master {
     circuits: Vec<Box<dyn CircuitSlave>>,
     schedule: Schedule,
     scenario: Scenario,
-    coupling: Coupling,
+    coupling: CouplingSummary,
     control: Option<StepControl>,
-    work: CouplingWork,
 }
 
 /// A communication point with the data for the next step.
@@ -111,8 +109,8 @@ impl Master {
         }
         let schedule = Schedule::new(scenario.step, scenario.until, scenario.window);
         let control = coupling.tolerance.map(|tolerance| StepControl::new(tolerance, scenario.step));
-        let (scenario, work) = (scenario.clone(), CouplingWork::default());
-        Ok(Self { harvester, circuits, schedule, scenario, coupling, control, work })
+        let (scenario, coupling) = (scenario.clone(), CouplingSummary::new(coupling));
+        Ok(Self { harvester, circuits, schedule, scenario, coupling, control })
     }
 
     /// Runs to the end, showing each communication point to `observers`.
@@ -162,7 +160,7 @@ impl Master {
             voltage_gain: point.harvester.voltage_gain(),
             energy_eq13: point.harvester.energy_eq13(),
         };
-        let coupling = self.work.summary(&self.coupling);
+        let coupling = self.coupling;
         let balance = energies
             .filter(|_| self.harvester.feels_voltage())
             .zip(point.circuits.first())
@@ -205,8 +203,8 @@ impl Master {
     fn advance(&mut self, from: &Point) -> Result<Point, CosimError> {
         let knot = from.harvester.next_knot();
         let Some(mut control) = self.control else {
-            let knot = if self.coupling.method == Method::Plain { f64::INFINITY } else { knot };
-            self.work.steps += 1;
+            let knot = if self.coupling.master == Method::Plain { f64::INFINITY } else { knot };
+            self.coupling.steps += 1;
             return self.step(from, self.schedule.next(from.time, knot));
         };
         self.save()?;
@@ -219,10 +217,10 @@ impl Master {
             let shortest = next <= self.schedule.within(from.time, 0.0, knot);
             if control.accepts(to.step, error) || shortest {
                 self.control = Some(control);
-                self.work.steps += 1;
+                self.coupling.steps += 1;
                 return Ok(to);
             }
-            self.work.rejected += 1;
+            self.coupling.rejected += 1;
             self.restore()?;
         }
     }
@@ -239,7 +237,7 @@ impl Master {
         }
         self.harvester.step(now, step)?;
         let start = from.harvester.capacitance();
-        let (start, end) = match self.coupling.method {
+        let (start, end) = match self.coupling.master {
             Method::GaussSeidel => (start, self.harvester.sample()?.capacitance()),
             Method::Jacobi => (start, [0, 1].map(|j| start[j] + from.capacitance_rate[j] * step)),
             Method::Plain => (from.given, start),
@@ -255,7 +253,7 @@ impl Master {
     fn voltage(&self, from: &Point, step: f64) -> [Line; 2] {
         let present = from.circuits.first().map_or([0.0; 2], |circuit| circuit.voltage);
         let deaf = self.harvester.feels_voltage() && !self.harvester.takes_voltage_rates();
-        let held = deaf || self.coupling.method == Method::Plain || step > REACH * from.step;
+        let held = deaf || self.coupling.master == Method::Plain || step > REACH * from.step;
         let rate = |j: usize| if held { 0.0 } else { (present[j] - from.voltage[j].start) / from.step };
         [0, 1].map(|j| Line { start: present[j], rate: rate(j) })
     }
@@ -281,7 +279,7 @@ impl Master {
             (Some(before), Some(after)) => after - before,
             _ => (0..2).map(|j| capacitance(from, to, j).work(&to.voltage[j])).sum(),
         };
-        self.work.add(after.ledger.mechanical - before.ledger.mechanical, by_harvester);
+        self.coupling.add(after.ledger.mechanical - before.ledger.mechanical, by_harvester);
     }
 
     fn save(&mut self) -> Result<(), CosimError> {
