@@ -4,7 +4,7 @@ use videg_model::{Parameters, Quantity};
 
 use super::{DynamicsError, Files, Problem, Varied};
 use crate::scenario::Setting;
-use crate::sweep::{self, BuiltIn, Request, Sampling, Sweep, Times, Vary};
+use crate::sweep::{self, BuiltIn, Request, Sweep, Times, Vary};
 
 /// Most values of what varies.
 const MOST: u64 = 100_000;
@@ -45,18 +45,10 @@ impl Varied {
 /// The parameters at each value of `vary`, or those of the settings alone.
 fn resolve(settings: &[Setting], vary: Option<&Vary>) -> Result<Vec<Parameters>, DynamicsError> {
     let description = sweep::harvester_description().map_err(sweep::SweepError::from)?;
+    let times = Times { until: 1.0, step: None, window: [0.5, 1.0] };
     let request = Request {
-        name: "dynamics".to_owned(),
-        description: &description,
-        fmu: None,
-        isolation: None,
-        settings: settings.to_vec(),
-        cases: Vec::new(),
-        times: Times { until: 1.0, step: None, window: [0.5, 1.0] },
         vary: vary.into_iter().cloned().collect(),
-        sampling: Sampling::default(),
-        record: Vec::new(),
-        in_file: Vec::new(),
+        ..Request::new("dynamics".to_owned(), &description, settings.to_vec(), times)
     };
     let sweep = Sweep::new(&request)?;
     if sweep.points() > MOST {

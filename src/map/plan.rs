@@ -7,7 +7,7 @@ use super::axis::{Axis, labelled};
 use super::columns::{Cell, Columns, largest};
 use super::error::MapError;
 use crate::scenario::Scenario;
-use crate::sweep::{self, Design, Engine, POWERS, Sampling, Sweep, System, Times, Vary};
+use crate::sweep::{self, Design, Engine, POWERS, Sweep, System, Times, Vary};
 
 /// Most points: all of them are kept, and drawn.
 const MOST: usize = 1_000_000;
@@ -28,20 +28,8 @@ impl<'a> Request<'a> {
     /// The map of a quantity over two `axes`, x and y, of a case; `description` is that of `system_description`.
     pub fn of_case(description: &'a ModelDescription, scenario: Scenario, [x, y]: [Vary; 2], of: &str) -> Self {
         let Scenario { name, settings, until, window, .. } = scenario;
-        let sweep = sweep::Request {
-            name,
-            description,
-            fmu: None,
-            isolation: None,
-            settings,
-            cases: Vec::new(),
-            times: Times { until, step: None, window },
-            vary: Vec::new(),
-            sampling: Sampling::default(),
-            record: Vec::new(),
-            in_file: Vec::new(),
-        };
-        Self { sweep, x, y, of: of.to_owned() }
+        let times = Times { until, step: None, window };
+        Self { sweep: sweep::Request::new(name, description, settings, times), x, y, of: of.to_owned() }
     }
 }
 

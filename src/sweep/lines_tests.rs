@@ -10,7 +10,7 @@ use super::folder::RESULTS;
 use super::lines::LONGEST;
 use super::plan::Results;
 use super::record::{Found, Record};
-use super::{Request, Sampling, Sweep, SweepError, Times, Vary, merge};
+use super::{Request, Sweep, SweepError, Times, Vary, merge};
 use fmu_import::{ModelDescription, Value};
 
 /// An FMU with a text, an enumeration, and as many outputs as asked for with names of as many letters.
@@ -43,18 +43,11 @@ fn sweep(description: &ModelDescription, values: &[&str]) -> Result<Sweep, Sweep
     let vary = Vary::all_of(&toml::Table::from_iter([("label".to_owned(), values)])).unwrap();
     let is_recorded = |name: &str| name != "label";
     let names = description.variables.iter().map(|variable| variable.name.clone());
+    let times = Times { until: 1.0, step: None, window: [0.0, 1.0] };
     Sweep::new(&Request {
-        name: "toy".to_owned(),
-        description,
-        fmu: None,
-        isolation: None,
-        settings: Vec::new(),
-        cases: Vec::new(),
-        times: Times { until: 1.0, step: None, window: [0.0, 1.0] },
         vary,
-        sampling: Sampling::default(),
         record: names.filter(|name| is_recorded(name)).collect(),
-        in_file: Vec::new(),
+        ..Request::new("toy".to_owned(), description, Vec::new(), times)
     })
 }
 

@@ -50,7 +50,24 @@ pub struct Request<'a> {
     pub in_file: Vec<(&'static str, PathBuf)>,
 }
 
-impl Request<'_> {
+impl<'a> Request<'a> {
+    /// One run that varies and records nothing.
+    pub fn new(name: String, description: &'a ModelDescription, settings: Vec<Setting>, times: Times) -> Self {
+        Self {
+            name,
+            description,
+            fmu: None,
+            isolation: None,
+            settings,
+            cases: Vec::new(),
+            times,
+            vary: Vec::new(),
+            sampling: Sampling::default(),
+            record: Vec::new(),
+            in_file: Vec::new(),
+        }
+    }
+
     /// Where `value` of `option` was said, or a value of the variable of that name.
     fn origin(&self, option: &str, value: &str) -> Origin {
         let said = match option {

@@ -29,19 +29,9 @@ pub(crate) fn resolve(file: SweepFile, settings: Vec<Setting>) -> Result<Sweep, 
     let (name, step) = (case.name.clone().unwrap_or_default(), case.step);
     let scenario = scenario::Request { file: Some(case), settings, ..scenario::Request::default() }.resolve()?;
     let is_own = |setting: &Setting| HARVESTER.variables.iter().any(|variable| variable.name == setting.name);
-    Sweep::new(&Request {
-        isolation: None,
-        name,
-        description: &HARVESTER,
-        fmu: None,
-        settings: scenario.settings.into_iter().filter(is_own).collect(),
-        cases: Vec::new(),
-        times: Times { until: scenario.until, step, window: scenario.window },
-        vary,
-        sampling,
-        record,
-        in_file: Vec::new(),
-    })
+    let settings = scenario.settings.into_iter().filter(is_own).collect();
+    let times = Times { until: scenario.until, step, window: scenario.window };
+    Sweep::new(&Request { vary, sampling, record, ..Request::new(name, &HARVESTER, settings, times) })
 }
 
 /// That a sweep has as many runs as it says, each with values of the right types, and a document that can be read.
