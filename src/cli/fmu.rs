@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
@@ -30,8 +31,8 @@ enum Task {
     Build {
         /// Version of FMI: 2, which most tools import, or 3, with event mode, early return and a clock of the impacts; in
         /// target/fmu/fmi3
-        #[arg(long, value_enum, default_value = "2")]
-        fmi: Fmi,
+        #[arg(long, value_parser = version(), default_value = "2")]
+        fmi: FmiVersion,
         /// Build for these platforms, all into the same FMUs, instead of this machine: linux64 (runs with glibc 2.17 and
         /// later; needs cargo-zigbuild and zig), win64 (needs mingw-w64), darwin64 (on a Mac), or Rust triples
         #[arg(long = "target", value_name = "PLATFORM", value_delimiter = ',')]
@@ -72,29 +73,16 @@ enum Task {
 }
 
 /// A version of FMI.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Fmi {
-    #[value(name = "2")]
-    Two,
-    #[value(name = "3")]
-    Three,
-}
-
-impl From<Fmi> for FmiVersion {
-    fn from(fmi: Fmi) -> Self {
-        match fmi {
-            Fmi::Two => Self::Fmi2,
-            Fmi::Three => Self::Fmi3,
-        }
-    }
+fn version() -> impl TypedValueParser<Value = FmiVersion> {
+    PossibleValuesParser::new(["2", "3"]).map(|text| if text == "3" { FmiVersion::Fmi3 } else { FmiVersion::Fmi2 })
 }
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> anyhow::Result<Exit> {
     match &arguments.task {
         Task::Build { fmi, targets, added, resources, output, json } => {
-            let fmi = (*fmi).into();
-            let options = Options { fmi, output: output.clone(), resources: resources.clone(), ..Options::default() };
+            let options =
+                Options { fmi: *fmi, output: output.clone(), resources: resources.clone(), ..Options::default() };
             build(targets, added, options, *json)?;
         }
         Task::Check { file, json, isolation } => return fmu_check::run(file, isolation, *json),
