@@ -43,24 +43,6 @@ fn an_archive_holds_what_fmi_wants_where_it_wants_it() {
 }
 
 #[test]
-fn equal_contents_give_equal_bytes_and_replace_the_old_archive() {
-    let (first, second) = (tree(), tree());
-    let archive = |tree: &TempDir| {
-        let path = tree.path().join("Toy.fmu");
-        fs::write(&path, "old").unwrap();
-        packed(tree.path()).write(tree.path()).unwrap();
-        fs::read(path).unwrap()
-    };
-    let bytes = archive(&first);
-    fs::File::open(second.path().join("Toy.xml")).unwrap().set_modified(std::time::UNIX_EPOCH).unwrap();
-    assert_eq!(bytes, archive(&second));
-    let leftovers = fs::read_dir(first.path())
-        .unwrap()
-        .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".part"));
-    assert_eq!(leftovers.count(), 0);
-}
-
-#[test]
 fn a_description_of_another_model_is_refused() {
     let tree = tree();
     let error = described("Other", &tree.path().join("Toy.xml")).unwrap_err().to_string();

@@ -102,6 +102,7 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"first");
         drop(held);
         write_shared(&path, b"again").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"again");
         assert!(!at_work.exists());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1 + others.len());
     }
