@@ -118,7 +118,9 @@ impl Stability {
         };
         let closed = self.closed_form.largest();
         let opposite = match self.opposite_by_differences.0.first() {
-            Some(one) if one.im != 0.0 => format!("a pair at an angle of +-{:.3} rad: neutrally stable", one.arg().abs()),
+            Some(one) if one.im != 0.0 => {
+                format!("a pair at an angle of +-{:.3} rad: neutrally stable", one.arg().abs())
+            }
             _ => "real".to_owned(),
         };
         let multiplier = self.by_differences.largest();

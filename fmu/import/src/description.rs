@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use super::error::{FmiError, Result};
 use super::suggest;
-use super::value::Value;
 
 /// The model description of a co-simulation FMU, of FMI 2.0 or 3.0. One of 3.0 can be read, not run; what has another name there
 /// stands under that of 2.0.
@@ -333,18 +332,6 @@ impl ModelDescription {
         matches!(variable.kind, Kind::Enumeration { .. })
             .then(|| self.enumeration_positions.get(name).and_then(|&position| self.enumerations.get(position)))
             .flatten()
-    }
-
-    /// The start value of this variable; none without one, nor of an integer beyond 32 bits.
-    pub fn start(&self, variable: &Variable) -> Option<Value> {
-        match &variable.kind {
-            Kind::Real { start, .. } => start.map(Value::Real),
-            Kind::Integer { start, .. } => start.and_then(|start| start.try_into().ok()).map(Value::Integer),
-            Kind::Boolean { start } => start.map(Value::Boolean),
-            Kind::String { start } => start.clone().map(Value::String),
-            Kind::Enumeration { start } => start.map(|value| Value::of_enumeration(self, variable, value)),
-            Kind::Other => None,
-        }
     }
 
     /// The outputs, as `ModelStructure` lists them.

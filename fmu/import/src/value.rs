@@ -114,6 +114,20 @@ impl Value {
     }
 }
 
+impl ModelDescription {
+    /// The start value of this variable; none without one, nor of an integer beyond 32 bits.
+    pub fn start(&self, variable: &Variable) -> Option<Value> {
+        match &variable.kind {
+            Kind::Real { start, .. } => start.map(Value::Real),
+            Kind::Integer { start, .. } => start.and_then(|start| start.try_into().ok()).map(Value::Integer),
+            Kind::Boolean { start } => start.map(Value::Boolean),
+            Kind::String { start } => start.clone().map(Value::String),
+            Kind::Enumeration { start } => start.map(|value| Value::of_enumeration(self, variable, value)),
+            Kind::Other => None,
+        }
+    }
+}
+
 /// Finds the item of an enumeration by name or number.
 fn item(enumeration: Option<&EnumerationType>, variable: &Variable, text: &str) -> Result<Value, ValueError> {
     let items = enumeration.map_or(&[][..], |enumeration| &enumeration.items);
