@@ -11,7 +11,7 @@ built=${CARGO_TARGET_DIR:-target}/$([[ $profile == dev ]] && echo debug || echo 
 
 if [[ $profile == dev ]]; then
     # As the stage unit builds them, lest both build them again and again.
-    cargo build --quiet --workspace --tests --bin fmu-host
+    cargo build --quiet --workspace --lib --tests --bin fmu-host
 else
     cargo build --quiet --profile "$profile" -p fmu-host -p videg-fmu-harvester -p videg-fmu-circuit
 fi
