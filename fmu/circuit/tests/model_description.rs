@@ -2,10 +2,9 @@
 //! `InitialUnknowns` say.
 
 use HarvestingCircuit::Harvesting;
-use fmu_export::{
-    Causality, Kind, Slave, Standard, Variable, changed_references, model_description, terminals_and_icons,
-};
+use fmu_export::{Standard, changed_references, model_description, terminals_and_icons};
 use fmu_host::initial::{found, promised};
+use fmu_host::slave::parameters;
 use videg_circuit::Settings;
 
 /// A file of the folder `modelDescription`.
@@ -28,16 +27,7 @@ fn the_packaged_model_descriptions_are_those_of_the_variable_table() {
 #[test]
 fn the_parameters_are_those_of_the_tables_of_the_circuit() {
     let names = Settings::QUANTITIES.iter().map(|it| it.name).chain(Settings::CHOICES.iter().map(|it| it.name));
-    let is_of_the_tables =
-        |row: &&Variable<Harvesting>| row.causality() == Causality::Parameter && !matches!(row.kind(), Kind::String(_));
-    let rows = Harvesting::variables().iter().filter(is_of_the_tables).map(Variable::name);
-    assert_eq!(sorted(rows), sorted(names));
-}
-
-fn sorted<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut names: Vec<_> = names.collect();
-    names.sort_unstable();
-    names
+    assert_eq!(parameters::<Harvesting>(), names.collect::<Vec<_>>());
 }
 
 /// Size that a variable typically has.

@@ -11,6 +11,14 @@ pub fn row<S: Slave>(name: &str) -> &'static Variable<S> {
     &S::variables()[reference as usize]
 }
 
+/// Names of the parameters but for texts: the Reals, then those that choose or count, each in the order of the table.
+pub fn parameters<S: Slave>() -> Vec<&'static str> {
+    let is_text = |row: &Variable<S>| matches!(row.kind(), Kind::String(_));
+    let rows = S::variables().iter().filter(|row| row.causality() == Causality::Parameter && !is_text(row));
+    let (reals, others): (Vec<_>, Vec<_>) = rows.partition(|row| matches!(row.kind(), Kind::Real(_)));
+    reals.into_iter().chain(others).map(Variable::name).collect()
+}
+
 /// Sets a Real, an item of an enumeration, or a Boolean, which is true unless the value is 0.
 pub fn set<S: Slave>(slave: &mut S, name: &str, value: f64) {
     match row::<S>(name).kind() {
