@@ -257,8 +257,6 @@ fn phase_noise_takes_most_of_the_output_until_it_hardly_matters() {
         (mean, (variance / SAMPLES as f64).sqrt(), gains[SAMPLES / 2])
     };
     let [weak, middle, strong, strongest] = [0.5, 4.0, 10.0, 100.0].map(output);
-    // As the model alone gives them; a median of so many runs deviates by some 10 %.
-    assert!((middle.2 / 8_500.0).ln().abs() < 0.5 && (strong.2 / 4_500.0).ln().abs() < 0.5, "{middle:?} {strong:?}");
     let apart = |a: (f64, f64, f64), b: (f64, f64, f64)| (a.0 - b.0) / a.1.hypot(b.1);
     assert!(apart(weak, middle) > 1.96 && middle.2 < 0.6 * weak.2, "{weak:?} {middle:?}");
     assert!(strong.0 < 0.6 * weak.0 && strong.0 > 0.0, "{weak:?} {strong:?}");
