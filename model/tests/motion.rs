@@ -49,7 +49,7 @@ proptest! {
     #[test]
     fn the_motion_is_that_of_brute_force_until_chaos_separates_them(p in any_parameters()) {
         let harvester = Harvester::new(&p, 0.0).unwrap();
-        follow_brute_force(harvester, Brute::new(p, 5e-6), 1e-5, |time| sensitivity(p, 1e-7, time))?;
+        follow_brute_force(harvester, Brute::new(p, 5e-6), [1e-9, 1e-5], |time| sensitivity(p, 1e-7, time))?;
     }
 }
 

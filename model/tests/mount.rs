@@ -23,7 +23,7 @@ proptest! {
     #[test]
     fn the_motion_is_that_of_brute_force_until_chaos_separates_them(p in any_mount()) {
         let harvester = Harvester::new(&p, 0.0).unwrap();
-        follow_brute_force(harvester, Brute::new(p, 2e-5), 3e-5, |time| sensitivity(p, 1e-7, time))?;
+        follow_brute_force(harvester, Brute::new(p, 2e-5), [3e-5; 2], |time| sensitivity(p, 1e-7, time))?;
     }
 }
 

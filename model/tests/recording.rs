@@ -94,7 +94,7 @@ proptest! {
         let brute = Brute::excited(excitation.p, excitation.recorded.clone(), force, 2e-5);
         let mut harvester = excitation.harvester();
         harvester.set_external_force(force[0], force[1]).unwrap();
-        follow_brute_force(harvester, brute, 3e-5, |time| excitation.sensitivity(time))?;
+        follow_brute_force(harvester, brute, [3e-5; 2], |time| excitation.sensitivity(time))?;
     }
 
     #[test]
