@@ -243,7 +243,7 @@ stage_unit() {
 
 # Not the doc tests, where the mark means that they do not compile. The stage book runs the book.
 stage_unit-slow() {
-    run cargo test --workspace --tests -- --ignored --skip every_block_of_every_page
+    run cargo test "${TESTED[@]}" -- --ignored --skip every_block_of_every_page
 }
 
 stage_slow() {
