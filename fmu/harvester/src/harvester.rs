@@ -1,10 +1,35 @@
 //! What the importer sets, and the model that is driven by it.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use videg_model::{ForceTable, Harvester as Model, ModelError, Parameters, Recording, Setup, Side};
 
 use crate::file::{Files, Loaded};
+
+/// External force, N, and its rate, N/s, voltages, V, and their rates, V/s.
+type Inputs = [[f64; 2]; 3];
+
+/// Times that a model predicts, s: the largest double where there is none.
+#[derive(Clone, Copy)]
+pub(crate) enum Predicted {
+    NextImpact,
+    NextKnot,
+    KnownUntil,
+}
+
+impl Predicted {
+    const ALL: [Self; 3] = [Self::NextImpact, Self::NextKnot, Self::KnownUntil];
+
+    fn by(self, model: &Model) -> f64 {
+        let time = match self {
+            Self::NextImpact => model.next_impact(),
+            Self::NextKnot => model.next_knot(),
+            Self::KnownUntil => Some(model.known_until()),
+        };
+        time.unwrap_or(f64::MAX)
+    }
+}
 
 /// The harvester as a slave.
 pub struct Harvester {
@@ -20,6 +45,8 @@ pub struct Harvester {
     pub(crate) placed: bool,
     /// Voltages that have not changed since the limits were checked with both membranes flat, V; NaN if they have.
     pub(crate) checked: [f64; 2],
+    /// What the model predicts under these inputs, if they are not those it runs under and somebody has asked.
+    pub(crate) predicted: Cell<Option<(Inputs, [f64; 3])>>,
     /// The last impact that was seen: side, and relative speed, m/s.
     pub(crate) last_impact: Option<(Side, f64)>,
     /// It is of the present time.
@@ -30,7 +57,8 @@ pub struct Harvester {
 
 impl Clone for Harvester {
     fn clone(&self) -> Self {
-        Self { files: self.files.clone(), model: self.model.clone(), ..*self }
+        let predicted = Cell::new(self.predicted.get());
+        Self { files: self.files.clone(), model: self.model.clone(), predicted, ..*self }
     }
 
     /// Takes no memory that is there already, and counts nothing that is shared already.
@@ -45,6 +73,7 @@ impl Clone for Harvester {
             start_time,
             placed,
             checked,
+            ref predicted,
             last_impact,
             has_hit,
             ref model,
@@ -57,6 +86,7 @@ impl Clone for Harvester {
         (self.external_force, self.external_force_rate) = (external_force, external_force_rate);
         (self.voltages, self.voltage_rates) = (voltages, voltage_rates);
         (self.last_impact, self.has_hit) = (last_impact, has_hit);
+        self.predicted.set(predicted.get());
     }
 }
 
@@ -66,19 +96,34 @@ impl Harvester {
         self.model.as_ref().map_or(f64::NAN, value)
     }
 
-    /// A time, s, that the model predicts under the inputs as they are set, the largest double if there is none.
-    pub(crate) fn predicted(&self, time: impl FnOnce(&Model) -> Option<f64>) -> f64 {
-        self.read(|model| time(self.pending(model).as_ref().unwrap_or(model)).unwrap_or(f64::MAX))
+    fn inputs(&self) -> Inputs {
+        [[self.external_force, self.external_force_rate], self.voltages, self.voltage_rates]
+    }
+
+    /// A time, s, that the model predicts under the inputs as they are set.
+    pub(crate) fn predicted(&self, time: Predicted) -> f64 {
+        let inputs = self.inputs();
+        if let Some((under, times)) = self.predicted.get()
+            && under == inputs
+        {
+            return times[time as usize];
+        }
+        self.read(|model| {
+            let Some(model) = self.pending(model) else { return time.by(model) };
+            let times = Predicted::ALL.map(|time| time.by(&model));
+            self.predicted.set(Some((inputs, times)));
+            times[time as usize]
+        })
     }
 
     /// The model under the inputs as they are set, if it does not run under these: it takes them over with the next step.
     /// None, too, if it refuses them, which that step says.
     pub(crate) fn pending(&self, model: &Model) -> Option<Model> {
-        let force = [self.external_force, self.external_force_rate];
-        if self.placed || model.has_inputs(force, self.voltages, self.voltage_rates) {
+        let [force, voltages, rates] = self.inputs();
+        if self.placed || model.has_inputs(force, voltages, rates) {
             return None;
         }
-        model.under_inputs(force, self.voltages, self.voltage_rates).ok()
+        model.under_inputs(force, voltages, rates).ok()
     }
 
     /// W of an impact at this relative speed, m/s, J: Eq. (13).

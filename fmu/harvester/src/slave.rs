@@ -1,5 +1,6 @@
 //! The model behind the functions of FMI.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -47,6 +48,7 @@ impl Harvester {
         if behind > h && (behind * self.parameters.frequency > 1.0 || self.is_too_long(behind)) {
             return Err(elsewhere(t, time));
         }
+        self.predicted.take();
         let Self { parameters, files, model, .. } = self;
         let model = running(model)?;
         let mut number = model.totals().impacts;
@@ -138,6 +140,7 @@ impl Slave for Harvester {
             start_time: 0.0,
             placed: false,
             checked: [f64::NAN; 2],
+            predicted: Cell::new(None),
             last_impact: None,
             has_hit: false,
             model: Model::new(&parameters, 0.0).map_err(|error| error.to_string()),
@@ -156,6 +159,7 @@ impl Slave for Harvester {
     fn update(&mut self) {
         self.read_files();
         self.model = self.at_start();
+        self.predicted.take();
     }
 
     fn initialize(&mut self, log: &Logger) -> Result<(), SlaveError> {
@@ -196,6 +200,7 @@ impl Slave for Harvester {
     fn place(&mut self, time: f64, states: Option<&[f64]>) -> Result<(), SlaveError> {
         let force = self.external_force;
         (self.placed, self.has_hit) = (true, false);
+        self.predicted.take();
         let model = running(&mut self.model)?;
         let present = model.states();
         let states = states.map_or(Ok(present), <[f64; 5]>::try_from);

@@ -171,6 +171,54 @@ fn the_predicted_times_follow_the_force_that_is_set_at_once() {
     assert_eq!(host.get_all(&common::host::unknowns()), twin.get_all(&common::host::unknowns()));
 }
 
+/// With the Maxwell force a contact ends where the voltages take it, which are set with their rates, read in between or not, set
+/// again, and held after a step. What an instance predicts is what one predicts that has just taken over its state, and has been
+/// asked for nothing before.
+#[test]
+fn the_predicted_times_follow_the_voltages_that_are_set_at_once() {
+    let predicted = ["pulse.nextKnot", "impact.nextTime"];
+    let settings = [settings(4.0, 1.5, 0.6), vec![("membrane.stiffness", 2e4)]].concat();
+    let make = || {
+        let host = Host::initializing(fmu_export::abi::fmi2CoSimulation, 0.0, &settings);
+        host.choose("contact.law", 2);
+        fmu_host::ok(host.set_boolean(common::host::reference("contact.electrostaticFeedback"), 1));
+        fmu_host::ok(host.exit_initialization());
+        host
+    };
+    let (host, fresh) = (make(), make());
+    let mut random = fmu_host::Random::seeded(1);
+    let (mut time, mut in_contact, mut moved) = (0.0, 0, 0);
+    while time < 2.0 {
+        let before = host.get("pulse.nextKnot");
+        for name in ["left.voltage", "right.voltage"] {
+            if random.once_in(3) {
+                host.set(name, random.between(0.0, 6000.0));
+            }
+            if random.once_in(3) {
+                host.set_rate(name, random.between(-1e6, 1e6));
+            }
+            if random.once_in(3) {
+                host.get_all(&predicted);
+            }
+        }
+        let state = host.save();
+        let mut taken = std::ptr::null_mut();
+        fmu_host::ok(fresh.deserialize(&host.serialize(state), &mut taken));
+        fresh.restore(taken);
+        fresh.free(taken);
+        host.free(state);
+        let now = host.get_all(&predicted);
+        assert_eq!(now, fresh.get_all(&predicted), "at {time} s");
+        let touches = ["left.deflection", "right.deflection"].iter().any(|name| host.get(name) > 0.0);
+        in_contact += u32::from(touches);
+        moved += u32::from(touches && now[0] != before);
+        let length = random.between(1e-5, if touches { 1e-3 } else { 1e-2 });
+        host.step(time, length);
+        time += length;
+    }
+    assert!(in_contact > 100 && moved > 50, "{in_contact} {moved}");
+}
+
 #[test]
 fn a_ball_that_is_put_on_a_membrane_meets_it_at_the_start() {
     let host = Host::stepping(&[("initial.ballPosition", 1.0), ("initial.ballVelocity", 0.3)]);

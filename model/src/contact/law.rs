@@ -26,6 +26,11 @@ impl Ramp {
         self.value + self.rate * (time - self.start)
     }
 
+    /// Whether it has this `value`, V, at `time`, s, and this `rate`, V/s.
+    pub(crate) fn is(&self, time: f64, value: f64, rate: f64) -> bool {
+        self.at(time) == value && self.rate == rate
+    }
+
     /// Whether it stays at `value`, V.
     pub(crate) fn stays_at(&self, value: f64) -> bool {
         self.value == value && self.rate == 0.0

@@ -53,12 +53,19 @@ impl Harvester {
         Ok(copy)
     }
 
-    /// Whether force, N, and voltages, V, and their rates, are those that act at present: setting them would change
-    /// nothing.
+    /// Whether setting force, N, and voltages, V, and their rates, would change nothing in the motion.
     pub fn has_inputs(&self, [force, rate]: [f64; 2], voltages: [f64; 2], rates: [f64; 2]) -> bool {
-        let ramps = self.voltages.iter().zip(voltages.iter().zip(rates));
         self.is_pushed_by([force, rate].map(|value| value / self.parameters.cylinder_mass))
-            && ramps.into_iter().all(|(ramp, (value, rate))| ramp.at(self.time) == *value && ramp.rate == rate)
+            && Side::BOTH.into_iter().all(|side| {
+                let k = side.index();
+                !self.feels_voltage(side) || self.voltages[k].is(self.time, voltages[k], rates[k])
+            })
+    }
+
+    /// Whether the ball is on the membrane at `side`, and feels its voltage.
+    fn feels_voltage(&self, side: Side) -> bool {
+        self.parameters.electrostatic_feedback
+            && self.motion.ball.contact().is_some_and(|contact| contact.state.side == side)
     }
 
     /// Whether this external force over M, m/s^2, and its rate, m/s^3, act at present.
@@ -96,12 +103,11 @@ impl Harvester {
             within("voltage of a membrane", value, "V")?;
             within("derivative of the voltage of a membrane", rate, "V/s")?;
             let ramp = &mut self.voltages[side.index()];
-            if ramp.at(self.time) == value && ramp.rate == rate {
+            if ramp.is(self.time, value, rate) {
                 continue;
             }
             *ramp = Ramp { start: self.time, value, rate };
-            let acts = self.motion.ball.contact().is_some_and(|contact| contact.state.side == side);
-            if acts && self.parameters.electrostatic_feedback {
+            if self.feels_voltage(side) {
                 let time = self.time;
                 let (motion, forces, limit, ledger, _) = self.parts();
                 motion.change_voltages_in_contact(forces, limit, ledger, time);

@@ -5,6 +5,7 @@ use videg_model::Side;
 
 use super::initial::{FILM, FORCE_LAW, IMPACT, OPTIONS};
 use super::{FORCE, V, VOLTAGES, change};
+use crate::harvester::Predicted;
 
 /// What the predicted times depend on.
 const PREDICTED_FROM: [&str; 7] =
@@ -31,7 +32,7 @@ pub(super) static EVENTS: [V; 8] = [
     .depends_on(&PREDICTED_FROM)
     .initially_depends_on(&[IMPACT, &[FORCE]])
     .partial_derivative(|slave, known| slave.partial(known, |change| change.next(0, |it| it.next_impact)))
-        .get(|slave| slave.predicted(videg_model::Harvester::next_impact)),
+        .get(|slave| slave.predicted(Predicted::NextImpact)),
     V::output(
         "pulse.nextKnot",
         "s",
@@ -41,7 +42,7 @@ pub(super) static EVENTS: [V; 8] = [
     .depends_on(&PREDICTED_FROM)
     .initially_depends_on(&[IMPACT, &[FORCE], FILM, FORCE_LAW, OPTIONS, &VOLTAGES])
     .partial_derivative(|slave, known| slave.partial(known, |change| change.next(1, |it| it.next_knot)))
-        .get(|slave| slave.predicted(videg_model::Harvester::next_knot)),
+        .get(|slave| slave.predicted(Predicted::NextKnot)),
     V::output("gain.voltage", "V", "Sum of U_DE4 - U_in over all impacts, Eqs. (12) and (15)")
         .discrete()
         .depends_on(&[])
@@ -140,7 +141,7 @@ pub(super) static KNOWN: [V; 1] = [V::output(
 )
 .discrete()
 .local()
-.get(|slave| slave.predicted(|model| Some(model.known_until())))];
+.get(|slave| slave.predicted(Predicted::KnownUntil))];
 
 /// A count as an Integer.
 fn as_count(count: u64) -> i64 {
