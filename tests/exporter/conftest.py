@@ -30,6 +30,14 @@ class User:
         except subprocess.CalledProcessError as error:
             pytest.fail(f"{command} failed:\n{error.stdout}")
 
+    def new(self, name: str) -> Path:
+        """The folder of a new package, which has what it depends on compiled where the others have it."""
+        self.run("cargo", "fmu", "new", name)
+        compiled = self.home / "compiled"
+        compiled.mkdir(exist_ok=True)
+        (self.home / name / "target").symlink_to(compiled)
+        return self.home / name
+
     def crate(self, name: str) -> Path:
         """The folder of a package."""
         return next(self.home.glob(f"crates/{name}-[0-9]*"))

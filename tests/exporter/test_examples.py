@@ -154,8 +154,7 @@ def test_the_controller_is_that_of_its_formula_at_the_ticks_of_its_clock(build, 
 @pytest.fixture(scope="module")
 def reader(user) -> Path:
     """A package of the user's own with the table reader."""
-    user.run("cargo", "fmu", "new", "reader")
-    folder = user.home / "reader"
+    folder = user.new("reader")
     shutil.copy(EXAMPLES / "table" / "main.rs", folder / "src" / "lib.rs")
     (folder / "resources").mkdir()
     return folder

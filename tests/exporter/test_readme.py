@@ -52,8 +52,7 @@ def test_a_first_fmu_takes_thirty_lines():
 
 
 def test_the_tests_of_a_new_package_pass_and_a_panic_that_aborts_is_refused(user):
-    user.run("cargo", "fmu", "new", "heat-pump")
-    folder = user.home / "heat-pump"
+    folder = user.new("heat-pump")
     assert "1 passed" in user.run("cargo", "test", folder=folder).stdout
     assert user.run("cargo", "fmu", "build", "--fmi", "3", folder=folder).stdout.endswith("target/fmu/fmi3/HeatPump.fmu\n")
     with (folder / "Cargo.toml").open("a") as manifest:
@@ -111,8 +110,7 @@ export_fmu!(Model);
 @pytest.fixture(scope="module")
 def own(user):
     """Builds a model with these fields: its FMU, or what was said."""
-    user.run("cargo", "fmu", "new", "own")
-    folder = user.home / "own"
+    folder = user.new("own")
 
     def own(fields: str, *arguments: str) -> Path | str:
         (folder / "src" / "lib.rs").write_text(MODEL.replace("FIELDS", fields))

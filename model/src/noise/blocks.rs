@@ -165,12 +165,6 @@ impl Clone for Blocks {
     }
 }
 
-impl PartialEq for Blocks {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
 impl core::fmt::Debug for Blocks {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         formatter.debug_struct("Blocks").finish_non_exhaustive()

@@ -199,7 +199,8 @@ fn functions() -> impl Iterator<Item = Function> {
     Function::ALL.iter().copied().filter(|function| *function != Function::FreeInstance)
 }
 
-/// Under Miri one, since each cell is an instance of its own; random calls reach the others there.
+/// Under Miri one, and of its cells each function in every third state, since each cell is an instance of its own; random calls reach
+/// the others there.
 const SESSIONS: &[Session] =
     if cfg!(miri) { &[Session::EVENTS] } else { &[Session::EVENTS, Session::EXCHANGE, Session::PLAIN] };
 
@@ -208,8 +209,9 @@ fn the_c_functions_follow_the_table_in_every_state() {
     let mut cells = 0;
     for &session in SESSIONS {
         let interface = if session.exchange { Interface::ModelExchange } else { Interface::CoSimulation };
-        for function in functions() {
-            for letter in letters(interface).chars().filter(|letter| !"gun".contains(*letter)) {
+        for (row, function) in functions().enumerate() {
+            let columns = letters(interface).chars().filter(|letter| !"gun".contains(*letter)).enumerate();
+            for (_, letter) in columns.filter(|(column, _)| !cfg!(miri) || (row + column).is_multiple_of(3)) {
                 let state = state(letter).expect("a state");
                 let host = if letter == 'e' { Some(failed_host(session)) } else { host_in(session, state) };
                 let Some(host) = host else { continue };
@@ -226,7 +228,7 @@ fn the_c_functions_follow_the_table_in_every_state() {
         }
     }
     // Without event mode there is one state less, and one call that is refused.
-    assert_eq!(cells, if cfg!(miri) { 70 * 7 } else { 70 * (7 + 7 + 6) - 1 });
+    assert!(cfg!(miri) || cells == 70 * (7 + 7 + 6) - 1, "{cells}");
 }
 
 #[test]
