@@ -219,6 +219,35 @@ fn the_predicted_times_follow_the_voltages_that_are_set_at_once() {
     assert!(in_contact > 100 && moved > 50, "{in_contact} {moved}");
 }
 
+/// The end of the contact of a ball that starts on a membrane is predicted under voltages that are set after the initialisation as
+/// under those that the instance was initialised with.
+#[test]
+fn a_contact_from_the_start_on_is_predicted_under_the_voltages_that_are_set() {
+    let settings = [settings(4.0, 1.5, 0.6), vec![("membrane.stiffness", 2e4), ("initial.ballPosition", 1.0)]].concat();
+    let settings = [settings, vec![("initial.ballVelocity", 0.3)]].concat();
+    let apply = |host: &Host, volts: f64| {
+        for name in ["left.voltage", "right.voltage"] {
+            host.set(name, volts);
+        }
+    };
+    let make = |volts: f64| {
+        let host = Host::initializing(fmu_export::abi::fmi2CoSimulation, 0.0, &settings);
+        host.choose("contact.law", 2);
+        fmu_host::ok(host.set_boolean(common::host::reference("contact.electrostaticFeedback"), 1));
+        apply(&host, volts);
+        fmu_host::ok(host.exit_initialization());
+        host
+    };
+    let flat = make(0.0);
+    let mut before = flat.get("pulse.nextKnot");
+    for volts in [3000.0, 6000.0, 9000.0] {
+        apply(&flat, volts);
+        let now = flat.get("pulse.nextKnot");
+        assert_eq!(now, make(volts).get("pulse.nextKnot"), "{volts} V");
+        assert_ne!(now, std::mem::replace(&mut before, now), "{volts} V act");
+    }
+}
+
 #[test]
 fn a_ball_that_is_put_on_a_membrane_meets_it_at_the_start() {
     let host = Host::stepping(&[("initial.ballPosition", 1.0), ("initial.ballVelocity", 0.3)]);

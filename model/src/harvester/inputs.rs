@@ -58,7 +58,9 @@ impl Harvester {
         self.is_pushed_by([force, rate].map(|value| value / self.parameters.cylinder_mass))
             && Side::BOTH.into_iter().all(|side| {
                 let k = side.index();
-                !self.feels_voltage(side) || self.voltages[k].is(self.time, voltages[k], rates[k])
+                // A contact that is due begins under them.
+                let acts = self.feels_voltage(side) || self.is_due();
+                !acts || self.voltages[k].is(self.time, voltages[k], rates[k])
             })
     }
 
