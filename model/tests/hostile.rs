@@ -84,6 +84,11 @@ fn each_pair_of_bounds_is_refused_with_a_reason_or_runs() {
     });
 }
 
+/// Of random tests that take minutes: the stage `soak` has all.
+fn cases() -> u32 {
+    if std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full") { 300 } else { 100 }
+}
+
 /// A parameter set of which each number is at a bound, near one or ordinary.
 fn any_parameters() -> impl Strategy<Value = Parameters> {
     let number = |quantity: &'static Quantity| {
@@ -112,7 +117,7 @@ fn any_parameters() -> impl Strategy<Value = Parameters> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]
@@ -126,6 +131,10 @@ proptest! {
             }
         });
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn without_excitation_mechanical_energy_never_grows(
@@ -151,6 +160,10 @@ proptest! {
             last = present;
         }
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]

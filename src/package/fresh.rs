@@ -20,7 +20,7 @@ pub(super) fn is_fresh(library: &Path, asked: Option<SystemTime>, workspace: &Pa
 }
 
 /// Name of the file that tells by its time when Cargo was last asked for the libraries in a folder.
-const ASKED: &str = "asked";
+const ASKED: &str = "fmus.asked";
 
 /// Writes down that Cargo was asked at `time` for what lies in `folder`: a source saved while it was built may be newer than what was
 /// compiled and older than the library. Where nothing can be written, Cargo is asked each time.

@@ -57,19 +57,15 @@ fn is_workspace(folder: &Path) -> bool {
 /// The libraries for one target, in the order of [`FMUS`]: built, or else found.
 pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Option<&Target>) -> Result<Vec<PathBuf>> {
     let platform = target.map_or(Platform::HOST, |target| target.platform);
-    let beside = beside_program().and_then(|folder| lying_in(&folder));
-    if let (true, None, Some(libraries)) = (options.as_is, target, &beside) {
-        let built = around_program().and_then(|tree| lying_in(&own_build_folder(&tree).join("release")));
-        let newer = built.filter(|built| fresh::modified(&built[0]) > fresh::modified(&libraries[0]));
-        return Ok(newer.unwrap_or_else(|| libraries.clone()));
+    let beside = beside_program();
+    if let (true, None, Some(libraries)) = (options.as_is, target, beside.as_deref().and_then(lying_in)) {
+        return Ok(libraries);
     }
     if let (None, true, Some(workspace)) = (target, options.build, workspace) {
-        let own = own_build_folder(workspace);
-        let built = lying_in(&own.join("release")).zip(fresh::asked(&own));
-        let candidates = beside.map(|libraries| (libraries, None)).into_iter();
-        let candidates = candidates.chain(built.map(|(libraries, asked)| (libraries, Some(asked))));
-        for (libraries, asked) in candidates {
-            if libraries.iter().all(|library| fresh::is_fresh(library, asked, workspace)) {
+        for folder in beside.into_iter().chain([release_folder(workspace)]) {
+            let (libraries, asked) = (lying_in(&folder), fresh::asked(&folder));
+            let is_fresh = |library: &PathBuf| fresh::is_fresh(library, asked, workspace);
+            if let Some(libraries) = libraries.filter(|libraries| libraries.iter().all(is_fresh)) {
                 return Ok(libraries);
             }
         }
@@ -94,16 +90,13 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
 /// Builds the libraries of all FMUs and returns them in the order of [`FMUS`].
 fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_package::Result<Vec<PathBuf>> {
     let packages = FMUS.iter().flat_map(|fmu| ["-p", fmu.package]);
-    let mut arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
-    if let (None, Some(folder)) = (target, own_build_folder(workspace).to_str()) {
-        arguments.extend(["--target-dir", folder].map(str::to_owned));
-    }
+    let arguments: Vec<_> = ["--release"].into_iter().chain(packages).map(str::to_owned).collect();
     let (asked, messages) = (SystemTime::now(), Messages::Taken(progress));
     let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, messages })?;
     let libraries: Vec<_> =
         FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect::<fmu_package::Result<_>>()?;
     if target.is_none() {
-        fresh::note(&own_build_folder(workspace), asked);
+        fresh::note(&release_folder(workspace), asked);
     }
     Ok(libraries)
 }
@@ -139,9 +132,6 @@ fn folders(workspace: Option<&Path>, target: Option<&Target>) -> Vec<PathBuf> {
     if let Some(workspace) = workspace {
         let base = build_folder(workspace);
         folders.push(target.map_or_else(|| base.clone(), |target| base.join(&target.triple)).join("release"));
-        if target.is_none() {
-            folders.push(own_build_folder(workspace).join("release"));
-        }
     }
     folders
 }
@@ -152,10 +142,9 @@ pub(super) fn build_folder(workspace: &Path) -> PathBuf {
     std::path::absolute(&folder).unwrap_or(folder)
 }
 
-/// Where Cargo builds the libraries of this machine by themselves. With other packages beside them their dependencies have other
-/// features, and both would have the same file name: in one folder, `cargo build` and this would compile them anew by turns.
-fn own_build_folder(workspace: &Path) -> PathBuf {
-    build_folder(workspace).join("libraries")
+/// Where Cargo puts the libraries of this machine.
+fn release_folder(workspace: &Path) -> PathBuf {
+    build_folder(workspace).join("release")
 }
 
 fn can_write(folder: &Path) -> bool {

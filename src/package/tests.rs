@@ -1,5 +1,7 @@
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use tempfile::TempDir;
 
@@ -69,6 +71,22 @@ fn the_source_tree_is_found_and_lists_the_same_packages() {
         assert!(manifest.contains(&format!("name = \"{}\"", fmu.package)), "{manifest}");
         assert!(manifest.contains(&format!("name = \"{}\"", fmu.identifier)), "{manifest}");
     }
+}
+
+/// Cargo would compile them anew by turns if others were wanted by `cargo build`.
+#[test]
+fn alone_the_fmus_have_the_dependencies_of_cargo_build() {
+    let dependencies = |packages: &[&str]| -> BTreeSet<String> {
+        let mut tree = Command::new(env!("CARGO"));
+        tree.args(["tree", "--edges", "normal,build", "--prefix", "none", "--no-dedupe", "--format", "{p} with {f}"]);
+        let done = tree.args(packages).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).unwrap().lines().map(str::to_owned).collect()
+    };
+    let alone = dependencies(&FMUS.map(|fmu| ["-p", fmu.package]).concat());
+    let with_others = dependencies(&[]);
+    assert!(alone.iter().any(|package| package.starts_with("serde_core v")), "{alone:?}");
+    assert_eq!(alone.difference(&with_others).collect::<Vec<_>>(), Vec::<&String>::new());
 }
 
 #[test]

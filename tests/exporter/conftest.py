@@ -14,6 +14,9 @@ from harness import ROOT, TARGET
 
 CRATES = ["fmu-abi", "fmu-derive", "fmu-export", "fmu-import", "fmu-package", "cargo-fmu", "videg-input", "videg-system"]
 
+# Of what is released: a variable of Cargo.
+OPTIMISATION = "CARGO_PROFILE_RELEASE_OPT_LEVEL"
+
 
 @dataclass
 class User:
@@ -31,12 +34,16 @@ class User:
             pytest.fail(f"{command} failed:\n{error.stdout}")
 
     def new(self, name: str) -> Path:
-        """The folder of a new package, which has what it depends on compiled where the others have it."""
+        """The folder of a new package."""
         self.run("cargo", "fmu", "new", name)
+        return self.share(self.home / name)
+
+    def share(self, folder: Path) -> Path:
+        """The folder of a package, which has what it depends on compiled where the others have it."""
         compiled = self.home / "compiled"
         compiled.mkdir(exist_ok=True)
-        (self.home / name / "target").symlink_to(compiled)
-        return self.home / name
+        (folder / "target").symlink_to(compiled)
+        return folder
 
     def crate(self, name: str) -> Path:
         """The folder of a package."""
@@ -63,6 +70,8 @@ def user(tmp_path_factory) -> User:
     shutil.copy(ROOT / "Cargo.lock", home / "crates" / f"cargo-fmu-{version}" / "Cargo.lock")
     environment = os.environ | {"PATH": f"{home}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}"}
     environment.pop("CARGO_TARGET_DIR", None)
+    # These models compute little, and many are compiled.
+    environment[OPTIMISATION] = "0"
     made = User(home, environment)
     cargo_fmu = ["cargo", "install", "--quiet", "--debug", "--path", str(made.crate("cargo-fmu"))]
     made.run(*cargo_fmu, "--root", str(home), "--target-dir", str(TARGET / "exporter"))

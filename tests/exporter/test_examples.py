@@ -19,7 +19,7 @@ EXAMPLES = ROOT / "fmu" / "export" / "examples"
 @pytest.fixture(scope="module")
 def build(user):
     """Builds the FMU of an example in the packaged crate."""
-    folder = user.crate("fmu-export")
+    folder = user.share(user.crate("fmu-export"))
 
     def build(name: str, version: str) -> str:
         printed = user.run("cargo", "fmu", "build", "--example", name, "--fmi", version, folder=folder, stderr=None).stdout

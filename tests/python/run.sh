@@ -3,7 +3,7 @@
 # PATH: no Rust, no Cargo, no program of this source tree. Prints how long a user waits for the first table. The source distribution
 # must have the files that git has, so that what is built from it is the same.
 #
-# Environment: WHEEL, a wheel to test in place of one that is built here.
+# Environment: WHEEL, a wheel to test in place of one that is built here; VIDEG_SOAK=full, for what takes longer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 work=$(mktemp -d)
@@ -32,7 +32,7 @@ if [[ -z $wheel ]]; then
 fi
 ls -l "$wheel"
 
-alone=(env -i HOME="$work" PATH="$work/user/bin" LANG=C.UTF-8)
+alone=(env -i HOME="$work" PATH="$work/user/bin" LANG=C.UTF-8 VIDEG_SOAK="${VIDEG_SOAK:-}")
 started=$(date +%s.%N)
 "$work/user/bin/pip" install --quiet --disable-pip-version-check "$wheel"
 (cd "$work" && "${alone[@]}" videg cosim >"$work/table")

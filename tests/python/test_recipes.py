@@ -77,7 +77,11 @@ def test_what_a_record_does_not_determine_is_said() -> None:
         assert "not determined" in str(fit)
 
 
-@pytest.mark.parametrize("case", ["fig14", "fig15", "fig12"])
+# The recipe itself is of Fig. 14. Each takes a minute of both cores, so that the stage soak has the others.
+CASES = ["fig14", "fig15", "fig12"] if os.environ.get("VIDEG_SOAK") == "full" else ["fig15"]
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_the_optimum_is_not_worse_than_a_map(case: str) -> None:
     """Than the best of 2401 points on a grid over the same bounds."""
     optimisation = recipe("optimisation")

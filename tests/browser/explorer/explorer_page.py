@@ -7,7 +7,7 @@ import harness
 from pages import Visit
 
 
-def wait(page, condition, argument=None, seconds=60):
+def wait(page, condition, argument=None, seconds=180):
     """Until a condition holds: the page lets nobody evaluate texts, so Playwright cannot wait within it."""
     end = time.monotonic() + seconds
     while not page.evaluate(condition, argument):
