@@ -13,6 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs/coverage.md"
 GAPS = Path(__file__).with_name("gaps.toml")
+# So begins the reason of a gap that the tool does not report of each build.
+SOMETIMES = "In some builds: "
 PACKAGES = ["model", "circuit", "coupled", "fmu/abi", "fmu/export", "fmu/harvester", "fmu/circuit"]
 BOUND = 90.0
 HEAD = """\
@@ -119,7 +121,8 @@ def page(files: list[File], gaps: dict[str, str]) -> tuple[str, list[str]]:
         text += f"- `{file.name}`, {file.percent:.1f} %: {why or 'not explained'}\n  Lines not reached: {file.functions()}.\n"
     if not below:
         text += "None.\n"
-    failures += [f"tests/coverage/gaps.toml explains {name}, which is not below {BOUND:g} %" for name in gaps]
+    stale = [name for name, why in gaps.items() if not why.startswith(SOMETIMES)]
+    failures += [f"tests/coverage/gaps.toml explains {name}, which is not below {BOUND:g} %" for name in stale]
     text += "\n## Other lines not reached\n\n"
     for file in files:
         if file.missed and file not in below:
