@@ -84,9 +84,9 @@ fn each_pair_of_bounds_is_refused_with_a_reason_or_runs() {
     });
 }
 
-/// Of random tests that take minutes: the stage `soak` has all.
-fn cases() -> u32 {
-    if std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full") { 300 } else { 100 }
+/// Of a random test that takes minutes: the stage `soak` has all.
+fn cases(few: u32) -> u32 {
+    if std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full") { 300 } else { few }
 }
 
 /// A parameter set of which each number is at a bound, near one or ordinary.
@@ -117,7 +117,7 @@ fn any_parameters() -> impl Strategy<Value = Parameters> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(100), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]
@@ -163,7 +163,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(30), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]
