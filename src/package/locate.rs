@@ -59,10 +59,14 @@ pub(super) fn libraries(options: &Options, workspace: Option<&Path>, target: Opt
     let platform = target.map_or(Platform::HOST, |target| target.platform);
     let beside = beside_program();
     if let (true, None, Some(libraries)) = (options.as_is, target, beside.as_deref().and_then(lying_in)) {
-        return Ok(libraries);
+        let built = around_program().and_then(|tree| lying_in(&release_folder(&tree)));
+        let newer = built.filter(|built| fresh::modified(&built[0]) > fresh::modified(&libraries[0]));
+        return Ok(newer.unwrap_or(libraries));
     }
     if let (None, true, Some(workspace)) = (target, options.build, workspace) {
-        for folder in beside.into_iter().chain([release_folder(workspace)]) {
+        // Elsewhere than beside the program, what nobody has noted may be older than its sources.
+        let release = Some(release_folder(workspace)).filter(|folder| fresh::asked(folder).is_some());
+        for folder in beside.into_iter().chain(release) {
             let (libraries, asked) = (lying_in(&folder), fresh::asked(&folder));
             let is_fresh = |library: &PathBuf| fresh::is_fresh(library, asked, workspace);
             if let Some(libraries) = libraries.filter(|libraries| libraries.iter().all(is_fresh)) {
@@ -95,8 +99,8 @@ fn build(workspace: &Path, target: Option<&Target>, progress: fn(&str)) -> fmu_p
     let libraries = cargo::libraries(&Build { folder: workspace, arguments: &arguments, target, messages })?;
     let libraries: Vec<_> =
         FMUS.iter().map(|fmu| libraries.named(fmu.identifier)).collect::<fmu_package::Result<_>>()?;
-    if target.is_none() {
-        fresh::note(&release_folder(workspace), asked);
+    if let (None, Some(folder)) = (target, libraries[0].parent()) {
+        fresh::note(folder, asked);
     }
     Ok(libraries)
 }

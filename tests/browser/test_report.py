@@ -80,7 +80,7 @@ def test_the_page_fits_and_every_picture_is_drawn(visit, width, scheme):
         assert picture.locator("path, polyline, polygon, circle").count() > 0
 
 
-@pytest.mark.parametrize(("width", "scheme"), zip(WIDTHS, itertools.cycle(SCHEMES)))
+@pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, itertools.cycle(SCHEMES))))
 def test_every_chart_opens_with_all_its_panels_and_closes_again(visit, width, scheme):
     visited = visit(width, scheme)
     page = visited.page
