@@ -5,7 +5,12 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
+#[path = "support/extent.rs"]
+mod extent;
+
 use std::time::Instant;
+
+use extent::extent;
 
 use fmu_import::Fmu;
 use videg::cosim::{
@@ -129,7 +134,7 @@ fn assert_streamed(fmu: &Fmu, scenario: &Scenario) {
 #[test]
 #[ignore = "slow"]
 fn memory_stays_flat_and_the_books_close_over_a_long_run() {
-    let full = std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full");
+    let full = extent(false, true);
     let folder = tempfile::tempdir().unwrap();
     let files = build_all(&Options { output: Some(folder.path().to_owned()), ..Options::default() }).unwrap();
     let fmu = Fmu::open(&files[0]).unwrap();

@@ -2,9 +2,12 @@
 //! close and bounded work.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
+#[path = "../../tests/support/extent.rs"]
+mod extent;
 #[path = "common/hostile.rs"]
 mod hostile;
 
+use extent::extent;
 use hostile::{assert_balanced, assert_explained, assert_finite, duration, kinds, run, values, watched, with};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -84,11 +87,6 @@ fn each_pair_of_bounds_is_refused_with_a_reason_or_runs() {
     });
 }
 
-/// Of a random test that takes minutes: the stage `soak` has all.
-fn cases(few: u32) -> u32 {
-    if std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full") { 300 } else { few }
-}
-
 /// A parameter set of which each number is at a bound, near one or ordinary.
 fn any_parameters() -> impl Strategy<Value = Parameters> {
     let number = |quantity: &'static Quantity| {
@@ -117,7 +115,7 @@ fn any_parameters() -> impl Strategy<Value = Parameters> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(100), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: extent(100, 300), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]
@@ -163,7 +161,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(30), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: extent(30, 300), failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     #[ignore = "slow"]

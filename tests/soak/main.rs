@@ -6,10 +6,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is how a test fails")]
 
 mod disk;
+#[path = "../support/extent.rs"]
+mod extent;
 mod outputs;
 mod sweep;
 
-/// `full` if everything is asked for, else `short`.
-fn extent<T>(short: T, full: T) -> T {
-    if std::env::var_os("VIDEG_SOAK").is_some_and(|extent| extent == "full") { full } else { short }
-}
+use extent::extent;
