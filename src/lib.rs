@@ -47,21 +47,17 @@ mod artefact;
 #[cfg(doctest)]
 mod book;
 pub mod cli;
-pub mod cosim;
 pub mod crosscheck;
 mod differences;
 pub mod dynamics;
 pub mod explorer;
 pub mod export;
 pub mod map;
-pub mod ngspice;
 pub mod package;
 pub mod paper;
-pub mod progress;
-pub mod scenario;
-pub mod simulate;
 pub mod statistics;
 pub mod sweep;
 pub(crate) mod threads;
 
 pub use videg_coupled as coupled;
+pub use videg_run::{cosim, ngspice, progress, scenario, simulate};

@@ -204,3 +204,11 @@ fn the_tables_are_what_the_commands_say() {
         check("docs/results/crosscheck.md", "crosscheck", &crosscheck_table());
     }
 }
+
+#[test]
+fn the_readme_is_one_page() {
+    const MOST_LINES: usize = 150;
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
+    let lines = page.lines().count();
+    assert!(lines <= MOST_LINES, "README.md has {lines} lines; more than {MOST_LINES} belong into the book");
+}

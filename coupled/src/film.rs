@@ -15,7 +15,9 @@ const RANGES: usize = 1024;
 /// What is shown of a run at the end of each straight line of C(t).
 pub trait Watch {
     /// Whether anything is looked at.
-    const LOOKS: bool;
+    fn looks(&self) -> bool {
+        true
+    }
 
     /// Before the run: the films are like `membrane`.
     fn begin(&mut self, membrane: &Membrane);
@@ -25,7 +27,9 @@ pub trait Watch {
 }
 
 impl Watch for () {
-    const LOOKS: bool = false;
+    fn looks(&self) -> bool {
+        false
+    }
 
     fn begin(&mut self, _: &Membrane) {}
 
@@ -58,8 +62,6 @@ impl Film {
 }
 
 impl Watch for Film {
-    const LOOKS: bool = true;
-
     fn begin(&mut self, membrane: &Membrane) {
         let density = FINENESS / membrane.radius();
         *self = Self { membrane: Some(membrane.clone()), density, largest: 0.0, highest: vec![[0.0; 2]; RANGES] };

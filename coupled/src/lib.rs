@@ -99,7 +99,7 @@ pub fn run_watched<'a>(
     setup: impl Into<Setup<'a>>,
     settings: &Settings,
     times: &Times,
-    watch: &mut impl Watch,
+    watch: &mut dyn Watch,
 ) -> Result<Results, CoupledError> {
     times.check()?;
     let mut simulation = Simulation::new(setup, settings, times.tolerance, watch)?;
@@ -112,15 +112,15 @@ pub fn run_watched<'a>(
 }
 
 /// The circuit of a run, which follows C(t).
-struct Electrics<'w, W> {
+struct Electrics<'w> {
     circuit: Circuit,
-    watch: &'w mut W,
+    watch: &'w mut dyn Watch,
     lines: u64,
 }
 
-impl<'w, W: Watch> Electrics<'w, W> {
+impl<'w> Electrics<'w> {
     /// A circuit of `settings` with charged membranes, where `start` ends.
-    fn new(settings: &Settings, start: Piece<'_>, watch: &'w mut W) -> Result<Self, CoupledError> {
+    fn new(settings: &Settings, start: Piece<'_>, watch: &'w mut dyn Watch) -> Result<Self, CoupledError> {
         let circuit = Circuit::new(settings.parameters(), start.end())?;
         watch.look(0.0, start.deflection(0), circuit.voltage());
         Ok(Self { circuit, watch, lines: 0 })
@@ -138,10 +138,12 @@ impl<'w, W: Watch> Electrics<'w, W> {
     }
 }
 
-impl<W: Watch> Follower for Electrics<'_, W> {
+impl Follower for Electrics<'_> {
     type Error = CoupledError;
 
-    const LOOKS: bool = W::LOOKS;
+    fn looks(&self) -> bool {
+        self.watch.looks()
+    }
 
     fn needs_ends_only(&self, last: [f64; 2]) -> bool {
         self.circuit.is_path_independent(last)

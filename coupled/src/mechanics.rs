@@ -42,7 +42,7 @@ pub(crate) trait Follower {
     type Error: From<ModelError>;
 
     /// Whether it looks at deflections.
-    const LOOKS: bool;
+    fn looks(&self) -> bool;
 
     /// Whether it needs to know of a monotone piece no more than that it ends with `last`, F.
     fn needs_ends_only(&self, last: [f64; 2]) -> bool;
@@ -79,7 +79,7 @@ impl Mechanics {
             capacitances: vec![],
             deflections: vec![],
         };
-        start.sample::<true>();
+        start.sample(true);
         Ok(start)
     }
 
@@ -104,7 +104,7 @@ impl Mechanics {
             let is_monotone = half.is_some();
             match half {
                 Some((side, pulse, rises)) => self.sample_pulse(side, &pulse, rises, end, follower)?,
-                None => self.sample_until::<F>(end)?,
+                None => self.sample_until(end, follower.looks())?,
             }
             follower.take(self.piece(end - now, is_monotone))?;
         }
@@ -116,24 +116,23 @@ impl Mechanics {
     }
 
     /// Goes on to `end`, s, over a stretch on which C(t) is smooth.
-    fn sample_until<F: Follower>(&mut self, end: f64) -> Result<(), ModelError> {
+    fn sample_until(&mut self, end: f64, looks: bool) -> Result<(), ModelError> {
         let start = self.harvester.time();
         let is_flat = SIDES.into_iter().all(|side| self.is_flat(side));
         let count = if is_flat { 1 } else { self.count(end)? };
-        let sample = if F::LOOKS { Self::sample::<true> } else { Self::sample::<false> };
-        sample(self);
+        self.sample(looks);
         for k in 1..=count {
             let next = if k == count { end } else { start + (end - start) * (f64::from(k) / f64::from(count)) };
             self.harvester.advance(next)?;
-            sample(self);
+            self.sample(looks);
         }
         balance(&mut self.capacitances);
         Ok(())
     }
 
-    fn sample<const LOOKS: bool>(&mut self) {
+    fn sample(&mut self, looks: bool) {
         self.capacitances.push(SIDES.map(|side| self.harvester.capacitance(side)));
-        if LOOKS {
+        if looks {
             self.deflections.push(SIDES.map(|side| self.harvester.deflection(side).value));
         }
     }
@@ -180,7 +179,7 @@ impl Mechanics {
         let count = if ends_only { 1 } else { lines(6.0 * (peak - rest) / rest, self.tolerance) };
         let shares = self.pulses.as_mut().map_or(&[][..], |shared| shared.deflections(count));
         self.capacitances.extend(shares.iter().map(|share| both(membrane.capacitance(pulse.peak * share), rest)));
-        if F::LOOKS {
+        if follower.looks() {
             self.deflections.extend(shares.iter().map(|share| both(pulse.peak * share, 0.0)));
         }
         if !rises {

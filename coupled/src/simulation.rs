@@ -8,12 +8,12 @@ use crate::mechanics::Mechanics;
 use crate::{CoupledError, Electrics, Watch};
 
 /// Harvester and circuit on their way from 0 s, both membranes charged.
-pub struct Simulation<'w, W> {
+pub struct Simulation<'w> {
     mechanics: Mechanics,
-    pub(crate) electrics: Electrics<'w, W>,
+    pub(crate) electrics: Electrics<'w>,
 }
 
-impl<'w, W: Watch> Simulation<'w, W> {
+impl<'w> Simulation<'w> {
     /// At 0 s. The circuit follows straight lines whose distance from C(t) is at most `tolerance` times C(t), while `watch` looks at the
     /// films.
     ///
@@ -23,7 +23,7 @@ impl<'w, W: Watch> Simulation<'w, W> {
         setup: impl Into<Setup<'a>>,
         settings: &Settings,
         tolerance: f64,
-        watch: &'w mut W,
+        watch: &'w mut dyn Watch,
     ) -> Result<Self, CoupledError> {
         let mechanics = Mechanics::new(setup.into(), tolerance)?;
         watch.begin(mechanics.harvester().membrane());

@@ -65,7 +65,7 @@ impl Track {
     ///
     /// # Errors
     /// Parameters that the circuit refuses; more events than can be resolved.
-    pub fn run(&self, settings: &Settings, watch: &mut impl Watch) -> Result<Results, CoupledError> {
+    pub fn run(&self, settings: &Settings, watch: &mut dyn Watch) -> Result<Results, CoupledError> {
         watch.begin(&self.membrane);
         let mut electrics = Electrics::new(settings, self.knots.piece(0), watch)?;
         let mut ledgers = [electrics.circuit.ledger(); 2];
@@ -110,7 +110,9 @@ impl Knots {
 impl Follower for Knots {
     type Error = End;
 
-    const LOOKS: bool = true;
+    fn looks(&self) -> bool {
+        true
+    }
 
     fn needs_ends_only(&self, _: [f64; 2]) -> bool {
         false

@@ -21,8 +21,6 @@ impl Limits {
 }
 
 impl Watch for Limits {
-    const LOOKS: bool = true;
-
     fn begin(&mut self, membrane: &Membrane) {
         *self = Self::default();
         self.film.begin(membrane);
@@ -45,8 +43,6 @@ pub struct FirstExcesses {
 }
 
 impl Watch for FirstExcesses {
-    const LOOKS: bool = true;
-
     fn begin(&mut self, membrane: &Membrane) {
         *self = Self { membrane: Some(membrane.clone()), found: Vec::new() };
     }

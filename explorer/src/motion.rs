@@ -95,7 +95,7 @@ impl Machine {
         [from, to]: [f64; 2],
         until: f64,
         (spacing, in_pulse): (f64, u32),
-        mut see: impl FnMut(&Simulation<'_, ()>) -> usize,
+        mut see: impl FnMut(&Simulation<'_>) -> usize,
     ) -> Result<(), String> {
         let are_times = from >= 0.0 && to > from && to.is_finite();
         if !are_times {
@@ -135,7 +135,7 @@ fn is_deflected(harvester: &Harvester) -> bool {
     })
 }
 
-fn row(simulation: &Simulation<'_, ()>, rows: &mut Vec<f64>) {
+fn row(simulation: &Simulation<'_>, rows: &mut Vec<f64>) {
     let (harvester, circuit) = (simulation.harvester(), simulation.circuit());
     let deflections = Side::BOTH.map(|side| harvester.deflection(side).value);
     let [left, right] = circuit.voltage();

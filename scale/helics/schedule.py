@@ -1,4 +1,4 @@
-"""When to communicate, to the last bit as `videg cosim` does (src/cosim/schedule.rs)."""
+"""When to communicate, to the last bit as `videg cosim` does (run/src/cosim/schedule.rs)."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Harvester and circuit as a master sees them, stepped to the last bit as `videg cosim` does (src/cosim/master.rs)."""
+"""Harvester and circuit as a master sees them, stepped to the last bit as `videg cosim` does (run/src/cosim/master.rs)."""
 
 from slave import Slave
 

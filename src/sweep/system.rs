@@ -129,12 +129,8 @@ impl System {
         let times = Times { until: sweep.times.window[1], window: sweep.times.window, tolerance: TOLERANCE };
         let mut film = Film::default();
         let settings = inputs.settings(&times).map_err(|error| error.to_string())?;
-        let outcome = if self.watches {
-            inputs.run(&settings, &times, &self.tracks, &mut film)
-        } else {
-            inputs.run(&settings, &times, &self.tracks, &mut ())
-        };
-        let outcome = outcome.map_err(|error| error.to_string())?;
+        let watch: &mut dyn Watch = if self.watches { &mut film } else { &mut () };
+        let outcome = inputs.run(&settings, &times, &self.tracks, watch).map_err(|error| error.to_string())?;
         let over_limits = film.over_limits();
         let mechanical = self.harvester.as_ref().map(|(fmu, record)| run_fmu(fmu, sweep, run, record));
         let mut mechanical =
@@ -255,12 +251,12 @@ impl Inputs {
         Ok(self.given.complete(self.circuit, self.harvester.parameters.bias_voltage, ratio))
     }
 
-    fn run<W: Watch>(
+    fn run(
         &self,
         settings: &Settings,
         times: &Times,
         tracks: &Tracks,
-        watch: &mut W,
+        watch: &mut dyn Watch,
     ) -> Result<videg_coupled::Results, CoupledError> {
         // If the harvester fails, a run says why, so that the reason is the same in any order of runs.
         match tracks.of(&self.harvester, times) {

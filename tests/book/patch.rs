@@ -78,6 +78,7 @@ fn copy_sources(to: &Path) -> std::io::Result<()> {
         "fmu",
         "input",
         "report",
+        "run",
         "src",
         "system",
         "tests",

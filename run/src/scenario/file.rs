@@ -61,7 +61,7 @@ struct Layout {
 ///
 /// # Errors
 /// An unreadable file; an error of `parse`.
-pub(crate) fn read_file<T>(
+pub fn read_file<T>(
     path: &Path,
     parse: impl FnOnce(&str) -> Result<T, String>,
 ) -> Result<(T, Option<String>), ScenarioError> {
@@ -145,7 +145,7 @@ fn read_text(path: &Path) -> Result<String, ScenarioError> {
 }
 
 /// The message of the TOML reader in one line: with the line of the file, without the pointer below it.
-pub(crate) fn toml_error(error: &toml::de::Error) -> String {
+pub fn toml_error(error: &toml::de::Error) -> String {
     const SHOWN: usize = 80;
     let shown = |line: &str| {
         let drawn = line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ').strip_prefix('|');
@@ -157,7 +157,7 @@ pub(crate) fn toml_error(error: &toml::de::Error) -> String {
 }
 
 /// The values in nested tables, by dotted names; tables that are values are known by `is_value`.
-pub(crate) fn dotted<'a>(prefix: &str, table: &'a Table, is_value: fn(&Table) -> bool) -> Vec<(String, &'a Value)> {
+pub fn dotted<'a>(prefix: &str, table: &'a Table, is_value: fn(&Table) -> bool) -> Vec<(String, &'a Value)> {
     let entries = table.iter().flat_map(|(key, value)| {
         let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
         match value {
@@ -172,7 +172,7 @@ pub(crate) fn dotted<'a>(prefix: &str, table: &'a Table, is_value: fn(&Table) ->
 ///
 /// # Errors
 /// If no variable can have it.
-pub(crate) fn value_text(name: &str, value: &Value) -> Result<String, String> {
+pub fn value_text(name: &str, value: &Value) -> Result<String, String> {
     match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(number) => Ok(number.to_string()),

@@ -10,13 +10,13 @@ use super::{Origin, Setting};
 const VARIABLES: [&str; 2] = ["excitation.file", "membrane.file"];
 
 /// Whether a value of the variable called `name` is the name of a file.
-pub(crate) fn is_file(name: &str) -> bool {
+pub fn is_file(name: &str) -> bool {
     VARIABLES.contains(&name)
 }
 
 /// The file called `value`, which the user gave at `origin`: beside the case or sweep file, or else where the user stands. None if
 /// there is no such file: an FMU may have one in its resources.
-pub(crate) fn find(value: &str, origin: &Origin) -> Option<PathBuf> {
+pub fn find(value: &str, origin: &Origin) -> Option<PathBuf> {
     let beside = if let Origin::File(path) = origin { path.parent() } else { None };
     let places = beside.into_iter().chain([Path::new("")]);
     let found = places.map(|folder| folder.join(value)).find(|path| !value.is_empty() && path.exists())?;
@@ -24,14 +24,14 @@ pub(crate) fn find(value: &str, origin: &Origin) -> Option<PathBuf> {
 }
 
 /// The value of the variable called `name` as an FMU gets it: with the absolute name of a file that is there.
-pub(crate) fn absolute<'a>(name: &str, value: &'a str, origin: &Origin) -> Cow<'a, str> {
+pub fn absolute<'a>(name: &str, value: &'a str, origin: &Origin) -> Cow<'a, str> {
     let found = if is_file(name) { find(value, origin) } else { None };
     found.and_then(|path| path.into_os_string().into_string().ok()).map_or(Cow::Borrowed(value), Cow::Owned)
 }
 
 impl Setting {
     /// The value as an FMU gets it.
-    pub(crate) fn value_for_fmu(&self) -> Cow<'_, str> {
+    pub fn value_for_fmu(&self) -> Cow<'_, str> {
         absolute(&self.name, &self.value, &self.origin)
     }
 }

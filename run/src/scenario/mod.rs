@@ -10,14 +10,14 @@ mod start_values;
 mod times;
 mod user_file;
 
-pub(crate) use characters::{check as check_characters, with_plain_ends};
+pub use characters::{check as check_characters, with_plain_ends};
 pub use file::CaseFile;
-pub(crate) use file::{dotted, read_file, toml_error, value_text};
+pub use file::{dotted, read_file, toml_error, value_text};
 pub use harvester::harvester_description;
 pub use origin::Origin;
 pub use start_values::{StartValue, start_values};
 pub use times::check_proposed_step;
-pub(crate) use user_file::{absolute as absolute_file, find as find_file, is_file};
+pub use user_file::{absolute as absolute_file, find as find_file, is_file};
 
 use serde::Serialize;
 use thiserror::Error;

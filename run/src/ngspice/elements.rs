@@ -68,7 +68,7 @@ impl Elements {
     }
 
     /// The circuit that these elements are.
-    pub(crate) fn circuit(&self) -> &Parameters {
+    pub fn circuit(&self) -> &Parameters {
         &self.circuit
     }
 
@@ -87,12 +87,7 @@ impl Elements {
     }
 
     /// The netlist of a run from `initial` capacitances (left, right), F.
-    pub(crate) fn netlist(
-        &self,
-        source: CapacitanceSource,
-        initial: [f64; 2],
-        run: &Run,
-    ) -> Result<Netlist, NgspiceError> {
+    pub fn netlist(&self, source: CapacitanceSource, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
         self.netlist_from(&self.start(), source, initial, run)
     }
 

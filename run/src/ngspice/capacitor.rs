@@ -42,7 +42,7 @@ impl CapacitorTest {
     }
 
     /// The netlist of a run that starts at `voltage`, V, and `initial` capacitances (left, right), F.
-    pub(crate) fn netlist(self, voltage: f64, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
+    pub fn netlist(self, voltage: f64, initial: [f64; 2], run: &Run) -> Result<Netlist, NgspiceError> {
         let values =
             run.values(CapacitanceSource::Table, voltage, initial, self.vectors())?.number("supply_voltage", voltage);
         match self {

@@ -42,13 +42,14 @@ impl Waveforms {
         Self { time: Vec::with_capacity(rows), samples: Vec::with_capacity(rows), points: None }
     }
 
-    pub(crate) fn push(&mut self, time: f64, sample: CircuitSample) {
+    /// Appends a row: the circuit at `time`, s.
+    pub fn push(&mut self, time: f64, sample: CircuitSample) {
         self.time.push(time);
         self.samples.push(sample);
     }
 
     /// Drops all rows but the last.
-    pub(crate) fn keep_last(&mut self) {
+    pub fn keep_last(&mut self) {
         // In place of a drain, which would keep the memory.
         self.time = self.time.split_off(self.time.len().saturating_sub(1));
         self.samples = self.samples.split_off(self.samples.len().saturating_sub(1));

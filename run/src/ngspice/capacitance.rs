@@ -39,7 +39,7 @@ impl CapacitanceTable {
     }
 
     /// Appends a row.
-    pub(crate) fn push(&mut self, time: f64, [left, right]: [f64; 2]) -> Result<(), NgspiceError> {
+    pub fn push(&mut self, time: f64, [left, right]: [f64; 2]) -> Result<(), NgspiceError> {
         let row = self.len();
         let fail = |reason| Err(NgspiceError::Table { row, reason });
         let in_order = self.time.last().map_or(time == 0.0, |&last| time > last && time.is_finite());
@@ -114,8 +114,9 @@ impl CapacitanceTable {
         self.time.last().copied().unwrap_or_default()
     }
 
-    /// The rows from `from` to `to`, both included, as a table that begins at 0 s.
-    pub(crate) fn part(&self, from: usize, to: usize) -> Self {
+    /// The rows from `from` to `to`, both included, as a table that begins at 0 s. Panics beyond the last row.
+    #[must_use]
+    pub fn part(&self, from: usize, to: usize) -> Self {
         let cut = |column: &[f64]| column[from..=to].to_vec();
         let time = self.time[from..=to].iter().map(|time| time - self.time[from]).collect();
         Self { time, left: cut(&self.left), right: cut(&self.right) }
@@ -142,7 +143,7 @@ impl CapacitanceTable {
 
 /// Writes time, s, and capacitances (left, right), F, as ngspice's `filesource` reads them: time in s, left and right in pF. A last
 /// row beyond the end keeps the capacitances where the last step of ngspice may overshoot.
-pub(crate) fn write_rows(rows: impl Iterator<Item = (f64, [f64; 2])>, mut out: impl Write) -> std::io::Result<()> {
+pub fn write_rows(rows: impl Iterator<Item = (f64, [f64; 2])>, mut out: impl Write) -> std::io::Result<()> {
     let mut last = None;
     let mut write =
         |(time, [left, right]): (f64, [f64; 2])| writeln!(out, "{time:e} {:e} {:e}", left / PICO, right / PICO);

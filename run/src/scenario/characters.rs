@@ -7,12 +7,12 @@ use toml::{Table, Value};
 ///
 /// # Errors
 /// The first one, by key and number.
-pub(crate) fn check(table: &Table) -> Result<(), String> {
+pub fn check(table: &Table) -> Result<(), String> {
     table.iter().try_for_each(|(key, value)| check_entry(key, value))
 }
 
 /// `text` with ends of lines as editors write them elsewhere than on Windows: TOML keeps those within a text.
-pub(crate) fn with_plain_ends(text: &str) -> String {
+pub fn with_plain_ends(text: &str) -> String {
     text.replace("\r\n", "\n")
 }
 

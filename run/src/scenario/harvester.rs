@@ -7,6 +7,6 @@ use fmu_import::{FmiError, ModelDescription};
 /// # Errors
 /// None: it is part of this program.
 pub fn harvester_description() -> Result<ModelDescription, FmiError> {
-    let document = include_bytes!("../../modelDescription/VibroImpactHarvester.xml");
+    let document = include_bytes!("../../../modelDescription/VibroImpactHarvester.xml");
     ModelDescription::parse(document, "modelDescription/VibroImpactHarvester.xml")
 }

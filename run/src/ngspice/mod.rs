@@ -2,8 +2,8 @@
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let harvester: &mut videg::cosim::HarvesterFmu = todo!();
-//! use videg::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
+//! # let harvester: &mut videg_run::cosim::HarvesterFmu = todo!();
+//! use videg_run::ngspice::{CapacitanceTable, Elements, Ngspice, Run, Waveforms};
 //!
 //! let table = CapacitanceTable::from_harvester(harvester, 10.0, 1e-4, &())?;    // C(t), linear between its rows
 //! let parameters = videg_circuit::Parameters::default();
@@ -41,15 +41,16 @@ mod user_netlist;
 mod waveforms;
 
 pub use capacitance::CapacitanceTable;
-pub(crate) use capacitance::{PICO, write_rows};
+pub(crate) use capacitance::PICO;
+pub use capacitance::write_rows;
 pub use capacitor::{CapacitorTest, Deviation};
 pub use elements::{Elements, Role};
 pub use error::{Complaints, NgspiceError};
 pub use netlist_cards::NetlistError;
 pub use raw::{RawError, RawReader};
-pub(crate) use run::CapacitanceSource;
+pub use run::CapacitanceSource;
 pub use run::Run;
 pub use runner::{Ngspice, SolverRun};
-pub(crate) use template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
+pub use template::{NETLIST_FILE, Netlist, RAW_FILE, TABLE_FILE};
 pub use user_netlist::UserNetlist;
 pub use waveforms::Waveforms;

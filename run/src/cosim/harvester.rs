@@ -112,7 +112,7 @@ struct Feedback {
 ///
 /// # Errors
 /// A setting that the FMU refuses.
-pub(crate) fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result<Instance, CosimError> {
+pub fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result<Instance, CosimError> {
     let mut instance = begin(fmu, "harvester", stop, settings, Setting::value_for_fmu)?;
     instance.exit_initialization_mode()?;
     Ok(instance)

@@ -173,7 +173,7 @@ impl Ngspice {
     }
 
     /// Writes netlist and table into `folder`, where `ngspice -b harvesting.cir` runs them by hand.
-    pub(crate) fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
+    pub fn export(folder: &Path, netlist: &Netlist, table: &CapacitanceTable) -> Result<(), NgspiceError> {
         let path = folder.join(NETLIST_FILE);
         atomic_file::write(&path, netlist.text()).map_err(|cause| NgspiceError::File { path, cause })?;
         let path = folder.join(TABLE_FILE);

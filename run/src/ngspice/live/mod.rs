@@ -15,4 +15,4 @@ pub(crate) use listing::number;
 pub use network::Account;
 pub(crate) use network::SOURCES;
 pub use protocol::{Circuit, Job, Ramp, Request, State, Wanted};
-pub(crate) use worker::serve;
+pub use worker::serve;

@@ -14,9 +14,11 @@ impl Netlist {
     }
 }
 
-/// The files of a run, in its folder: netlist, table of capacitances and result.
+/// Netlist of a run, in its folder.
 pub const NETLIST_FILE: &str = "harvesting.cir";
+/// Its table of capacitances.
 pub const TABLE_FILE: &str = "capacitance.tab";
+/// Its result.
 pub const RAW_FILE: &str = "harvesting.raw";
 
 /// A number as ngspice reads it: digits and an exponent, no suffix letter. The digits are those of this very double; what
@@ -32,7 +34,7 @@ fn number(name: &str, value: f64) -> Result<String, NgspiceError> {
 /// A netlist from the folder `ngspice_netlists`, with placeholders `<name>` of small letters and underscores.
 macro_rules! template {
     ($name:literal) => {
-        include_str!(concat!("../../ngspice_netlists/", $name))
+        include_str!(concat!("../../../ngspice_netlists/", $name))
     };
 }
 pub(super) use template;
