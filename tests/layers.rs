@@ -151,8 +151,8 @@ fn a_shared_library_links_nothing_of_the_command_line() {
 
 #[test]
 fn no_module_imports_one_above_it() {
-    let mut seen = 0;
     for (folder, modules) in DOWNWARDS {
+        let mut seen = 0;
         let level = |module: &str| {
             let found = modules.iter().position(|it| *it == module);
             found.unwrap_or_else(|| panic!("{folder}/{module} has no place among {modules:?}"))
@@ -168,8 +168,8 @@ fn no_module_imports_one_above_it() {
                 seen += 1;
             }
         }
+        assert!(seen >= 15, "only {seen} imports are found in {folder}: are they written in another way?");
     }
-    assert!(seen > 50, "only {seen} imports are found: are they written in another way?");
 }
 
 #[test]

@@ -80,10 +80,10 @@ print("impacts in 5 s:", videg.simulate(until=5).impacts)
 END
 
 echo "every library builds from its package"
-# The tool itself needs the source tree around it, and what is not published has no version.
+# The tool and its runs need the source tree around them, and what is not published has no version.
 mapfile -t libraries < <(cargo metadata --no-deps --format-version 1 | python3 -c '
 import json, sys
 for package in json.load(sys.stdin)["packages"]:
-    if package["publish"] is None and package["name"] != "videg":
+    if package["publish"] is None and package["name"] not in ("videg", "videg-run"):
         print("--package=" + package["name"])')
 CARGO_TARGET_DIR=$work/packages cargo package --quiet --allow-dirty "${libraries[@]}"

@@ -41,6 +41,8 @@ cargo run -q --release -- fmu build --output "$work/linux"
 cargo run -q --release -- fmu build --target win64 --output "$work/windows"
 cargo build -q --release -p videg-fmu-client
 cargo build -q --release -p videg-fmu-client --target "$target"
+echo "the program compiles for Windows"
+cargo check -q --target "$target" -p videg
 python3 - "$work" <<'END'
 import sys, zipfile
 for system in ("linux", "windows"):

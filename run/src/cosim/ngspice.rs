@@ -47,7 +47,7 @@ const HINT: &str = "; this may help: .ic for every node at another voltage than 
 
 impl NgspiceCircuit {
     /// A circuit of `elements` for the time from 0 to `run.until`, s, both membranes charged, at `capacitance` (left,
-    /// right), F. `program` is the command-line tool of this crate, which runs the shared library of ngspice.
+    /// right), F. `program` is the command-line tool `videg`, which runs the shared library of ngspice.
     ///
     /// # Errors
     /// A number that cannot be put into a netlist, or a program that cannot be started.

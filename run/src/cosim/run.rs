@@ -35,7 +35,7 @@ pub struct Options<'a> {
 pub enum CircuitSolver<'a> {
     /// The exact solver, called directly.
     Embedded,
-    /// The shared library of ngspice; the program is the command-line tool of this crate, which runs it.
+    /// The shared library of ngspice; the program is the command-line tool `videg`, which runs it.
     Ngspice(&'a Path),
     /// The FMU `HarvestingCircuit`.
     Fmu(&'a Fmu),

@@ -114,7 +114,10 @@ impl CapacitanceTable {
         self.time.last().copied().unwrap_or_default()
     }
 
-    /// The rows from `from` to `to`, both included, as a table that begins at 0 s. Panics beyond the last row.
+    /// The rows from `from` to `to`, both included, as a table that begins at 0 s.
+    ///
+    /// # Panics
+    /// If `from` is behind `to`, or `to` beyond the last row.
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Self {
         let cut = |column: &[f64]| column[from..=to].to_vec();

@@ -14,11 +14,11 @@ impl Netlist {
     }
 }
 
-/// Netlist of a run, in its folder.
+/// File name of the netlist in the folder of a run.
 pub const NETLIST_FILE: &str = "harvesting.cir";
-/// Its table of capacitances.
+/// File name of the table of capacitances in the folder of a run.
 pub const TABLE_FILE: &str = "capacitance.tab";
-/// Its result.
+/// File name of the result in the folder of a run.
 pub const RAW_FILE: &str = "harvesting.raw";
 
 /// A number as ngspice reads it: digits and an exponent, no suffix letter. The digits are those of this very double; what
