@@ -30,7 +30,7 @@ impl Schedule {
 
     /// The next communication point at most `step`, s, after `now`, or later where that would be too short a step; off the grid,
     /// the rest as for [`Schedule::next`].
-    pub fn within(&self, now: f64, step: f64, knot: f64) -> f64 {
+    pub(super) fn within(&self, now: f64, step: f64, knot: f64) -> f64 {
         let (stop, closest) = (self.stop(now), self.closest());
         let target = now + step.max(closest);
         let target = if stop <= target || stop - now < 2.0 * closest {
@@ -49,7 +49,7 @@ impl Schedule {
     }
 
     /// Shortest step that the schedule chooses by itself, s.
-    pub fn closest(&self) -> f64 {
+    pub(super) fn closest(&self) -> f64 {
         Self::CLOSEST * self.step
     }
 
