@@ -1,9 +1,10 @@
 //! Services of the operating system that leave nothing behind: temporary folders that go with the program, files written
-//! atomically, and child processes that end with the program.
+//! atomically, and child processes that end with the program, with pipes to them.
 
 pub mod atomic_file;
 pub mod folders;
 mod lock;
 pub mod output;
+pub mod pipes;
 pub mod processes;
 pub mod temporary;

@@ -9,7 +9,6 @@
 
 mod bounds;
 mod ending;
-mod pipes;
 mod pool;
 mod process;
 mod protocol;

@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use super::bounds::WORKER_VERB;
 use super::ending::How;
-use super::pipes::{Heard, Pipes};
 use super::protocol::{Given, Opening, Reply, SPARE, build, frame, longest_answer, unframe};
 use crate::logging::LogRecord;
 use crate::request::Request;
 use videg_system::output::{KeptOutput, Part};
+use videg_system::pipes::{Heard, Pipes};
 use videg_system::processes::ProcessGroup;
 
 /// Polling interval for the end of a silent worker: a child of it may hold its pipes open.

@@ -1,15 +1,16 @@
 //! The master's side: starts the worker, sends and receives a message each communication step, and ends it.
 
-use std::io::{self, BufReader, BufWriter};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{ChildStdin, ChildStdout, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::Duration;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use thiserror::Error;
 
-use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, receive, send};
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, line, take};
 use videg_system::output::{KeptOutput, Part};
+use videg_system::pipes::{Heard, Pipes};
 use videg_system::processes::ProcessGroup;
 use videg_system::temporary::TemporaryFolder;
 
@@ -50,8 +51,9 @@ impl LiveError {
 /// A running worker.
 pub struct Worker {
     group: ProcessGroup,
-    requests: BufWriter<ChildStdin>,
-    replies: Receiver<io::Result<Option<Reply>>>,
+    pipes: Pipes,
+    /// What it sent and nobody has read yet.
+    heard: Vec<u8>,
     stderr: KeptOutput,
     limit: Duration,
     time: f64,
@@ -78,13 +80,12 @@ impl Worker {
         let mut group = ProcessGroup::start(&mut command).map_err(fail)?;
         let child = &mut group.child;
         let missing = || fail(io::Error::other("no pipe"));
-        let requests = BufWriter::new(child.stdin.take().ok_or_else(missing)?);
-        let replies = read_replies(child.stdout.take().ok_or_else(missing)?).map_err(fail)?;
+        let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
         let stderr =
             KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
-        let mut worker = Self { group, requests, replies, stderr, limit, time: 0.0, _folder: folder };
-        // A worker that is gone already is found out by the first step.
-        let _ = send(&mut worker.requests, job);
+        let pipes = Pipes::new(requests, replies).map_err(fail)?;
+        let mut worker = Self { group, pipes, heard: Vec::new(), stderr, limit, time: 0.0, _folder: folder };
+        worker.send(job);
         Ok(worker)
     }
 
@@ -129,18 +130,40 @@ impl Worker {
     }
 
     fn ask(&mut self, request: &Request, to: f64) -> Result<Reply, LiveError> {
-        // A worker that has died says why in its last reply, so that is read even if the request does not get through.
-        let _ = send(&mut self.requests, request);
+        self.send(request);
         self.receive(to)
+    }
+
+    /// Sends a message, if the worker takes it. One that has died says why in its last reply, and one that hangs gives none.
+    fn send(&mut self, message: &impl Serialize) {
+        let Ok(line) = line(message) else { return };
+        let (mut rest, start) = (line.as_slice(), Instant::now());
+        while !rest.is_empty() && start.elapsed() < self.limit {
+            match self.pipes.write(rest, self.limit.saturating_sub(start.elapsed())) {
+                Ok(count) => rest = &rest[count..],
+                Err(_) => return,
+            }
+        }
     }
 
     /// The next reply, on the way to the time `to`, s.
     fn receive(&mut self, to: f64) -> Result<Reply, LiveError> {
-        match self.replies.recv_timeout(self.limit) {
-            Ok(Ok(Some(Reply::Failure(text)))) => Err(LiveError::Failure(text)),
-            Ok(Ok(Some(reply))) => Ok(reply),
-            Err(RecvTimeoutError::Timeout) => Err(LiveError::TimeLimit { when: self.when(to), limit: self.limit }),
-            _ => Err(self.died(to)),
+        let start = Instant::now();
+        loop {
+            match take(&mut self.heard) {
+                Ok(Some(Reply::Failure(text))) => return Err(LiveError::Failure(text)),
+                Ok(Some(reply)) => return Ok(reply),
+                Ok(None) => {}
+                Err(_) => return Err(self.died(to)),
+            }
+            let left = self.limit.saturating_sub(start.elapsed());
+            match self.pipes.read(&mut self.heard, left) {
+                Ok(Heard::Nothing) if left.is_zero() => {
+                    return Err(LiveError::TimeLimit { when: self.when(to), limit: self.limit });
+                }
+                Ok(Heard::Something | Heard::Nothing) => {}
+                Ok(Heard::End) | Err(_) => return Err(self.died(to)),
+            }
         }
     }
 
@@ -155,20 +178,4 @@ impl Worker {
     fn when(&self, to: f64) -> String {
         if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() }
     }
-}
-
-/// Reads replies in a thread of its own, because a pipe cannot be read with a time limit. At most one waits.
-fn read_replies(stdout: ChildStdout) -> io::Result<Receiver<io::Result<Option<Reply>>>> {
-    let (sender, receiver) = sync_channel(1);
-    std::thread::Builder::new().spawn(move || {
-        let mut reader = BufReader::new(stdout);
-        loop {
-            let reply = receive(&mut reader);
-            let last = !matches!(reply, Ok(Some(_)));
-            if sender.send(reply).is_err() || last {
-                break;
-            }
-        }
-    })?;
-    Ok(receiver)
 }

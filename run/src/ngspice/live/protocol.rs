@@ -8,7 +8,7 @@ use super::ledger::{Group, Membranes};
 use super::network::Account;
 
 /// Longest line that is read, bytes: a netlist may take [`crate::ngspice::UserNetlist::LARGEST`].
-const LONGEST_LINE: u64 = 1 << 22;
+const LONGEST_LINE: usize = 1 << 22;
 
 /// First line to the worker: the circuit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,18 +112,33 @@ pub enum Reply {
     Failure(String),
 }
 
-/// Writes a message.
-pub fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
+/// A message as a line.
+pub fn line(message: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut line = serde_json::to_vec(message)?;
     line.push(b'\n');
-    writer.write_all(&line)?;
+    Ok(line)
+}
+
+/// Takes the first message out of `bytes`, if it is complete.
+pub fn take<T: DeserializeOwned>(bytes: &mut Vec<u8>) -> io::Result<Option<T>> {
+    let Some(end) = bytes.iter().position(|&byte| byte == b'\n') else {
+        return if bytes.len() < LONGEST_LINE { Ok(None) } else { Err(io::Error::other("a line without end")) };
+    };
+    let message = serde_json::from_slice(&bytes[..end])?;
+    bytes.drain(..=end);
+    Ok(Some(message))
+}
+
+/// Writes a message.
+pub fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
+    writer.write_all(&line(message)?)?;
     writer.flush()
 }
 
 /// Reads a message; none if the other side has closed.
 pub fn receive<T: DeserializeOwned>(reader: &mut impl BufRead) -> io::Result<Option<T>> {
     let mut line = Vec::new();
-    reader.take(LONGEST_LINE).read_until(b'\n', &mut line)?;
+    reader.take(LONGEST_LINE as u64).read_until(b'\n', &mut line)?;
     if line.is_empty() {
         return Ok(None);
     }
@@ -143,6 +158,18 @@ mod tests {
     }
 
     #[test]
+    fn messages_are_taken_one_by_one_and_whole() {
+        let replies = [Reply::Energies(vec![0.1]), Reply::Failure("two\nlines".to_owned())];
+        let mut bytes = replies.iter().flat_map(|reply| line(reply).unwrap()).collect::<Vec<_>>();
+        let last = bytes.pop().unwrap();
+        assert_eq!(take(&mut bytes).unwrap().as_ref(), Some(&replies[0]));
+        assert_eq!(take::<Reply>(&mut bytes).unwrap(), None);
+        bytes.push(last);
+        assert_eq!(take(&mut bytes).unwrap().as_ref(), Some(&replies[1]));
+        assert!(bytes.is_empty());
+    }
+
+    #[test]
     fn the_end_of_the_stream_is_no_message_and_garbage_or_an_endless_line_an_error() {
         assert_eq!(receive::<Reply>(&mut &b""[..]).unwrap(), None);
         let endless = vec![b'['; 12 << 20];
@@ -150,6 +177,9 @@ mod tests {
             let mut reader = garbage;
             assert!(receive::<Reply>(&mut reader).is_err());
             assert!(garbage.len() < 100 || reader.len() >= 8 << 20, "it was read to its end");
+            let mut bytes = garbage.to_vec();
+            let is_cut = !garbage.ends_with(b"\n") && garbage.len() < LONGEST_LINE;
+            assert_eq!(take::<Reply>(&mut bytes).is_ok_and(|reply| reply.is_none()), is_cut);
         }
     }
 

@@ -10,12 +10,14 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::io::{self, BufReader, Write};
 use std::iter;
+use std::time::Duration;
 
 use super::ledger::ElementLedger;
 use super::library::{Callbacks, LibraryError, Ngspice, VectorValue, VectorValues};
 use super::listing;
 use super::network::Network;
 use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, receive, send};
+use videg_system::pipes::watch;
 
 /// Lines of ngspice that are kept for the message of a failure.
 const KEPT_LINES: usize = 12;
@@ -25,6 +27,8 @@ const MOST_ELEMENTS: usize = 5000;
 const MOST_LINES: usize = 4 * MOST_ELEMENTS;
 /// Longest line that is kept, characters.
 const LONGEST_LINE: usize = 300;
+/// Longest time that the worker waits for a request without sleeping: the master, which does little in a step, answers within.
+const WATCH: Duration = Duration::from_micros(200);
 /// Time that differs by less than this part of a time step is the same.
 const SAME_TIME: f64 = 1e-9;
 
@@ -265,6 +269,9 @@ impl<W: Write> Session<W> {
     /// Answers requests up to the next ramp; whether there is one.
     fn next_ramp(&mut self) -> io::Result<bool> {
         loop {
+            if self.requests.buffer().is_empty() {
+                watch(self.requests.get_ref(), WATCH);
+            }
             match receive::<Request>(&mut self.requests)? {
                 Some(Request::Energies) => {
                     let energies = self.ledger.as_ref().map_or_else(Vec::new, |ledger| ledger.energies().to_vec());

@@ -1,14 +1,14 @@
-//! The pipes to a worker, written and read with a limit on waiting: it may neither read nor write any more.
+//! The pipes to a child, written and read with a limit on waiting: it may neither read nor write any more.
 
 use std::io;
 use std::process::{ChildStdin, ChildStdout};
 use std::time::Duration;
 
-pub(super) use ends::Pipes;
+pub use ends::{Pipes, watch};
 
 /// Result of waiting for bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Heard {
+pub enum Heard {
     /// Some have come.
     Something,
     /// None have come yet.
@@ -24,12 +24,14 @@ const CHUNK: usize = 1 << 16;
 mod ends {
     use std::io::{ErrorKind, Read as _, Write as _};
     use std::os::fd::AsFd;
+    use std::time::Instant;
 
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
     use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, io};
 
     /// Both pipes.
+    #[derive(Debug)]
     pub struct Pipes {
         requests: ChildStdin,
         replies: ChildStdout,
@@ -38,14 +40,20 @@ mod ends {
 
     impl Pipes {
         /// Takes over the pipes of a child.
+        ///
+        /// # Errors
+        /// If the system refuses.
         pub fn new(requests: ChildStdin, replies: ChildStdout) -> io::Result<Self> {
-            // These are the ends of this process alone: those of the worker go on to block.
+            // These are the ends of this process alone: those of the child go on to block.
             rustix::io::ioctl_fionbio(&requests, true)?;
             rustix::io::ioctl_fionbio(&replies, true)?;
             Ok(Self { requests, replies, chunk: vec![0; CHUNK].into() })
         }
 
         /// Writes the beginning of `bytes`, waiting at most `wait`; says how many.
+        ///
+        /// # Errors
+        /// If the child has closed the pipe.
         pub fn write(&mut self, bytes: &[u8], wait: Duration) -> io::Result<usize> {
             match self.requests.write(bytes) {
                 Err(cause) if cause.kind() == ErrorKind::WouldBlock => {
@@ -58,6 +66,9 @@ mod ends {
         }
 
         /// Appends what has come to `bytes`, waiting at most `wait`.
+        ///
+        /// # Errors
+        /// If the pipe cannot be read.
         pub fn read(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> io::Result<Heard> {
             if !is_ready(&self.replies, PollFlags::IN, wait)? {
                 return Ok(Heard::Nothing);
@@ -73,6 +84,15 @@ mod ends {
                 }
                 Err(cause) => Err(cause),
             }
+        }
+    }
+
+    /// Waits for bytes at an `end` of a pipe, at most `wait`, without sleeping, because a processor that sleeps takes tens of
+    /// microseconds to wake. A process that has none gets this one.
+    pub fn watch(end: &impl AsFd, wait: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < wait && matches!(is_ready(end, PollFlags::IN, Duration::ZERO), Ok(false)) {
+            std::thread::yield_now();
         }
     }
 
@@ -95,13 +115,21 @@ mod ends {
 
     use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, io};
 
+    /// Nothing: whoever reads from a pipe waits for it asleep.
+    pub fn watch<T>(_: &T, _: Duration) {}
+
     /// Both pipes.
+    #[derive(Debug)]
     pub struct Pipes {
         requests: ChildStdin,
         replies: Receiver<Vec<u8>>,
     }
 
     impl Pipes {
+        /// Takes over the pipes of a child.
+        ///
+        /// # Errors
+        /// If the system refuses.
         pub fn new(requests: ChildStdin, mut replies: ChildStdout) -> io::Result<Self> {
             let (sender, receiver) = sync_channel(1);
             std::thread::Builder::new().spawn(move || {
@@ -115,10 +143,18 @@ mod ends {
             Ok(Self { requests, replies: receiver })
         }
 
+        /// Writes the beginning of `bytes`, waiting at most `wait`; says how many.
+        ///
+        /// # Errors
+        /// If the child has closed the pipe.
         pub fn write(&mut self, bytes: &[u8], _: Duration) -> io::Result<usize> {
             self.requests.write(bytes)
         }
 
+        /// Appends what has come to `bytes`, waiting at most `wait`.
+        ///
+        /// # Errors
+        /// If the pipe cannot be read.
         pub fn read(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> io::Result<Heard> {
             match self.replies.recv_timeout(wait) {
                 Ok(chunk) => {
@@ -129,5 +165,49 @@ mod ends {
                 Err(RecvTimeoutError::Disconnected) => Ok(Heard::End),
             }
         }
+    }
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use std::process::{Command, Stdio};
+
+    use super::*;
+    use crate::processes::ProcessGroup;
+
+    /// A child that does what `script` says.
+    fn child(script: &str) -> (ProcessGroup, Pipes) {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut group = ProcessGroup::start(&mut command).unwrap();
+        let (requests, replies) = (group.child.stdin.take().unwrap(), group.child.stdout.take().unwrap());
+        (group, Pipes::new(requests, replies).unwrap())
+    }
+
+    const LONG: Duration = Duration::from_secs(60);
+    const SHORT: Duration = Duration::from_millis(10);
+
+    #[test]
+    fn what_is_written_is_read_to_the_end() {
+        let (_group, mut pipes) = child("head -c 6");
+        let mut bytes = Vec::new();
+        assert_eq!(pipes.read(&mut bytes, SHORT).unwrap(), Heard::Nothing);
+        for part in ["one", "two"] {
+            assert_eq!(pipes.write(part.as_bytes(), LONG).unwrap(), 3);
+        }
+        while pipes.read(&mut bytes, LONG).unwrap() == Heard::Something {}
+        assert_eq!(bytes, b"onetwo");
+        assert_eq!(pipes.read(&mut bytes, LONG).unwrap(), Heard::End);
+    }
+
+    #[test]
+    fn a_child_that_does_not_read_takes_no_more_than_the_time_allowed() {
+        let (_group, mut pipes) = child("sleep 1000");
+        let bytes = vec![0; 1 << 16];
+        while pipes.write(&bytes, SHORT).unwrap() > 0 {}
+        let (_group, mut pipes) = child("exec 0<&-; echo closed; sleep 1000");
+        assert_eq!(pipes.read(&mut Vec::new(), LONG).unwrap(), Heard::Something);
+        assert!(pipes.write(&bytes, SHORT).is_err());
     }
 }
