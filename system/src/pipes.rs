@@ -1,7 +1,7 @@
 //! The pipes to a child, written and read with a limit on waiting: it may neither read nor write any more.
 
 use std::io;
-use std::process::{ChildStdin, ChildStdout};
+use std::process::{Child, ChildStdin, ChildStdout};
 use std::time::Duration;
 
 pub use ends::{Pipes, watch};
@@ -15,6 +15,17 @@ pub enum Heard {
     Nothing,
     /// The other side has closed.
     End,
+}
+
+impl Pipes {
+    /// Takes stdin and stdout of a child, which must be pipes.
+    ///
+    /// # Errors
+    /// If one is no pipe, or the system refuses.
+    pub fn of(child: &mut Child) -> io::Result<Self> {
+        let missing = || io::Error::other("no pipe");
+        Self::new(child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?)
+    }
 }
 
 /// Bytes that are read at once.
@@ -39,11 +50,7 @@ mod ends {
     }
 
     impl Pipes {
-        /// Takes over the pipes of a child.
-        ///
-        /// # Errors
-        /// If the system refuses.
-        pub fn new(requests: ChildStdin, replies: ChildStdout) -> io::Result<Self> {
+        pub(super) fn new(requests: ChildStdin, replies: ChildStdout) -> io::Result<Self> {
             // These are the ends of this process alone: those of the child go on to block.
             rustix::io::ioctl_fionbio(&requests, true)?;
             rustix::io::ioctl_fionbio(&replies, true)?;
@@ -88,7 +95,7 @@ mod ends {
     }
 
     /// Waits for bytes at an `end` of a pipe, at most `wait`, without sleeping, because a processor that sleeps takes tens of
-    /// microseconds to wake. A process that has none gets this one.
+    /// microseconds to wake. Other processes go first.
     pub fn watch(end: &impl AsFd, wait: Duration) {
         let start = Instant::now();
         while start.elapsed() < wait && matches!(is_ready(end, PollFlags::IN, Duration::ZERO), Ok(false)) {
@@ -126,11 +133,7 @@ mod ends {
     }
 
     impl Pipes {
-        /// Takes over the pipes of a child.
-        ///
-        /// # Errors
-        /// If the system refuses.
-        pub fn new(requests: ChildStdin, mut replies: ChildStdout) -> io::Result<Self> {
+        pub(super) fn new(requests: ChildStdin, mut replies: ChildStdout) -> io::Result<Self> {
             let (sender, receiver) = sync_channel(1);
             std::thread::Builder::new().spawn(move || {
                 let mut chunk = vec![0; CHUNK];
@@ -181,8 +184,8 @@ mod tests {
         let mut command = Command::new("sh");
         command.args(["-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut group = ProcessGroup::start(&mut command).unwrap();
-        let (requests, replies) = (group.child.stdin.take().unwrap(), group.child.stdout.take().unwrap());
-        (group, Pipes::new(requests, replies).unwrap())
+        let pipes = Pipes::of(&mut group.child).unwrap();
+        (group, pipes)
     }
 
     const LONG: Duration = Duration::from_secs(60);

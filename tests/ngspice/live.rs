@@ -149,6 +149,12 @@ fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
         let error = run().unwrap_err();
         assert!(error.to_string().contains(expected), "{script}: {error}");
     }
+    // More than a pipe holds.
+    let mut long = job();
+    long.netlist.extend(vec!["* a comment".to_owned(); 1 << 15]);
+    let mut deaf = Worker::start(&fake(folder.path(), "sleep 1000"), &long, Duration::from_secs(1)).unwrap();
+    let error = deaf.circuit().unwrap_err().to_string();
+    assert_eq!(error, "no answer of ngspice about the netlist within 1 s");
     let missing = Worker::start(Path::new("/nowhere/videg"), &job(), Duration::from_secs(1)).err().unwrap();
     assert!(missing.to_string().starts_with(&format!("cannot start /nowhere/videg {WORKER_VERB}: ")), "{missing}");
 }

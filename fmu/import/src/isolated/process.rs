@@ -40,10 +40,9 @@ impl Process {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut group = ProcessGroup::start(&mut command)?;
         let child = &mut group.child;
-        let missing = || io::Error::other("no pipe");
-        let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
-        let printed = KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::End(KEPT))?;
-        let pipes = Pipes::new(requests, replies)?;
+        let stderr = child.stderr.take().ok_or_else(|| io::Error::other("no pipe"))?;
+        let printed = KeptOutput::new(stderr, Part::End(KEPT))?;
+        let pipes = Pipes::of(child)?;
         Ok(Self { group, pipes, heard: Vec::new(), calls: 0, printed })
     }
 

@@ -79,11 +79,9 @@ impl Worker {
             .stderr(Stdio::piped());
         let mut group = ProcessGroup::start(&mut command).map_err(fail)?;
         let child = &mut group.child;
-        let missing = || fail(io::Error::other("no pipe"));
-        let (requests, replies) = (child.stdin.take().ok_or_else(missing)?, child.stdout.take().ok_or_else(missing)?);
-        let stderr =
-            KeptOutput::new(child.stderr.take().ok_or_else(missing)?, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
-        let pipes = Pipes::new(requests, replies).map_err(fail)?;
+        let stderr = child.stderr.take().ok_or_else(|| fail(io::Error::other("no pipe")))?;
+        let stderr = KeptOutput::new(stderr, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
+        let pipes = Pipes::of(child).map_err(fail)?;
         let mut worker = Self { group, pipes, heard: Vec::new(), stderr, limit, time: 0.0, _folder: folder };
         worker.send(job);
         Ok(worker)
