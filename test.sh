@@ -27,7 +27,7 @@ export VIDEG_ALL_TOOLS=1
 export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-20250101}
 
 # What the stage slow is made of, the longest first.
-readonly SLOW_STAGES=(unit-slow python book conformance scale browser exporter)
+readonly SLOW_STAGES=(unit-slow python browser book exporter scale conformance)
 # These take longer still, install Wine and cross compilers, or need a nightly compiler.
 readonly EXTRA_STAGES=(slow "${SLOW_STAGES[@]}" conformance-slow portability soak fuzz sanitizers miri release coverage)
 
@@ -118,7 +118,7 @@ missing_packages() {
     has_command valgrind || echo valgrind
     has_command ngspice || echo ngspice
     has_library libngspice.so.0 || echo libngspice0
-    has_command chromium || echo chromium
+    has_command chromium-headless-shell || has_command chromium || echo chromium-headless-shell
     [[ -f $MATH_FONT ]] || echo fonts-dejavu-extra
     has_command shellcheck || echo shellcheck
     has_daemon slurmctld || echo slurmctld
@@ -141,6 +141,7 @@ install_packages() {
 }
 
 # Installs the pinned Python packages, unless those of this very list are there already.
+# Python compiles what it imports when it does, which is a small part.
 install_python_packages() {
     local stamp="$VENV/requirements.sha256" wanted
     wanted=$(cat "${REQUIREMENTS[@]}" <(python3 --version) | sha256sum)
@@ -150,7 +151,7 @@ install_python_packages() {
     fi
     echo "installing Python packages into $VENV"
     python3 -m venv --clear "$VENV"
-    "$VENV/bin/pip" install --quiet --disable-pip-version-check --requirement "${REQUIREMENTS[-1]}"
+    "$VENV/bin/pip" install --quiet --disable-pip-version-check --no-compile --requirement "${REQUIREMENTS[-1]}"
     "$VENV/bin/pip" check
     echo "$wanted" >"$stamp"
 }

@@ -9,8 +9,8 @@ from playwright.sync_api import TimeoutError
 
 from pages import OVERFLOW, beyond
 
-WIDTHS = [375, 800, 1440]
-SCHEMES = ["light", "dark"]
+# Phone, tablet and desktop, with light and dark by turns: the scheme changes colours only.
+WINDOWS = list(zip([375, 800, 1440], itertools.cycle(["light", "dark"])))
 BEYOND = beyond(".scroll, .plot, .chart, pre, .thumbnails svg, desc")
 # Texts of a picture that reach over its edge.
 CLIPPED = """picture => {
@@ -62,8 +62,7 @@ def chart_of(figure):
     return json.loads(figure.locator("script").text_content())
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize(("width", "scheme"), WINDOWS)
 def test_the_page_fits_and_every_picture_is_drawn(visit, width, scheme):
     visited = visit(width, scheme)
     page = visited.page
@@ -80,7 +79,7 @@ def test_the_page_fits_and_every_picture_is_drawn(visit, width, scheme):
         assert picture.locator("path, polyline, polygon, circle").count() > 0
 
 
-@pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, itertools.cycle(SCHEMES))))
+@pytest.mark.parametrize(("width", "scheme"), WINDOWS)
 def test_every_chart_opens_with_all_its_panels_and_closes_again(visit, width, scheme):
     visited = visit(width, scheme)
     page = visited.page

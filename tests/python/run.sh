@@ -43,5 +43,5 @@ if "${alone[@]}" "$BASH" -c 'command -v cargo rustc'; then
     exit 1
 fi
 
-"$work/user/bin/pip" install --quiet --disable-pip-version-check --requirement tests/python/requirements.txt
+"$work/user/bin/pip" install --quiet --disable-pip-version-check --no-compile --requirement tests/python/requirements.txt
 "${alone[@]}" python -m pytest -p no:cacheprovider tests/python

@@ -1,5 +1,6 @@
 """The page of `videg explore` in the hands of a user: it fits every window, loses nothing and says what it does not take."""
 
+import itertools
 import math
 import re
 
@@ -209,8 +210,7 @@ def test_with_reduced_motion_nothing_moves_at_first(visit):
     assert page.locator("#play").inner_text() == "Play"
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, itertools.cycle(["light", "dark"]))))
 def test_the_page_fits_every_window(visit, width, scheme):
     visited = visit("#case=fig14&topology=isolated&release=switch&zener.voltage=2700", width=width, scheme=scheme)
     page = visited.page
