@@ -82,6 +82,14 @@ class ReportVisit(Visit):
             self.page.screenshot(path=path, full_page=True)
 
 
+@pytest.fixture(scope="session")
+def page(browser, report):
+    """The report on a desktop, open once for tests that only read it."""
+    with closing() as visits:
+        visits.append(ReportVisit(browser, report, viewport={"width": 1440, "height": 900}))
+        yield visits[0].page
+
+
 @pytest.fixture
 def visit(browser, report):
     """Opens the report; after the test, nothing may have gone wrong."""
