@@ -62,7 +62,8 @@ Only when named:
   conformance-slow
                conformance with fmi-sim, too, which takes ten minutes to build; clippy for the reader with the crate `fmi`
   soak         runs of 1e6 s, and sweeps and outputs on failing disks, in full: the figures of docs/soak.md; random tests of
-               model and circuit with parameters that no run has drawn before; optima of more cases in Python
+               model and circuit with parameters that no run has drawn before; optima of more cases in Python; pages at
+               each width in both schemes
   portability  the FMUs for Windows under Wine, and for Linux against an old C library; installs what that takes
   fuzz         each fuzz target for 20 s, from inputs that the stage unit replays anyway; needs a nightly compiler
   sanitizers   the FMUs with AddressSanitizer, and ThreadSanitizer on many threads; needs a nightly compiler
@@ -373,6 +374,7 @@ stage_soak() {
     PROPTEST_RNG_SEED=$(date +%s) && echo "PROPTEST_RNG_SEED=$PROPTEST_RNG_SEED"
     run cargo test --release -p videg-model -p videg-circuit
     VIDEG_SOAK=full stage_python
+    VIDEG_SOAK=full stage_browser
 }
 
 # --- main ------------------------------------------------------------------------------------------------------------

@@ -1,9 +1,20 @@
 """What is asked of each page, be it a report or the explorer."""
 
+import itertools
+import os
 from contextlib import contextmanager
+
+# Whether all of what takes long is run, as in the stage soak.
+FULL = os.environ.get("VIDEG_SOAK") == "full"
 
 # Both sides of the page, which text and figures must not leave unless a box of their own scrolls.
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+def windows(widths):
+    """Each width with light or dark by turns, since the scheme changes colours only; in full, with both."""
+    schemes = ["light", "dark"]
+    return list(itertools.product(widths, schemes) if FULL else zip(widths, itertools.cycle(schemes)))
 
 
 def beyond(boxes):

@@ -1,18 +1,17 @@
 """What a reader of a report sees, in a phone's and a desktop's window, in light and dark, and on paper."""
 
-import itertools
 import json
 import re
 
 import pytest
 from playwright.sync_api import TimeoutError
 
-from pages import OVERFLOW, beyond
+from pages import FULL, OVERFLOW, beyond, windows
 
-# Phone, tablet and desktop, with light and dark by turns: the scheme changes colours only.
-WINDOWS = list(zip([375, 800, 1440], itertools.cycle(["light", "dark"])))
+# Phone, tablet and desktop.
+WINDOWS = windows([375, 800, 1440])
 BEYOND = beyond(".scroll, .plot, .chart, pre, .thumbnails svg, desc")
-# So many charts of a report open at each width.
+# So many charts of a report open at each width; in full, all.
 FEW = 10
 # Texts of a picture that reach over its edge.
 CLIPPED = """picture => {
@@ -89,7 +88,7 @@ def test_every_chart_opens_with_all_its_panels_and_closes_again(visit, width, sc
     figures = list(enumerate(page.locator("figure.interactive").all(), 1))
     # All figures of the paper take minutes: one after the other takes its turn at a width.
     turn = WINDOWS.index((width, scheme))
-    for number, figure in figures if len(figures) <= FEW else figures[turn::len(WINDOWS)]:
+    for number, figure in figures if FULL or len(figures) <= FEW else figures[turn::len(WINDOWS)]:
         look_closer(figure)
         box, panels = figure.locator(".chart"), chart_of(figure)["panels"]
         assert box.evaluate(PANELS) == len(panels)

@@ -1,6 +1,5 @@
 """The page of `videg explore` in the hands of a user: it fits every window, loses nothing and says what it does not take."""
 
-import itertools
 import math
 import re
 
@@ -8,7 +7,7 @@ import pytest
 
 import chromium
 from explorer_page import drop, wait
-from pages import OVERFLOW, beyond
+from pages import OVERFLOW, beyond, windows
 
 WIDTHS = [375, 800, 1440, 2560]
 BEYOND = beyond("svg, .plot, #controls, select")
@@ -210,7 +209,7 @@ def test_with_reduced_motion_nothing_moves_at_first(visit):
     assert page.locator("#play").inner_text() == "Play"
 
 
-@pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, itertools.cycle(["light", "dark"]))))
+@pytest.mark.parametrize(("width", "scheme"), windows(WIDTHS))
 def test_the_page_fits_every_window(visit, width, scheme):
     visited = visit("#case=fig14&topology=isolated&release=switch&zener.voltage=2700", width=width, scheme=scheme)
     page = visited.page
