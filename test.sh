@@ -202,7 +202,8 @@ stage_lint() {
     fi
     # Its workspace is of its own, so that nothing else looks whether what it locks is what the packages ask for.
     run cargo tree --quiet --locked --manifest-path fuzz/Cargo.toml --prefix none --depth 0
-    run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+    # With the examples, for which Cargo gives dependencies the features that clippy has checked them with; without, it checks them again.
+    run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --lib --bins --examples
     run release/version.sh check
     run python3 release/interface.py check
     lint_workflows
@@ -310,15 +311,16 @@ stage_exporter() {
 stage_browser() {
     need_python
     run cargo build --release
-    # With the examples, of which one draws the report of figures.
-    run cargo test --workspace --no-run
+    # What draws the report of figures, and what computes as the explorer does, outside of a browser. Of the whole workspace: by
+    # themselves, they would get other features of their dependencies, which Cargo would compile again.
+    run cargo build --workspace --example figures --example native
     run "$VENV/bin/python" -m pytest tests/browser
 }
 
 # mdBook is built from source once and then kept in target/tools; it is built faster than optimised by more than it takes longer.
 stage_book() {
     need_python
-    run cargo test --workspace --test book -- --ignored # as the stage unit builds it
+    run cargo test --workspace --test book --test verbs -- --ignored # as the stage unit builds it, and `cargo fmu`
     run env CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --locked --debug --root target/tools mdbook --version 0.5.4 --no-default-features --features search
     run target/tools/bin/mdbook build
     run cargo run --quiet --release -- explore --no-open --output target/book/html/explorer.html

@@ -34,7 +34,7 @@ def draw(frames: int, output: Path) -> None:
         page = Path(folder) / "explorer.html"
         subprocess.run(["cargo", "run", "--quiet", "--release", "--", "explore", "--no-open", "--output", page], cwd=ROOT, check=True)
         pictures = [picture.resize((int(WIDTH * SCALE), int(HEIGHT * SCALE)), Image.Resampling.LANCZOS) for picture in shots(page, frames)]
-    pictures[0].save(output, save_all=True, append_images=pictures[1:], duration=DELAY, loop=0, quality=60, method=6, minimize_size=True)
+    pictures[0].save(output, save_all=True, append_images=pictures[1:], duration=DELAY, loop=0, quality=60, method=4, minimize_size=True)
     print(f"{output}: {output.stat().st_size // 1000} kB")
 
 

@@ -8,12 +8,16 @@ use tempfile::TempDir;
 
 use crate::{patch, python, root};
 
-/// `cargo run` becomes the tool that was built for the tests; the rest of Cargo works in the source tree itself, where its
-/// `target` is.
+/// `cargo run` becomes the tool that was built for the tests, `videg` or `cargo fmu`; the rest of Cargo works in the source tree
+/// itself, where its `target` is.
 const CARGO: &str = r#"#!/bin/sh
 if [ "$1 $2 $3" = "run --release --" ]; then
     shift 3
     exec videg "$@"
+fi
+if [ "$1 $2 $3 $4 $5 $6" = "run --quiet --release -p cargo-fmu --" ] && [ -x "$CARGO_FMU" ]; then
+    shift 6
+    cd "$VIDEG_ROOT" && exec "$CARGO_FMU" "$@"
 fi
 cd "$VIDEG_ROOT" && exec "$VIDEG_CARGO" "$@"
 "#;
@@ -69,6 +73,8 @@ impl Clone {
         let mut command = Command::new(program);
         command.current_dir(self.path()).stdin(Stdio::null()).env("PATH", std::env::join_paths(places).unwrap());
         command.env("VIDEG_ROOT", root()).env("VIDEG_CARGO", std::env::var_os("CARGO").unwrap_or(env!("CARGO").into()));
+        // It is there if its own package's tests were built, too.
+        command.env("CARGO_FMU", Path::new(env!("CARGO_BIN_EXE_videg")).with_file_name("cargo-fmu"));
         // What a reader has: a terminal of this width, and no variables of `cargo test`.
         command.env("COLUMNS", "100").env("NO_COLOR", "1").env("MPLBACKEND", "Agg").env("FIGURES", "figures");
         command

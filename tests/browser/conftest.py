@@ -35,7 +35,6 @@ PAGES = {"map": "map.html"}
 
 def make_report(kind, folder):
     if kind == "figures":
-        # As `cargo test --workspace` builds it: with other packages, dependencies would get other features, and compile again.
         example = harness.TARGET / "debug" / "examples" / "figures"
         subprocess.run([example, folder / "report.html"], cwd=harness.ROOT, check=True, stdout=subprocess.DEVNULL)
     else:

@@ -18,7 +18,7 @@ if [[ -z $wheel ]]; then
     # What is built already is not built again; but not in its place, since the wheel's program has other features.
     target=${CARGO_TARGET_DIR:-$PWD/target}
     mkdir -p "$target/python"
-    cp --archive "$target"/{release,wasm32-unknown-unknown} "$target/python/"
+    cp --archive "$target"/{release,wasm,wasm32-unknown-unknown} "$target/python/"
     if ! CARGO_TERM_COLOR=never CARGO_TARGET_DIR=$target/python "$work/user/bin/pip" wheel --verbose --disable-pip-version-check --no-deps --wheel-dir "$work" . \
         >"$work/built" 2>&1; then
         cat "$work/built"

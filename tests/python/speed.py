@@ -1,5 +1,5 @@
 """How fast the package is beside the library and the command-line tool, in one sitting. Run it where the package is installed, in the root of the
-source tree: the library's time is that of `cargo run --profile dist --example table`. Prints a table in Markdown."""
+source tree: the library's time is that of `cargo run --profile dist --example simulate`. Prints a table in Markdown."""
 
 import argparse
 import json
@@ -38,7 +38,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=100_000, help="runs of the sweeps [default: 100000]")
     runs = parser.parse_args().runs
-    command = ["cargo", "run", "--quiet", "--profile", "dist", "--example", "table"]
+    command = ["cargo", "run", "--quiet", "--profile", "dist", "--example", "simulate"]
     library = float(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
     package = shortest(30, videg.simulate)
     both = [(sweep(runs), tool(runs)) for _ in range(2)]
