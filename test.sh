@@ -373,6 +373,7 @@ stage_coverage() {
 stage_soak() {
     run env VIDEG_SOAK=full cargo test --release --test long_run --test soak -- --include-ignored --nocapture --test-threads 1
     run env VIDEG_SOAK=full cargo test --release -p videg-model --test hostile -- --ignored
+    run env VIDEG_SOAK=full cargo test --release --test crosscheck --test ngspice -- --ignored solvers_agree
     PROPTEST_RNG_SEED=$(date +%s) && echo "PROPTEST_RNG_SEED=$PROPTEST_RNG_SEED"
     run cargo test --release -p videg-model -p videg-circuit
     VIDEG_SOAK=full stage_python

@@ -4,11 +4,14 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../support/extent.rs"]
+mod extent;
 #[cfg(unix)]
 mod live;
 
 use std::fmt::Debug;
 
+use extent::extent;
 use fmu_import::Fmu;
 use videg::cosim::HarvesterFmu;
 use videg::ngspice::{CapacitanceTable, CapacitorTest, Elements, Ngspice, Run, SolverRun, Waveforms};
@@ -96,7 +99,7 @@ fn both_solvers_agree() {
     for (case, until, volts) in
         [("fig14", 10.0, 0.1), ("fig15", 5.0, f64::INFINITY), ("table3-2hz", 5.0, f64::INFINITY)]
     {
-        let table = table(&fmu, case, until);
+        let table = table(&fmu, case, extent(0.5, 1.0) * until);
         for ideal in variants() {
             for difference in compare(&ngspice, &table, &ideal, &(case, ideal.topology, ideal.release)) {
                 assert!(difference < volts, "{case}: {difference} V RMS");
@@ -110,7 +113,7 @@ fn both_solvers_agree() {
 #[ignore = "slow"]
 fn both_solvers_agree_on_films_that_leak() {
     let Some(ngspice) = ngspice() else { return };
-    let table = table(&harvester_fmu(), "fig14", 5.0);
+    let table = table(&harvester_fmu(), "fig14", extent(2.5, 5.0));
     for leakage_time_constant in [0.05, 1.0, 30.0] {
         for release in [Release::Zener, Release::Switch, Release::Storage] {
             for topology in TOPOLOGIES {

@@ -156,8 +156,11 @@ impl Project {
         let mut arguments = self.selection();
         let folder = self.target_folder.join("fmu").join("description");
         let folder = folder.display().to_string();
-        // With the same profile, whatever a model makes of it.
-        arguments.extend(["--features".to_owned(), feature, "--target-dir".to_owned(), folder]);
+        // With the same profile, whatever a model makes of it, but not optimised, since it is asked once: no number depends on that.
+        arguments.extend(
+            ["--config", "profile.release.opt-level=0", "--features", &feature, "--target-dir", &folder]
+                .map(str::to_owned),
+        );
         let library = self.built(&arguments, None)?;
         let resources = self.files.as_ref().map(|files| files.join("resources")).filter(|folder| folder.is_dir());
         Descriptions::of(&self.package, &library, resources.as_deref(), self.icon().is_some())
