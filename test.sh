@@ -311,9 +311,6 @@ stage_exporter() {
 stage_browser() {
     need_python
     run cargo build --release
-    # What draws the report of figures, and what computes as the explorer does, outside of a browser. Of the whole workspace: by
-    # themselves, they would get other features of their dependencies, which Cargo would compile again.
-    run cargo build --workspace --example figures --example native
     run "$VENV/bin/python" -m pytest tests/browser
 }
 

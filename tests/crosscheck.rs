@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{LazyLock, Mutex, PoisonError};
 
+use extent::extent;
 use serde_json::Value;
 use tempfile::TempDir;
 use tool::{assert_refused, json, said, tool};
@@ -94,7 +95,7 @@ fn the_solvers_agree_on_the_paper_circuit_and_the_claims_are_judged() {
 #[ignore = "slow"]
 fn the_solvers_agree_without_impacts_and_at_hundreds_of_kilovolts() {
     // In Fig. 9 only the leakage of diodes flows, and Table 3 moves many times the energy of the supply.
-    let leaking = extent::extent("--case fig9 --until 25", "--case fig9 --until 100");
+    let leaking = extent("--case fig9 --until 25", "--case fig9 --until 100");
     for arguments in [leaking, "--case table3-2hz --until 1", "--case table3-5hz --until 1"] {
         let Some((_, found)) = crosscheck(arguments, 0) else { return };
         assert_eq!(found["passed"], true, "{arguments}");

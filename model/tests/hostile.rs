@@ -86,7 +86,7 @@ fn each_pair_of_bounds_is_refused_with_a_reason_or_runs() {
                 for (j, other) in table[..i].iter().enumerate() {
                     for ((k, a), (l, b)) in bounds(one).flat_map(|a| bounds(other).map(move |b| (a, b))) {
                         // Two of the four, by turns; all of them in the stage soak.
-                        if extent((i + j + k + l) % 2, 0) != 0 {
+                        if !extent((i + j + k + l).is_multiple_of(2), true) {
                             continue;
                         }
                         let what = format!("{kind}, {} = {a:e}, {} = {b:e}", one.name, other.name);

@@ -35,8 +35,7 @@ PAGES = {"map": "map.html"}
 
 def make_report(kind, folder):
     if kind == "figures":
-        example = harness.TARGET / "debug" / "examples" / "figures"
-        subprocess.run([example, folder / "report.html"], cwd=harness.ROOT, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([harness.example("figures"), folder / "report.html"], cwd=harness.ROOT, check=True, stdout=subprocess.DEVNULL)
     else:
         run("--", *VERBS[kind], "--output", str(folder))
     return folder / PAGES.get(kind, "report.html")

@@ -19,6 +19,13 @@ def videg(*arguments: str) -> dict:
     return json.loads(run.stdout)
 
 
+def example(name: str) -> Path:
+    """The program of an example of this tree, built as the tests are: by itself, its dependencies would get other features, and Cargo
+    would compile them again."""
+    subprocess.run(["cargo", "build", "--quiet", "--workspace", "--example", name], cwd=ROOT, check=True)
+    return TARGET / "debug" / "examples" / name
+
+
 def build_fmus(*options: str) -> dict[str, str]:
     """Package the FMUs; return their files by model identifier."""
     files = videg("fmu", "build", *options)["fmus"]

@@ -32,8 +32,7 @@ def test_fig_14_has_the_digits_of_the_command_line(visit):
 def native(machines):
     """The same runs outside of a browser: a list of numbers by name, or of a text that says why there are none."""
     lines = "".join(f"{m['from']!r} {m['until']!r} {' '.join(f'{name}={value!r}' for name, value in m['set'].items())}\n" for m in machines)
-    program = harness.TARGET / "debug" / "examples" / "native"
-    output = subprocess.run([program], check=True, capture_output=True, text=True, input=lines).stdout.splitlines()
+    output = subprocess.run([harness.example("native")], check=True, capture_output=True, text=True, input=lines).stdout.splitlines()
     names = output[0].split()
     return [line[6:] if line.startswith("error ") else dict(zip(names, map(float, line.split()), strict=True)) for line in output[1:]]
 
