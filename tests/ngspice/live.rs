@@ -6,9 +6,10 @@ use std::process::Command;
 use std::time::Duration;
 
 use videg::cosim::{CircuitSample, CircuitSlave, NgspiceCircuit};
-use videg::ngspice::live::{Job, LiveError, Ramp, WORKER_VERB, Wanted, Worker};
+use videg::ngspice::live::{Circuit, Job, LiveError, Ramp, Reply, State, WORKER_VERB, Wanted, Worker};
 use videg::ngspice::{Elements, Run};
 use videg_circuit::Settings;
+use videg_system::messages::frame;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_videg");
 const STEP: f64 = 1e-3;
@@ -113,35 +114,45 @@ fn a_worker_follows_its_ramps_exactly() {
     assert_eq!(worker.energies().unwrap().len(), circuit.elements.len());
 }
 
-/// Answers of a worker up to the first step.
-const LOADED: &str = r#"read job; echo '{"circuit":{"elements":[],"nodes":[],"unread":[]}}'; read wanted
-    echo '{"reached":{"membranes":{"voltage":[0,0],"stored":0,"mechanical":0},"groups":[],"probes":[]}}'; read ramp"#;
-
-/// A program that behaves as `script` says.
-fn fake(folder: &Path, script: &str) -> PathBuf {
+/// A program that sends `replies`, then behaves as `script` says.
+fn fake(folder: &Path, replies: &[u8], script: &str) -> PathBuf {
     use std::os::unix::fs::PermissionsExt as _;
     let path = folder.join("fake");
-    std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    let said = folder.join("said");
+    std::fs::write(&said, replies).unwrap();
+    std::fs::write(&path, format!("#!/bin/sh\ncat '{}'\n{script}\n", said.display())).unwrap();
     std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
     path
 }
 
 #[test]
 fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
+    let circuit = || Reply::Circuit(Circuit { elements: vec![], nodes: vec![], unread: vec![] });
+    let loaded = || vec![circuit(), Reply::Reached(State::default())];
     let folder = tempfile::tempdir().unwrap();
-    for (script, expected) in [
-        ("echo oh no >&2; exit 7", "ended about the netlist (exit status: 7): oh no"),
-        ("kill -SEGV $$", "ended about the netlist (signal: 11 (SIGSEGV)"),
-        ("sleep 1000", "no answer of ngspice about the netlist within 1 s"),
-        ("cat >/dev/null & echo '{\"energies\":[1'; wait", "ended about the netlist"),
-        ("read job; echo '{\"failure\":\"no circuit\"}'", "no circuit"),
-        (&format!("{LOADED}; exit 3"), "ended between 0 s and 0.001 s (exit status: 3)"),
-        (&format!("{LOADED}; sleep 1000"), "no answer of ngspice between 0 s and 0.001 s within 1 s"),
-        (&format!("{LOADED}; echo '{{\"energies\":[]}}'; sleep 1000"), "ended between 0 s and 0.001 s"),
+    for (replies, script, expected) in [
+        (vec![], "echo oh no >&2; exit 7", "ended about the netlist (exit status: 7): oh no"),
+        (vec![], "kill -SEGV $$", "ended about the netlist (signal: 11 (SIGSEGV)"),
+        (vec![], "sleep 1000", "no answer of ngspice about the netlist within 1 s"),
+        (
+            vec![],
+            "cat >/dev/null & printf '\\1\\0\\0\\0\\143'; wait",
+            "ended about the netlist (it had sent 1 bytes that are no message",
+        ),
+        (vec![], "sleep 1000 & exit 4", "ended about the netlist (exit status: 4)"),
+        (vec![Reply::Failure("no circuit".to_owned())], "sleep 1000", "no circuit"),
+        (loaded(), "exit 3", "ended between 0 s and 0.001 s (exit status: 3)"),
+        (loaded(), "sleep 1000", "no answer of ngspice between 0 s and 0.001 s within 1 s"),
+        (
+            [loaded(), vec![circuit()]].concat(),
+            "sleep 1000",
+            "ended between 0 s and 0.001 s (it had sent the answer to another",
+        ),
     ] {
-        let program = fake(folder.path(), script);
-        let mut worker = Worker::start(&program, &job(), Duration::from_secs(1)).unwrap();
-        let mut run = || -> Result<(), LiveError> {
+        let bytes: Vec<u8> = replies.iter().flat_map(|reply| frame(reply).unwrap()).collect();
+        let program = fake(folder.path(), &bytes, script);
+        let run = || -> Result<(), LiveError> {
+            let mut worker = Worker::start(&program, &job(), Duration::from_secs(1))?;
             worker.circuit()?;
             worker.begin(Wanted::default())?;
             worker.step(ramp()).map(drop)
@@ -152,9 +163,9 @@ fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
     // More than a pipe holds.
     let mut long = job();
     long.netlist.extend(vec!["* a comment".to_owned(); 1 << 15]);
-    let mut deaf = Worker::start(&fake(folder.path(), "sleep 1000"), &long, Duration::from_secs(1)).unwrap();
-    let error = deaf.circuit().unwrap_err().to_string();
-    assert_eq!(error, "no answer of ngspice about the netlist within 1 s");
+    let deaf = fake(folder.path(), &[], "sleep 1000");
+    let error = Worker::start(&deaf, &long, Duration::from_secs(1)).err().unwrap();
+    assert_eq!(error.to_string(), "no answer of ngspice about the netlist within 1 s");
     let missing = Worker::start(Path::new("/nowhere/videg"), &job(), Duration::from_secs(1)).err().unwrap();
     assert!(missing.to_string().starts_with(&format!("cannot start /nowhere/videg {WORKER_VERB}: ")), "{missing}");
 }

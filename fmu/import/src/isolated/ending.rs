@@ -2,25 +2,10 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::process::ExitStatus;
 
 use super::bounds::Bounds;
 use crate::logging::LogRecord;
-
-/// Why a worker ended.
-#[derive(Debug, Clone)]
-pub(super) enum How {
-    /// Its process ended.
-    Ended(ExitStatus),
-    /// A call took longer than it may.
-    TooLong,
-    /// It closed its pipes, but its process goes on.
-    Silent,
-    /// It sent something that is no answer.
-    Garbled(String),
-    /// The system refused something.
-    Refused(String),
-}
+use videg_system::worker::End;
 
 /// The end of a worker before its time.
 #[derive(Debug, Clone)]
@@ -28,7 +13,7 @@ pub struct Ending {
     pub(super) path: PathBuf,
     /// The call: function, instance, time.
     pub(super) call: String,
-    pub(super) how: How,
+    pub(super) how: End,
     pub(super) bounds: Bounds,
     /// The last messages of the FMU, oldest first.
     pub(super) messages: Vec<LogRecord>,
@@ -39,14 +24,14 @@ pub struct Ending {
 impl Ending {
     fn how(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.how {
-            How::Ended(status) => write!(out, "ended its process ({status}{})", self.memory()),
-            How::TooLong => {
+            End::Ended(status) => write!(out, "ended its process ({status}{})", self.memory()),
+            End::TooLong => {
                 let limit = self.bounds.time.unwrap_or_default().as_secs_f64();
                 write!(out, "took longer than the time limit of {limit} s; its process was ended")
             }
-            How::Silent => out.write_str("closed the pipes of its process, which was ended"),
-            How::Garbled(what) => write!(out, "corrupted its process, which was ended (what it sent: {what})"),
-            How::Refused(cause) => write!(out, "lost its process ({cause})"),
+            End::Silent => out.write_str("closed the pipes of its process, which was ended"),
+            End::Garbled(what) => write!(out, "corrupted its process, which was ended (what it sent: {what})"),
+            End::Refused(cause) => write!(out, "lost its process ({cause})"),
         }
     }
 

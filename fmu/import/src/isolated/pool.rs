@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bounds::Isolation;
-use super::ending::{Ending, How};
+use super::ending::Ending;
 use super::process::Process;
 use super::protocol::{Opening, Reply};
 use super::remote::Remote;
 use crate::component::Arguments;
 use crate::error::{FmiError, Result};
 use crate::logging::Environment;
+use videg_system::worker::End;
 
 /// Starts the workers of an FMU.
 pub(crate) struct Pool {
@@ -54,7 +55,7 @@ impl Pool {
             Ok(Reply::Loaded) => Ok(process),
             Ok(Reply::Unable(cause)) => Err(FmiError::Worker { program: program.clone(), cause }),
             Ok(Reply::Refused(reason)) => Err(FmiError::Refusal(reason)),
-            Ok(other) => Err(ended(&process, How::Garbled(format!("{} in answer to the library", other.name())))),
+            Ok(other) => Err(ended(&process, End::Garbled(format!("{} in answer to the library", other.name())))),
             Err(how) => Err(ended(&process, how)),
         }
     }

@@ -1,23 +1,19 @@
-//! Messages between the two processes: frames of a length and a message, numbers with all their bits.
+//! What the two processes say to each other.
 
 use std::ffi::{CStr, CString, OsString};
-use std::io::{self, Read, Write};
 
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
 use crate::logging::LogRecord;
 use crate::request::{Request, Results};
+use videg_system::messages::LONGEST;
 
 /// Largest serialised state that is passed on, bytes.
-pub(crate) const LONGEST_STATE: usize = 256 << 20;
+pub(crate) const LONGEST_STATE: usize = LONGEST - SPARE;
 /// What a message may have besides values, bytes: the longest log record, for one.
 pub(super) const SPARE: usize = 1 << 16;
-/// Longest message, bytes: a state and what goes with it.
-pub(super) const LONGEST: usize = LONGEST_STATE + SPARE;
 /// Longest Strings that a call may give altogether, bytes.
 const LONGEST_TEXTS: usize = 16 << 20;
-/// Bytes of the length in front of a message.
-const HEAD: usize = 4;
 
 /// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
 pub(super) fn build() -> String {
@@ -140,64 +136,10 @@ impl Given {
     }
 }
 
-/// A message as it travels.
-pub(super) fn frame(message: &impl Serialize) -> io::Result<Vec<u8>> {
-    let mut frame = postcard::to_extend(message, vec![0; HEAD]).map_err(io::Error::other)?;
-    let length = frame.len() - HEAD;
-    if length > LONGEST {
-        return Err(io::Error::other(format!("a message of {length} bytes, allowed are {LONGEST}")));
-    }
-    let head = u32::try_from(length).map_err(io::Error::other)?.to_le_bytes();
-    frame[..HEAD].copy_from_slice(&head);
-    Ok(frame)
-}
-
-/// Takes the first message, of at most `longest` bytes, out of `bytes`, if it is complete.
-pub(super) fn unframe<T: DeserializeOwned>(bytes: &mut Vec<u8>, longest: usize) -> io::Result<Option<T>> {
-    let Some(&head) = bytes.first_chunk::<HEAD>() else { return Ok(None) };
-    let end = HEAD + length(head, longest)?;
-    let Some(message) = bytes.get(HEAD..end) else { return Ok(None) };
-    let message = decode(message)?;
-    bytes.drain(..end);
-    Ok(Some(message))
-}
-
-/// Writes a message.
-pub(super) fn send(writer: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
-    writer.write_all(&frame(message)?)?;
-    writer.flush()
-}
-
-/// Reads a message; none if the other side has closed.
-pub(super) fn receive<T: DeserializeOwned>(reader: &mut impl Read) -> io::Result<Option<T>> {
-    let mut head = Vec::with_capacity(HEAD);
-    reader.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
-    let Some(&head) = head.first_chunk::<HEAD>() else { return Ok(None) };
-    let length = length(head, LONGEST)?;
-    let mut message = Vec::new();
-    // Memory is taken as bytes arrive, not as they are announced.
-    reader.by_ref().take(length as u64).read_to_end(&mut message)?;
-    if message.len() < length { Ok(None) } else { decode(&message).map(Some) }
-}
-
-fn length(head: [u8; HEAD], longest: usize) -> io::Result<usize> {
-    let length = usize::try_from(u32::from_le_bytes(head)).map_err(io::Error::other)?;
-    if length <= longest {
-        return Ok(length);
-    }
-    Err(io::Error::other(format!("a message of {length} bytes is announced, allowed are {longest}")))
-}
-
-fn decode<T: DeserializeOwned>(bytes: &[u8]) -> io::Result<T> {
-    match postcard::take_from_bytes(bytes) {
-        Ok((message, [])) => Ok(message),
-        Ok((_, rest)) => Err(io::Error::other(format!("{} bytes follow a message", rest.len()))),
-        Err(cause) => Err(io::Error::other(format!("{} bytes that are no message: {cause}", bytes.len()))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use videg_system::messages::{frame, receive, take};
+
     use super::*;
 
     #[test]
@@ -214,26 +156,13 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_taken_one_by_one_and_whole() {
-        let one = frame(&Reply::Loaded).unwrap();
-        let two = frame(&Reply::Refused("no".to_owned())).unwrap();
-        let mut bytes = [one, two].concat();
-        let last = bytes.pop().unwrap();
-        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Loaded)));
-        assert!(unframe::<Reply>(&mut bytes, LONGEST).unwrap().is_none());
-        bytes.push(last);
-        assert!(matches!(unframe(&mut bytes, LONGEST).unwrap(), Some(Reply::Refused(text)) if text == "no"));
-        assert!(bytes.is_empty());
-    }
-
-    #[test]
     fn an_answer_may_be_as_long_as_its_call_lets_it() {
         let references = [0_u32; 1000];
         let reals = Given::Reals(vec![f64::MIN_POSITIVE; 1000]);
         let integers = || Given::integers(vec![i32::MIN; 1000]);
         let answer = |given| frame(&Reply::Done { call: u64::MAX, status: i32::MIN, given }).unwrap();
         let is_taken = |mut bytes, request: Request<'_>| {
-            unframe::<Reply>(&mut bytes, longest_answer(&request)).is_ok_and(|reply| reply.is_some())
+            take::<Reply>(&mut bytes, longest_answer(&request)).is_ok_and(|reply| reply.is_some())
         };
         assert!(is_taken(answer(reals), Request::GetReal { references: references[..].into() }));
         assert!(is_taken(answer(integers()), Request::GetBoolean { references: references[..].into() }));
@@ -282,16 +211,5 @@ mod tests {
         let opening = Opening { host: 1, library: path.clone(), shown: path.clone(), memory: None };
         let found = receive::<Opening>(&mut &*frame(&opening).unwrap()).unwrap().unwrap();
         assert_eq!((&found.library, &found.shown), (&path, &path));
-    }
-
-    #[test]
-    fn garbage_is_an_error_and_takes_no_memory() {
-        let vast = u32::MAX.to_le_bytes().to_vec();
-        let vector = [&[13, 0, 0, 0, 4, 0, 0, 1][..], &[0xff; 8], &[0x7f]].concat(); // Done with 2^63 Reals
-        for mut garbage in [vast, vec![1, 0, 0, 0, 99], vec![2, 0, 0, 0, 1, 0], vector] {
-            assert!(receive::<Reply>(&mut &*garbage).is_err());
-            assert!(unframe::<Reply>(&mut garbage, LONGEST).is_err());
-        }
-        assert!(receive::<Reply>(&mut &[7, 0, 0, 0, 0][..]).unwrap().is_none(), "the stream ended");
     }
 }

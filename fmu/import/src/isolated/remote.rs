@@ -8,12 +8,13 @@ use std::sync::Arc;
 use fmu_abi::{fmi2Fatal, fmi2Status};
 
 use super::bounds::Bounds;
-use super::ending::{Ending, How};
+use super::ending::Ending;
 use super::process::Process;
 use super::protocol::Given;
 use crate::component::{Arguments, is_done};
 use crate::logging::{Environment, LogRecord};
 use crate::request::{Request, Results};
+use videg_system::worker::End;
 
 /// Why a call came back with `fmi2Fatal` though the FMU did not say so.
 pub(crate) enum Loss {
@@ -89,7 +90,7 @@ impl Remote {
         if !is_done(status) || given.store(results) {
             return status;
         }
-        state.end(request, How::Garbled("something else than the values asked for".to_owned()))
+        state.end(request, End::Garbled("something else than the values asked for".to_owned()))
     }
 
     /// Why the last call was not carried out, if that was not up to the FMU.
@@ -167,7 +168,7 @@ impl State {
     }
 
     #[cold]
-    fn end(&mut self, request: &Request<'_>, how: How) -> fmi2Status {
+    fn end(&mut self, request: &Request<'_>, how: End) -> fmi2Status {
         let at = self.time.map_or_else(String::new, |time| format!(" at t = {time} s"));
         self.fate = Fate::Ended(Box::new(Ending {
             path: self.path.clone(),

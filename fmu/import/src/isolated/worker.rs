@@ -1,28 +1,32 @@
 //! The worker: a process that loads the library of an FMU and serves one instance.
 
-use std::io::{self, Read, Write};
+use std::fs::File;
+use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use fmu_abi::fmi2OK;
 
-use super::protocol::{Call, Given, Opening, Reply, build, receive, send};
+use super::protocol::{Call, Given, Opening, Reply, build};
 use super::session::Session;
 use crate::library;
 use crate::logging::Environment;
 use crate::request::Request;
+use videg_system::messages::send;
+use videg_system::worker::Requests;
 
 /// Serves one instance: reads calls from `requests`, answers on `replies`, and returns when the other side has closed.
 ///
 /// # Errors
 /// If the other side cannot be read or written.
-pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> io::Result<()> {
+pub fn serve(requests: File, replies: File) -> io::Result<()> {
+    let mut requests = Requests::new(requests);
     let replies = Arc::new(Mutex::new(replies));
     let say = |reply: &Reply| send(&mut *replies.lock().unwrap_or_else(PoisonError::into_inner), reply);
-    let Some(host) = receive::<String>(&mut requests)? else { return Ok(()) };
+    let Some(host) = requests.next::<String>()? else { return Ok(()) };
     if host != build() {
         return say(&Reply::Unable(format!("it is of videg {}, and this is {host}", build())));
     }
-    let Some(opening) = receive::<Opening>(&mut requests)? else { return Ok(()) };
+    let Some(opening) = requests.next::<Opening>()? else { return Ok(()) };
     if let Err(cause) = confine::begin(&opening) {
         return say(&Reply::Unable(cause.to_string()));
     }
@@ -38,7 +42,7 @@ pub fn serve(mut requests: impl Read, replies: impl Write + Send + 'static) -> i
     let mut session = Session::new(&functions, environment);
     say(&Reply::Loaded)?;
     let this = std::process::id();
-    while let Some((call, request)) = receive::<Call>(&mut requests)? {
+    while let Some((call, request)) = requests.next::<Call>()? {
         if matches!(request, Request::Unload) {
             library.close().map_err(io::Error::other)?;
             return say(&Reply::Done { call, status: fmi2OK, given: Given::Nothing });

@@ -2,22 +2,22 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
-use serde::Serialize;
 use thiserror::Error;
 
-use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, line, take};
-use videg_system::output::{KeptOutput, Part};
-use videg_system::pipes::{Heard, Pipes};
-use videg_system::processes::ProcessGroup;
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted};
+use videg_system::output::Part;
 use videg_system::temporary::TemporaryFolder;
+use videg_system::worker::{Deadline, End};
 
 /// Verb of the command-line tool that runs the worker.
 pub const WORKER_VERB: &str = "ngspice-worker";
 /// Bytes of the worker's stderr that are kept.
 const KEPT_STDERR: usize = 4096;
+/// Longest reply, bytes: as long as the longest netlist.
+const LONGEST_REPLY: usize = 1 << 22;
 
 /// Why ngspice does not go on.
 #[derive(Debug, Error)]
@@ -50,11 +50,7 @@ impl LiveError {
 
 /// A running worker.
 pub struct Worker {
-    group: ProcessGroup,
-    pipes: Pipes,
-    /// What it sent and nobody has read yet.
-    heard: Vec<u8>,
-    stderr: KeptOutput,
+    process: videg_system::worker::Worker,
     limit: Duration,
     time: f64,
     /// Working folder and home of the worker: no start-up file of ngspice lies there.
@@ -62,28 +58,19 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts `program` as a worker for `job`. Each reply may take `limit` of real time.
+    /// Starts `program` as a worker for `job`. Each request may take `limit` of real time.
     ///
     /// # Errors
-    /// If the program cannot be started.
+    /// If the program cannot be started, or does not take the job.
     pub fn start(program: &Path, job: &Job, limit: Duration) -> Result<Self, LiveError> {
         let fail = |cause| LiveError::Start { program: program.to_owned(), cause };
         let folder = TemporaryFolder::new("videg-ngspice-").map_err(fail)?;
         let mut command = Command::new(program);
-        command
-            .arg(WORKER_VERB)
-            .current_dir(folder.path())
-            .env("HOME", folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let mut group = ProcessGroup::start(&mut command).map_err(fail)?;
-        let child = &mut group.child;
-        let stderr = child.stderr.take().ok_or_else(|| fail(io::Error::other("no pipe")))?;
-        let stderr = KeptOutput::new(stderr, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
-        let pipes = Pipes::of(child).map_err(fail)?;
-        let mut worker = Self { group, pipes, heard: Vec::new(), stderr, limit, time: 0.0, _folder: folder };
-        worker.send(job);
+        command.arg(WORKER_VERB).current_dir(folder.path()).env("HOME", folder.path());
+        let process = videg_system::worker::Worker::start(&mut command, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
+        let mut worker = Self { process, limit, time: 0.0, _folder: folder };
+        let sent = worker.process.send(job, &mut Deadline::after(Some(limit)));
+        sent.map_err(|end| worker.lost(end, 0.0))?;
         Ok(worker)
     }
 
@@ -92,9 +79,9 @@ impl Worker {
     /// # Errors
     /// If ngspice does not take the netlist, dies or takes too long; the same for all that follow.
     pub fn circuit(&mut self) -> Result<Circuit, LiveError> {
-        match self.receive(0.0)? {
+        match self.receive(&mut Deadline::after(Some(self.limit)), 0.0)? {
             Reply::Circuit(circuit) => Ok(circuit),
-            _ => Err(self.died(0.0)),
+            _ => Err(self.garbled(0.0)),
         }
     }
 
@@ -116,64 +103,49 @@ impl Worker {
         let time = self.time;
         match self.ask(&Request::Energies, time)? {
             Reply::Energies(energies) => Ok(energies),
-            _ => Err(self.died(time)),
+            _ => Err(self.garbled(time)),
         }
     }
 
     fn state(&mut self, request: &Request, to: f64) -> Result<State, LiveError> {
         match self.ask(request, to)? {
             Reply::Reached(state) => Ok(state),
-            _ => Err(self.died(to)),
+            _ => Err(self.garbled(to)),
         }
     }
 
+    /// The reply to a request on the way to the time `to`, s.
     fn ask(&mut self, request: &Request, to: f64) -> Result<Reply, LiveError> {
-        self.send(request);
-        self.receive(to)
+        let mut deadline = Deadline::after(Some(self.limit));
+        self.process.send(request, &mut deadline).map_err(|end| self.lost(end, to))?;
+        self.receive(&mut deadline, to)
     }
 
-    /// Sends a message, if the worker takes it. One that has died says why in its last reply, and one that hangs gives none.
-    fn send(&mut self, message: &impl Serialize) {
-        let Ok(line) = line(message) else { return };
-        let (mut rest, start) = (line.as_slice(), Instant::now());
-        while !rest.is_empty() && start.elapsed() < self.limit {
-            match self.pipes.write(rest, self.limit.saturating_sub(start.elapsed())) {
-                Ok(count) => rest = &rest[count..],
-                Err(_) => return,
-            }
+    fn receive(&mut self, deadline: &mut Deadline, to: f64) -> Result<Reply, LiveError> {
+        match self.process.receive(LONGEST_REPLY, deadline) {
+            Ok(Reply::Failure(text)) => Err(LiveError::Failure(text)),
+            Ok(reply) => Ok(reply),
+            Err(end) => Err(self.lost(end, to)),
         }
     }
 
-    /// The next reply, on the way to the time `to`, s.
-    fn receive(&mut self, to: f64) -> Result<Reply, LiveError> {
-        let start = Instant::now();
-        loop {
-            match take(&mut self.heard) {
-                Ok(Some(Reply::Failure(text))) => return Err(LiveError::Failure(text)),
-                Ok(Some(reply)) => return Ok(reply),
-                Ok(None) => {}
-                Err(_) => return Err(self.died(to)),
-            }
-            let left = self.limit.saturating_sub(start.elapsed());
-            match self.pipes.read(&mut self.heard, left) {
-                Ok(Heard::Nothing) if left.is_zero() => {
-                    return Err(LiveError::TimeLimit { when: self.when(to), limit: self.limit });
-                }
-                Ok(Heard::Something | Heard::Nothing) => {}
-                Ok(Heard::End) | Err(_) => return Err(self.died(to)),
-            }
-        }
+    fn garbled(&mut self, to: f64) -> LiveError {
+        let end = self.process.end(End::Garbled("the answer to another request".to_owned()));
+        self.lost(end, to)
     }
 
-    fn died(&mut self, to: f64) -> LiveError {
-        // It has closed its stdout, but may still be about to end.
-        let how = self.group.end().map_or_else(|cause| cause.to_string(), |status| status.to_string());
-        let said = self.stderr.text();
+    fn lost(&self, end: End, to: f64) -> LiveError {
+        let when =
+            if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() };
+        let how = match end {
+            End::TooLong => return LiveError::TimeLimit { when, limit: self.limit },
+            End::Ended(status) => status.to_string(),
+            End::Silent => "it had closed its pipes".to_owned(),
+            End::Garbled(what) => format!("it had sent {what}"),
+            End::Refused(cause) => cause,
+        };
+        let said = self.process.printed();
         let said = said.trim().lines().fold(String::new(), |all, line| all + ": " + line);
-        LiveError::Died { when: self.when(to), how, said }
-    }
-
-    fn when(&self, to: f64) -> String {
-        if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() }
+        LiveError::Died { when, how, said }
     }
 }

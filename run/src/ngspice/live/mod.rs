@@ -14,5 +14,5 @@ pub use library::LIBRARY_VARIABLE;
 pub(crate) use listing::number;
 pub use network::Account;
 pub(crate) use network::SOURCES;
-pub use protocol::{Circuit, Job, Ramp, Request, State, Wanted};
+pub use protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted};
 pub use worker::serve;

@@ -8,16 +8,17 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ffi::{CStr, c_char, c_int, c_void};
-use std::io::{self, BufReader, Write};
+use std::fs::File;
+use std::io;
 use std::iter;
-use std::time::Duration;
 
 use super::ledger::ElementLedger;
 use super::library::{Callbacks, LibraryError, Ngspice, VectorValue, VectorValues};
 use super::listing;
 use super::network::Network;
-use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, receive, send};
-use videg_system::pipes::watch;
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted};
+use videg_system::messages::send;
+use videg_system::worker::Requests;
 
 /// Lines of ngspice that are kept for the message of a failure.
 const KEPT_LINES: usize = 12;
@@ -27,17 +28,13 @@ const MOST_ELEMENTS: usize = 5000;
 const MOST_LINES: usize = 4 * MOST_ELEMENTS;
 /// Longest line that is kept, characters.
 const LONGEST_LINE: usize = 300;
-/// Longest time that the worker waits for a request without sleeping: the master, which does little in a step, answers within.
-const WATCH: Duration = Duration::from_micros(200);
 /// Time that differs by less than this part of a time step is the same.
 const SAME_TIME: f64 = 1e-9;
 
-type Requests = BufReader<io::Stdin>;
-
 /// What the callbacks share.
-struct Session<W> {
+struct Session {
     requests: Requests,
-    replies: W,
+    replies: File,
     job: Job,
     ramp: Ramp,
     wanted: Wanted,
@@ -54,11 +51,14 @@ struct Session<W> {
     lines: VecDeque<String>,
 }
 
-/// Serves one job: reads it and the requests from stdin, answers on `replies`, and returns when stdin ends or the job has
-/// failed.
-pub fn serve<W: Write>(mut replies: W) -> io::Result<()> {
-    let mut requests = BufReader::new(io::stdin());
-    let Some(job) = receive::<Job>(&mut requests)? else { return Ok(()) };
+/// Serves one job: reads it and what follows from `requests`, answers on `replies`, and returns when the requests end or the job
+/// has failed.
+///
+/// # Errors
+/// If the other side cannot be read or written.
+pub fn serve(requests: File, mut replies: File) -> io::Result<()> {
+    let mut requests = Requests::new(requests);
+    let Some(job) = requests.next::<Job>()? else { return Ok(()) };
     if let Some(bytes) = job.memory {
         limit_memory(bytes)?;
     }
@@ -102,15 +102,9 @@ fn limit_memory(bytes: u64) -> io::Result<()> {
 }
 
 /// Loads the circuit and has its elements listed.
-fn load<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<(), String> {
-    let callbacks = Callbacks {
-        text: on_text::<W>,
-        exit: on_exit::<W>,
-        begin: on_begin,
-        data: on_data::<W>,
-        voltage: on_voltage::<W>,
-        sync: on_sync::<W>,
-    };
+fn load(library: &Ngspice, session: &RefCell<Session>) -> Result<(), String> {
+    let callbacks =
+        Callbacks { text: on_text, exit: on_exit, begin: on_begin, data: on_data, voltage: on_voltage, sync: on_sync };
     // SAFETY: the callbacks take a session of this type, which outlives the library's calls.
     unsafe { library.initialize(callbacks, std::ptr::from_ref(session).cast_mut().cast()) };
     let said = |error: LibraryError| error.to_string();
@@ -138,12 +132,12 @@ fn load<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<()
     Ok(())
 }
 
-fn analyse<W: Write>(library: &Ngspice, session: &RefCell<Session<W>>) -> Result<(), String> {
+fn analyse(library: &Ngspice, session: &RefCell<Session>) -> Result<(), String> {
     let commands = session.borrow().commands();
     commands.iter().try_for_each(|command| library.command(command)).map_err(|error| error.to_string())
 }
 
-impl<W: Write> Session<W> {
+impl Session {
     /// The commands from the circuit to the end.
     fn commands(&self) -> Vec<String> {
         let Job { longest_step, stop, from_initial_conditions, commands, .. } = &self.job;
@@ -176,7 +170,7 @@ impl<W: Write> Session<W> {
         if let Some(circuit) = circuit {
             send(&mut self.replies, &Reply::Circuit(circuit))?;
         }
-        let Some(Request::Wanted(wanted)) = receive(&mut self.requests)? else { return Ok(false) };
+        let Some(Request::Wanted(wanted)) = self.requests.next()? else { return Ok(false) };
         self.ramp = Ramp { from: 0.0, to: 0.0, start: wanted.start.clone(), end: wanted.start.clone() };
         self.wanted = wanted;
         Ok(true)
@@ -269,10 +263,7 @@ impl<W: Write> Session<W> {
     /// Answers requests up to the next ramp; whether there is one.
     fn next_ramp(&mut self) -> io::Result<bool> {
         loop {
-            if self.requests.buffer().is_empty() {
-                watch(self.requests.get_ref(), WATCH);
-            }
-            match receive::<Request>(&mut self.requests)? {
+            match self.requests.next()? {
                 Some(Request::Energies) => {
                     let energies = self.ledger.as_ref().map_or_else(Vec::new, |ledger| ledger.energies().to_vec());
                     send(&mut self.replies, &Reply::Energies(energies))?;
@@ -315,23 +306,23 @@ impl<W: Write> Session<W> {
 ///
 /// # Safety
 /// `user` is the pointer given to [`Ngspice::initialize`] by [`analyse`].
-unsafe fn session<'a, W>(user: *mut c_void) -> &'a RefCell<Session<W>> {
+unsafe fn session<'a>(user: *mut c_void) -> &'a RefCell<Session> {
     // SAFETY: as the caller promises.
     unsafe { &*user.cast_const().cast() }
 }
 
-unsafe extern "C" fn on_text<W: Write>(text: *const c_char, _: c_int, user: *mut c_void) -> c_int {
+unsafe extern "C" fn on_text(text: *const c_char, _: c_int, user: *mut c_void) -> c_int {
     // SAFETY: ngspice hands back the session, and a zero-terminated string.
-    let (session, text) = unsafe { (session::<W>(user), CStr::from_ptr(text)) };
+    let (session, text) = unsafe { (session(user), CStr::from_ptr(text)) };
     if let Ok(mut session) = session.try_borrow_mut() {
         session.keep(&text.to_string_lossy());
     }
     0
 }
 
-unsafe extern "C" fn on_exit<W: Write>(status: c_int, _: bool, _: bool, _: c_int, user: *mut c_void) -> c_int {
+unsafe extern "C" fn on_exit(status: c_int, _: bool, _: bool, _: c_int, user: *mut c_void) -> c_int {
     // SAFETY: ngspice hands back the session.
-    if let Ok(mut session) = unsafe { session::<W>(user) }.try_borrow_mut() {
+    if let Ok(mut session) = unsafe { session(user) }.try_borrow_mut() {
         // Nobody is left to be told if this fails.
         let _ = session.fail(&format!("ngspice gave up with status {status}"));
     }
@@ -342,9 +333,9 @@ unsafe extern "C" fn on_begin(_: *const c_void, _: c_int, _: *mut c_void) -> c_i
     0
 }
 
-unsafe extern "C" fn on_data<W: Write>(all: *const VectorValues, _: c_int, _: c_int, user: *mut c_void) -> c_int {
+unsafe extern "C" fn on_data(all: *const VectorValues, _: c_int, _: c_int, user: *mut c_void) -> c_int {
     // SAFETY: ngspice hands back the session, and what it documents to send.
-    let (session, all) = unsafe { (session::<W>(user), &*all) };
+    let (session, all) = unsafe { (session(user), &*all) };
     let Ok(mut session) = session.try_borrow_mut() else { return 1 };
     // SAFETY: as above.
     if let Err(reason) = unsafe { session.accept(all) } {
@@ -354,15 +345,9 @@ unsafe extern "C" fn on_data<W: Write>(all: *const VectorValues, _: c_int, _: c_
     0
 }
 
-unsafe extern "C" fn on_voltage<W: Write>(
-    value: *mut f64,
-    time: f64,
-    name: *const c_char,
-    _: c_int,
-    user: *mut c_void,
-) -> c_int {
+unsafe extern "C" fn on_voltage(value: *mut f64, time: f64, name: *const c_char, _: c_int, user: *mut c_void) -> c_int {
     // SAFETY: ngspice hands back the session, and the name of a source.
-    let (session, name) = unsafe { (session::<W>(user), CStr::from_ptr(name)) };
+    let (session, name) = unsafe { (session(user), CStr::from_ptr(name)) };
     let Ok(session) = session.try_borrow() else { return 1 };
     let is_named = |source: &String| source.as_bytes().eq_ignore_ascii_case(name.to_bytes());
     let found = session.job.sources.iter().position(is_named).and_then(|index| session.ramp.value(index, time));
@@ -373,7 +358,7 @@ unsafe extern "C" fn on_voltage<W: Write>(
     0
 }
 
-unsafe extern "C" fn on_sync<W: Write>(
+unsafe extern "C" fn on_sync(
     time: f64,
     step: *mut f64,
     _: f64,
@@ -387,7 +372,7 @@ unsafe extern "C" fn on_sync<W: Write>(
         return 0;
     }
     // SAFETY: ngspice hands back the session, and its time step.
-    let (session, step) = unsafe { (session::<W>(user), &mut *step) };
+    let (session, step) = unsafe { (session(user), &mut *step) };
     let Ok(mut session) = session.try_borrow_mut() else { return 0 };
     match session.clip(time, *step) {
         Ok(Some(clipped)) => *step = clipped,
