@@ -30,6 +30,9 @@ impl Pipes {
 
 /// Bytes that are read at once.
 const CHUNK: usize = 1 << 16;
+/// Longest time that either side waits without sleeping: most calls of an FMU, and most steps of a host, take less.
+#[cfg(unix)]
+const WATCH: Duration = Duration::from_micros(200);
 
 #[cfg(unix)]
 mod ends {
@@ -39,7 +42,7 @@ mod ends {
 
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-    use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, io};
+    use super::{CHUNK, ChildStdin, ChildStdout, Duration, Heard, WATCH, io};
 
     /// Both pipes.
     #[derive(Debug)]
@@ -77,6 +80,7 @@ mod ends {
         /// # Errors
         /// If the pipe cannot be read.
         pub fn read(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> io::Result<Heard> {
+            watch(&self.replies, wait);
             if !is_ready(&self.replies, PollFlags::IN, wait)? {
                 return Ok(Heard::Nothing);
             }
@@ -94,10 +98,10 @@ mod ends {
         }
     }
 
-    /// Waits for bytes at an `end` of a pipe, at most `wait`, without sleeping, because a processor that sleeps takes tens of
-    /// microseconds to wake. Other processes go first.
+    /// Waits for bytes at an `end` of a pipe, at most `wait`, for a short time and without sleeping, because a processor that
+    /// sleeps takes tens of microseconds to wake. Other processes go first.
     pub fn watch(end: &impl AsFd, wait: Duration) {
-        let start = Instant::now();
+        let (start, wait) = (Instant::now(), wait.min(WATCH));
         while start.elapsed() < wait && matches!(is_ready(end, PollFlags::IN, Duration::ZERO), Ok(false)) {
             std::thread::yield_now();
         }

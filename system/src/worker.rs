@@ -17,8 +17,6 @@ use crate::processes::ProcessGroup;
 const LOOK: Duration = Duration::from_millis(100);
 /// Time in which a worker that has closed its pipes must end.
 const FAREWELL: Duration = Duration::from_secs(1);
-/// Longest time that a worker waits for a request without sleeping: a host that does little in between asks within.
-const WATCH: Duration = Duration::from_micros(200);
 
 /// A worker. Dropping it ends it, together with what it started and did not send away.
 #[derive(Debug)]
@@ -183,7 +181,7 @@ impl Requests {
     /// If it cannot be read, or is none.
     pub fn next<T: DeserializeOwned>(&mut self) -> io::Result<Option<T>> {
         if self.0.buffer().is_empty() {
-            watch(self.0.get_ref(), WATCH);
+            watch(self.0.get_ref(), Duration::MAX);
         }
         messages::receive(&mut self.0)
     }
