@@ -75,7 +75,7 @@ impl Worker {
     }
 
     fn write(&mut self, request: &impl Serialize, deadline: &mut Deadline) -> Result<(), End> {
-        let framed = frame(request).map_err(refused)?;
+        let framed = frame(request).map_err(|cause| refused(&cause))?;
         let mut rest = framed.as_slice();
         while !rest.is_empty() {
             match self.pipes.write(rest, deadline.wait()?) {
@@ -102,7 +102,7 @@ impl Worker {
                 }
                 Ok(Heard::Something | Heard::Nothing) => {}
                 Ok(Heard::End) => return Err(End::Silent),
-                Err(cause) => return Err(refused(cause)),
+                Err(cause) => return Err(refused(&cause)),
             }
         }
     }
@@ -113,7 +113,7 @@ impl Worker {
     }
 
     fn has_ended(&mut self) -> Result<bool, End> {
-        self.group.has_ended().map_err(refused)
+        self.group.has_ended().map_err(|cause| refused(&cause))
     }
 
     /// Ends it; what became of it is `end`, or its own end where that comes first.
@@ -127,7 +127,7 @@ impl Worker {
 
     /// Its own end, and that of its group.
     fn ended(&mut self) -> End {
-        self.group.end().map_or_else(refused, End::Ended)
+        self.group.end().map_or_else(|cause| refused(&cause), End::Ended)
     }
 
     /// What is kept of its stderr, once it has ended.
@@ -136,7 +136,7 @@ impl Worker {
     }
 }
 
-fn refused(cause: io::Error) -> End {
+fn refused(cause: &io::Error) -> End {
     End::Refused(cause.to_string())
 }
 
@@ -179,7 +179,7 @@ impl Requests {
     ///
     /// # Errors
     /// If it cannot be read, or is none.
-    pub fn next<T: DeserializeOwned>(&mut self) -> io::Result<Option<T>> {
+    pub fn receive<T: DeserializeOwned>(&mut self) -> io::Result<Option<T>> {
         if self.0.buffer().is_empty() {
             watch(self.0.get_ref(), Duration::MAX);
         }

@@ -22,11 +22,11 @@ pub fn serve(requests: File, replies: File) -> io::Result<()> {
     let mut requests = Requests::new(requests);
     let replies = Arc::new(Mutex::new(replies));
     let say = |reply: &Reply| send(&mut *replies.lock().unwrap_or_else(PoisonError::into_inner), reply);
-    let Some(host) = requests.next::<String>()? else { return Ok(()) };
+    let Some(host) = requests.receive::<String>()? else { return Ok(()) };
     if host != build() {
         return say(&Reply::Unable(format!("it is of videg {}, and this is {host}", build())));
     }
-    let Some(opening) = requests.next::<Opening>()? else { return Ok(()) };
+    let Some(opening) = requests.receive::<Opening>()? else { return Ok(()) };
     if let Err(cause) = confine::begin(&opening) {
         return say(&Reply::Unable(cause.to_string()));
     }
@@ -42,7 +42,7 @@ pub fn serve(requests: File, replies: File) -> io::Result<()> {
     let mut session = Session::new(&functions, environment);
     say(&Reply::Loaded)?;
     let this = std::process::id();
-    while let Some((call, request)) = requests.next::<Call>()? {
+    while let Some((call, request)) = requests.receive::<Call>()? {
         if matches!(request, Request::Unload) {
             library.close().map_err(io::Error::other)?;
             return say(&Reply::Done { call, status: fmi2OK, given: Given::Nothing });

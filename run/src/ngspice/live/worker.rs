@@ -58,7 +58,7 @@ struct Session {
 /// If the other side cannot be read or written.
 pub fn serve(requests: File, mut replies: File) -> io::Result<()> {
     let mut requests = Requests::new(requests);
-    let Some(job) = requests.next::<Job>()? else { return Ok(()) };
+    let Some(job) = requests.receive::<Job>()? else { return Ok(()) };
     if let Some(bytes) = job.memory {
         limit_memory(bytes)?;
     }
@@ -170,7 +170,7 @@ impl Session {
         if let Some(circuit) = circuit {
             send(&mut self.replies, &Reply::Circuit(circuit))?;
         }
-        let Some(Request::Wanted(wanted)) = self.requests.next()? else { return Ok(false) };
+        let Some(Request::Wanted(wanted)) = self.requests.receive()? else { return Ok(false) };
         self.ramp = Ramp { from: 0.0, to: 0.0, start: wanted.start.clone(), end: wanted.start.clone() };
         self.wanted = wanted;
         Ok(true)
@@ -263,7 +263,7 @@ impl Session {
     /// Answers requests up to the next ramp; whether there is one.
     fn next_ramp(&mut self) -> io::Result<bool> {
         loop {
-            match self.requests.next()? {
+            match self.requests.receive()? {
                 Some(Request::Energies) => {
                     let energies = self.ledger.as_ref().map_or_else(Vec::new, |ledger| ledger.energies().to_vec());
                     send(&mut self.replies, &Reply::Energies(energies))?;
