@@ -42,7 +42,6 @@ mod results;
 mod run_output;
 mod simulate;
 mod ssp;
-mod streams;
 mod sweep;
 mod sweep_cases;
 mod sweep_options;

@@ -1,31 +1,22 @@
 //! `videg ngspice-worker` and `videg fmu-worker`: processes for shared libraries that may crash: that of ngspice, for
 //! `--circuit ngspice`, and those of isolated FMUs.
 
-use std::fs::File;
 use std::io;
 
 use anyhow::Context as _;
 
 use super::Exit;
-use super::streams::{take_stdin, take_stdout};
 use crate::ngspice::live;
 use fmu_import::isolated;
 
 /// Serves one instance of an FMU on stdin and stdout.
 pub fn run_fmu() -> anyhow::Result<Exit> {
-    let (requests, replies) = take_streams()?;
-    unless_gone(isolated::serve(requests, replies)).context("the process that runs the FMU is gone")
+    unless_gone(isolated::serve()).context("the process that runs the FMU is gone")
 }
 
 /// Serves one circuit on stdin and stdout.
 pub fn run_ngspice() -> anyhow::Result<Exit> {
-    let (requests, replies) = take_streams()?;
-    unless_gone(live::serve(requests, replies)).context("the process that couples ngspice is gone")
-}
-
-fn take_streams() -> anyhow::Result<(File, File)> {
-    let requests = take_stdin().context("cannot take stdin for the requests")?;
-    Ok((requests, take_stdout().context("cannot take stdout for the replies")?))
+    unless_gone(live::serve()).context("the process that couples ngspice is gone")
 }
 
 /// A worker ends without a message if its client ends during a reply.

@@ -8,5 +8,6 @@ pub mod messages;
 pub mod output;
 mod pipes;
 pub mod processes;
+mod streams;
 pub mod temporary;
 pub mod worker;

@@ -4,10 +4,21 @@ use std::io::{self, Read, Write};
 
 use serde::{Serialize, de::DeserializeOwned};
 
-/// Longest message, bytes.
+/// Longest message, bytes: a state of an FMU, of 256 MiB, and what goes with it.
 pub const LONGEST: usize = (256 << 20) + (1 << 16);
 /// Bytes of the length in front of a message.
 const HEAD: usize = 4;
+
+/// What two processes must agree on before they exchange messages: the version, and a hash of the `sources` that define the
+/// messages, and of this one. Two builds need not mean the same by the same bytes.
+pub fn build(sources: &[&[u8]]) -> String {
+    // FNV-1a
+    let hash = [include_bytes!("messages.rs"), sources.concat().as_slice()]
+        .concat()
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{} with messages {hash:016x}", env!("CARGO_PKG_VERSION"))
+}
 
 /// A message as it travels.
 ///
@@ -66,13 +77,13 @@ fn length(head: [u8; HEAD], longest: usize) -> io::Result<usize> {
     if length <= longest {
         return Ok(length);
     }
-    Err(io::Error::other(format!("a message of {length} bytes is announced, allowed are {longest}")))
+    Err(io::Error::other(format!("a message of {length} bytes, allowed are {longest}")))
 }
 
 fn decode<T: DeserializeOwned>(bytes: &[u8]) -> io::Result<T> {
     match postcard::take_from_bytes(bytes) {
         Ok((message, [])) => Ok(message),
-        Ok((_, rest)) => Err(io::Error::other(format!("{} bytes follow a message", rest.len()))),
+        Ok((_, rest)) => Err(io::Error::other(format!("{} bytes behind a message", rest.len()))),
         Err(cause) => Err(io::Error::other(format!("{} bytes that are no message: {cause}", bytes.len()))),
     }
 }

@@ -75,7 +75,7 @@ mod ends {
             }
         }
 
-        /// Appends what has come to `bytes`, waiting at most `wait`.
+        /// Appends what has come to `bytes`, waiting at most `wait`, and before that a little without sleeping.
         ///
         /// # Errors
         /// If the pipe cannot be read.
@@ -98,8 +98,8 @@ mod ends {
         }
     }
 
-    /// Waits for bytes at an `end` of a pipe, at most `wait`, for a short time and without sleeping, because a processor that
-    /// sleeps takes tens of microseconds to wake. Other processes go first.
+    /// Looks for bytes at an `end` of a pipe for at most `wait` and at most [`WATCH`] without sleeping, because a processor that
+    /// sleeps takes tens of microseconds to wake. The processor is offered to other processes in between.
     pub fn watch(end: &impl AsFd, wait: Duration) {
         let (start, wait) = (Instant::now(), wait.min(WATCH));
         while start.elapsed() < wait && matches!(is_ready(end, PollFlags::IN, Duration::ZERO), Ok(false)) {

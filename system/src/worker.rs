@@ -12,6 +12,7 @@ use crate::messages::{self, frame, take};
 use crate::output::{KeptOutput, Part};
 use crate::pipes::{Heard, Pipes, watch};
 use crate::processes::ProcessGroup;
+use crate::streams::{take_stdin, take_stdout};
 
 /// Polling interval for the end of a silent worker: a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(100);
@@ -169,12 +170,20 @@ impl Deadline {
 #[derive(Debug)]
 pub struct Requests(BufReader<File>);
 
-impl Requests {
-    /// Those that come from `stdin`.
-    pub fn new(stdin: File) -> Self {
-        Self(BufReader::new(stdin))
-    }
+/// Takes stdin and stdout of this process for requests and replies alone: what else reads finds nothing, and what else writes, writes
+/// to stderr.
+///
+/// # Errors
+/// If the system refuses, or one is closed.
+pub fn take_streams() -> io::Result<(Requests, File)> {
+    let failed = |what: &'static str| {
+        move |cause: io::Error| io::Error::new(cause.kind(), format!("cannot take {what}: {cause}"))
+    };
+    let requests = take_stdin().map_err(failed("stdin for the requests"))?;
+    Ok((Requests(BufReader::new(requests)), take_stdout().map_err(failed("stdout for the replies"))?))
+}
 
+impl Requests {
     /// The next one; none if the host has closed.
     ///
     /// # Errors
@@ -239,6 +248,11 @@ mod tests {
         let (_folder, mut one) = worker(b"", "exec 1>&-; sleep 1000");
         let end = answer::<f64>(&mut one, SECONDS).unwrap_err();
         assert!(matches!(end, End::Silent), "{end:?}");
+
+        // Half an answer.
+        let (_folder, mut one) = worker(&frame(&1.5).unwrap()[..7], "exit 5");
+        let end = answer::<f64>(&mut one, SECONDS).unwrap_err();
+        assert!(matches!(end, End::Ended(status) if status.code() == Some(5)), "{end:?}");
 
         // A child of it holds its pipes.
         let (_folder, mut one) = worker(b"", "sleep 1000 & exit 4");

@@ -129,6 +129,7 @@ fn fake(folder: &Path, replies: &[u8], script: &str) -> PathBuf {
 fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
     let circuit = || Reply::Circuit(Circuit { elements: vec![], nodes: vec![], unread: vec![] });
     let loaded = || vec![circuit(), Reply::Reached(State::default())];
+    let vast = Reply::Reached(State { probes: vec![f64::INFINITY], ..State::default() });
     let folder = tempfile::tempdir().unwrap();
     for (replies, script, expected) in [
         (vec![], "echo oh no >&2; exit 7", "ended about the netlist (exit status: 7): oh no"),
@@ -137,16 +138,22 @@ fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
         (
             vec![],
             "cat >/dev/null & printf '\\1\\0\\0\\0\\143'; wait",
-            "ended about the netlist (it had sent 1 bytes that are no message",
+            "ended about the netlist (what it sent: 1 bytes that are no message",
         ),
+        (vec![], "echo what a program prints", "what it sent: a message of 1952540791 bytes, allowed are 4194304"),
         (vec![], "sleep 1000 & exit 4", "ended about the netlist (exit status: 4)"),
         (vec![Reply::Failure("no circuit".to_owned())], "sleep 1000", "no circuit"),
+        (
+            vec![circuit(), vast],
+            "sleep 1000",
+            "a voltage, current, charge or energy about the netlist is too large for a number",
+        ),
         (loaded(), "exit 3", "ended between 0 s and 0.001 s (exit status: 3)"),
         (loaded(), "sleep 1000", "no answer of ngspice between 0 s and 0.001 s within 1 s"),
         (
             [loaded(), vec![circuit()]].concat(),
             "sleep 1000",
-            "ended between 0 s and 0.001 s (it had sent the answer to another",
+            "ended between 0 s and 0.001 s (what it sent: the answer to another",
         ),
     ] {
         let bytes: Vec<u8> = replies.iter().flat_map(|reply| frame(reply).unwrap()).collect();

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::logging::LogRecord;
 use crate::request::{Request, Results};
-use videg_system::messages::LONGEST;
+use videg_system::messages::{self, LONGEST};
 
 /// Largest serialised state that is passed on, bytes.
 pub(crate) const LONGEST_STATE: usize = LONGEST - SPARE;
@@ -15,16 +15,9 @@ pub(super) const SPARE: usize = 1 << 16;
 /// Longest Strings that a call may give altogether, bytes.
 const LONGEST_TEXTS: usize = 16 << 20;
 
-/// First message to the worker: which build asks. Two builds need not mean the same by the messages that follow.
+/// First message to the worker: which build asks.
 pub(super) fn build() -> String {
-    let sources =
-        [include_bytes!("protocol.rs").as_slice(), include_bytes!("../logging.rs"), include_bytes!("../request.rs")];
-    // FNV-1a
-    let hash = sources
-        .concat()
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("{} with messages {hash:016x}", env!("CARGO_PKG_VERSION"))
+    messages::build(&[include_bytes!("protocol.rs"), include_bytes!("../logging.rs"), include_bytes!("../request.rs")])
 }
 
 /// Second message to the worker.

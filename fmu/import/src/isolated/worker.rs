@@ -1,6 +1,5 @@
 //! The worker: a process that loads the library of an FMU and serves one instance.
 
-use std::fs::File;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,14 +11,14 @@ use crate::library;
 use crate::logging::Environment;
 use crate::request::Request;
 use videg_system::messages::send;
-use videg_system::worker::Requests;
+use videg_system::worker::take_streams;
 
-/// Serves one instance: reads calls from `requests`, answers on `replies`, and returns when the other side has closed.
+/// Serves one instance: takes stdin and stdout of this process, reads calls, answers, and returns when the other side has closed.
 ///
 /// # Errors
-/// If the other side cannot be read or written.
-pub fn serve(requests: File, replies: File) -> io::Result<()> {
-    let mut requests = Requests::new(requests);
+/// If the streams cannot be taken, or the other side cannot be read or written.
+pub fn serve() -> io::Result<()> {
+    let (mut requests, replies) = take_streams()?;
     let replies = Arc::new(Mutex::new(replies));
     let say = |reply: &Reply| send(&mut *replies.lock().unwrap_or_else(PoisonError::into_inner), reply);
     let Some(host) = requests.receive::<String>()? else { return Ok(()) };

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted};
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, build};
 use videg_system::output::Part;
 use videg_system::temporary::TemporaryFolder;
 use videg_system::worker::{Deadline, End};
@@ -16,7 +16,7 @@ use videg_system::worker::{Deadline, End};
 pub const WORKER_VERB: &str = "ngspice-worker";
 /// Bytes of the worker's stderr that are kept.
 const KEPT_STDERR: usize = 4096;
-/// Longest reply, bytes: as long as the longest netlist.
+/// Longest reply, bytes: names of as many elements and nodes as a circuit may have.
 const LONGEST_REPLY: usize = 1 << 22;
 
 /// Why ngspice does not go on.
@@ -69,8 +69,9 @@ impl Worker {
         command.arg(WORKER_VERB).current_dir(folder.path()).env("HOME", folder.path());
         let process = videg_system::worker::Worker::start(&mut command, Part::Beginning(KEPT_STDERR)).map_err(fail)?;
         let mut worker = Self { process, limit, time: 0.0, _folder: folder };
-        let sent = worker.process.send(job, &mut Deadline::after(Some(limit)));
-        sent.map_err(|end| worker.lost(end, 0.0))?;
+        let mut deadline = Deadline::after(Some(limit));
+        let sent = worker.process.send(&build(), &mut deadline);
+        sent.and_then(|()| worker.process.send(job, &mut deadline)).map_err(|end| worker.lost(end, 0.0))?;
         Ok(worker)
     }
 
@@ -102,14 +103,16 @@ impl Worker {
     pub fn energies(&mut self) -> Result<Vec<f64>, LiveError> {
         let time = self.time;
         match self.ask(&Request::Energies, time)? {
-            Reply::Energies(energies) => Ok(energies),
+            Reply::Energies(energies) if energies.iter().all(|energy| energy.is_finite()) => Ok(energies),
+            Reply::Energies(_) => Err(self.overflow(time)),
             _ => Err(self.garbled(time)),
         }
     }
 
     fn state(&mut self, request: &Request, to: f64) -> Result<State, LiveError> {
         match self.ask(request, to)? {
-            Reply::Reached(state) => Ok(state),
+            Reply::Reached(state) if state.is_finite() => Ok(state),
+            Reply::Reached(_) => Err(self.overflow(to)),
             _ => Err(self.garbled(to)),
         }
     }
@@ -129,6 +132,10 @@ impl Worker {
         }
     }
 
+    fn overflow(&self, to: f64) -> LiveError {
+        LiveError::Failure(format!("a voltage, current, charge or energy {} is too large for a number", self.when(to)))
+    }
+
     fn garbled(&mut self, to: f64) -> LiveError {
         let end = self.process.end(End::Garbled("the answer to another request".to_owned()));
         self.lost(end, to)
@@ -141,11 +148,15 @@ impl Worker {
             End::TooLong => return LiveError::TimeLimit { when, limit: self.limit },
             End::Ended(status) => status.to_string(),
             End::Silent => "it had closed its pipes".to_owned(),
-            End::Garbled(what) => format!("it had sent {what}"),
+            End::Garbled(what) => format!("what it sent: {what}"),
             End::Refused(cause) => cause,
         };
         let said = self.process.printed();
         let said = said.trim().lines().fold(String::new(), |all, line| all + ": " + line);
         LiveError::Died { when, how, said }
+    }
+
+    fn when(&self, to: f64) -> String {
+        if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() }
     }
 }

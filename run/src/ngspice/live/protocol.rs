@@ -4,8 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::ledger::{Group, Membranes};
 use super::network::Account;
+use videg_system::messages;
 
-/// First message to the worker: the circuit.
+/// First message to the worker: which build asks.
+pub fn build() -> String {
+    messages::build(&[include_bytes!("protocol.rs"), include_bytes!("ledger.rs"), include_bytes!("network.rs")])
+}
+
+/// Second message to the worker: the circuit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// Lines of the netlist, the title first, `.end` last.
@@ -51,7 +57,7 @@ pub struct Wanted {
 /// Each further message to the worker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Request {
-    /// What is wanted: begin. The second message.
+    /// What is wanted: begin. The third message.
     Wanted(Wanted),
     /// Go on until a communication point.
     Ramp(Ramp),
@@ -92,17 +98,31 @@ pub struct State {
     pub probes: Vec<f64>,
 }
 
+impl State {
+    /// Whether all its numbers are finite: sums and quotients of finite voltages and currents need not be.
+    pub fn is_finite(&self) -> bool {
+        let Membranes { voltage, stored, mechanical } = self.membranes;
+        let groups = self.groups.iter().flat_map(|group| [group.energy, group.charge, group.current, group.voltage]);
+        voltage
+            .into_iter()
+            .chain([stored, mechanical])
+            .chain(groups)
+            .chain(self.probes.iter().copied())
+            .all(f64::is_finite)
+    }
+}
+
 /// Each message from the worker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
+    /// It cannot go on, and why. The first, so that every build reads it as this.
+    Failure(String),
     /// The circuit is loaded.
     Circuit(Circuit),
     /// The communication point asked for is reached.
     Reached(State),
     /// Energies that the elements took so far, J.
     Energies(Vec<f64>),
-    /// It cannot go on, and why.
-    Failure(String),
 }
 
 #[cfg(test)]

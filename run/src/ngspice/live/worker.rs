@@ -16,9 +16,9 @@ use super::ledger::ElementLedger;
 use super::library::{Callbacks, LibraryError, Ngspice, VectorValue, VectorValues};
 use super::listing;
 use super::network::Network;
-use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted};
+use super::protocol::{Circuit, Job, Ramp, Reply, Request, State, Wanted, build};
 use videg_system::messages::send;
-use videg_system::worker::Requests;
+use videg_system::worker::{Requests, take_streams};
 
 /// Lines of ngspice that are kept for the message of a failure.
 const KEPT_LINES: usize = 12;
@@ -51,13 +51,17 @@ struct Session {
     lines: VecDeque<String>,
 }
 
-/// Serves one job: reads it and what follows from `requests`, answers on `replies`, and returns when the requests end or the job
-/// has failed.
+/// Serves one job: takes stdin and stdout of this process, reads the job and what follows, answers, and returns when the requests
+/// end or the job has failed.
 ///
 /// # Errors
-/// If the other side cannot be read or written.
-pub fn serve(requests: File, mut replies: File) -> io::Result<()> {
-    let mut requests = Requests::new(requests);
+/// If the streams cannot be taken, or the other side cannot be read or written.
+pub fn serve() -> io::Result<()> {
+    let (mut requests, mut replies) = take_streams()?;
+    let Some(host) = requests.receive::<String>()? else { return Ok(()) };
+    if host != build() {
+        return send(&mut replies, &Reply::Failure(format!("the worker is of videg {}, and this is {host}", build())));
+    }
     let Some(job) = requests.receive::<Job>()? else { return Ok(()) };
     if let Some(bytes) = job.memory {
         limit_memory(bytes)?;
