@@ -338,7 +338,7 @@ impl Parameters {
     }
 
     /// Whether the film has a Maxwell branch.
-    pub(crate) fn is_viscous(&self) -> bool {
+    pub fn is_viscous(&self) -> bool {
         self.viscous_modulus > 0.0 && self.relaxation_time > 0.0
     }
 

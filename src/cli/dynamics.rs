@@ -138,7 +138,8 @@ impl Arguments {
         let setup = problem.setup(parameters);
         let (motion, exponent) = during(observer, "section", "Poincare section and Lyapunov exponent", || {
             let motion = Motion::take(setup, transient, self.taken(SECTION))?;
-            let exponent = exponent(setup, motion.last(), self.taken(SECTION))?;
+            let exponent = || exponent(setup, motion.last(), self.taken(SECTION));
+            let exponent = (!parameters.is_viscous()).then(exponent).transpose()?;
             Ok::<_, DynamicsError>((motion, exponent))
         })?;
         let diagram = problem.varied.as_ref().map(|varied| {

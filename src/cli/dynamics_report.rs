@@ -21,8 +21,8 @@ pub struct Found {
     pub transient: u32,
     /// The motion from the start of the case.
     pub motion: Motion,
-    /// Its largest Lyapunov exponent, 1/s.
-    pub exponent: f64,
+    /// Its largest Lyapunov exponent, 1/s; none with viscous films.
+    pub exponent: Option<f64>,
     pub diagram: Option<Diagram>,
     /// Whether orbits were searched for.
     pub has_orbits: bool,
@@ -44,7 +44,7 @@ pub struct Output<'a> {
     /// V/s.
     average_voltage_gain: f64,
     /// 1/s.
-    lyapunov_exponent: f64,
+    lyapunov_exponent: Option<f64>,
     orbits: Vec<Value>,
     branches: Vec<Value>,
     attractors: Vec<Value>,
@@ -187,11 +187,11 @@ fn keys(found: &Found) -> Vec<KeyNumber> {
         Some(count) => KeyNumber::new("the motion comes back after", periods(Some(count), ""), ""),
         None => KeyNumber::new("the motion", "does not come back", ""),
     };
-    let kind = if found.exponent > 0.0 { "neighbours part" } else { "neighbours do not part" };
+    let (exponent, kind) = exponent(found);
     let mut keys = vec![
         motion.note(format!("from the start of the case, after {} periods", found.transient)).main(),
         KeyNumber::new("<U>, Eq. (15)", significant(found.motion.own_gain(), 5), "V/s"),
-        KeyNumber::new("largest Lyapunov exponent", significant(found.exponent, 4), "1/s").note(kind),
+        KeyNumber::new("largest Lyapunov exponent", exponent, "1/s").note(kind),
     ];
     if found.has_orbits {
         let stable = found.orbits.iter().filter(|orbit| orbit.is_stable()).count();
@@ -203,6 +203,15 @@ fn keys(found: &Found) -> Vec<KeyNumber> {
         KeyNumber::new("attractors", basins.attractors.len().to_string(), "").note("of the starts in the map of basins")
     }));
     keys
+}
+
+/// The Lyapunov exponent, and what it says.
+fn exponent(found: &Found) -> (String, &'static str) {
+    match found.exponent {
+        Some(exponent) if exponent > 0.0 => (significant(exponent, 4), "neighbours part"),
+        Some(exponent) => (significant(exponent, 4), "neighbours do not part"),
+        None => ("-".to_owned(), "not computed for viscous films"),
+    }
 }
 
 /// What is said where the search finds nothing.
@@ -223,12 +232,11 @@ fn summary(found: &Found) -> String {
         Some(_) => format!("the motion comes back after {}", periods(found.motion.recurrence(), never)),
         None => never.to_owned(),
     };
-    let kind = if found.exponent > 0.0 { "neighbours part" } else { "neighbours do not part" };
+    let (exponent, kind) = exponent(found);
     format!(
-        "From the start of the case, after {} periods: {recurrence}; <U> = {} V/s; largest Lyapunov exponent {} 1/s: {kind}.",
+        "From the start of the case, after {} periods: {recurrence}; <U> = {} V/s; largest Lyapunov exponent {exponent} 1/s: {kind}.",
         found.transient,
-        significant(found.motion.own_gain(), 6),
-        significant(found.exponent, 4)
+        significant(found.motion.own_gain(), 6)
     )
 }
 

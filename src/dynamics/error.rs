@@ -49,6 +49,12 @@ pub enum DynamicsError {
     NotPeriodic { name: &'static str, value: f64 },
     #[error("--vary {name}: an orbit does not depend on where a motion starts")]
     InitialState { name: &'static str },
+    /// The film remembers more than the section shows.
+    #[error(
+        "{name} = {value}: the deflection that a viscous film keeps is part of its state, which orbits and Lyapunov exponents do not follow; 0 \
+         is a film without"
+    )]
+    Viscous { name: &'static str, value: f64 },
     /// The observer wants no more.
     #[error("stopped")]
     Stopped,

@@ -3,6 +3,7 @@
 use videg_model::{Harvester, Setup};
 
 use super::motion::Flash;
+use super::problem::check_elastic;
 use super::{DynamicsError, excitation};
 
 /// Distance, m, of the neighbour at the start of each period.
@@ -16,10 +17,11 @@ const NOTHING: f64 = 1e-17;
 /// that has a compliant membrane pressed in then cannot start anew: the distance grows on until it is free.
 ///
 /// # Errors
-/// As [`Motion::take`](super::Motion::take).
+/// As [`Motion::take`](super::Motion::take); a viscous film, which would start each period relaxed.
 pub fn exponent<'a>(setup: impl Into<Setup<'a>>, flash: Flash, periods: u32) -> Result<f64, DynamicsError> {
     let setup = setup.into();
     let Setup { parameters, recording, table } = setup;
+    check_elastic(parameters)?;
     let frequency = parameters.frequency;
     // Velocities count by the distance that they cover in 1/(2 pi f0).
     let scale = 1.0 / (std::f64::consts::TAU * frequency);

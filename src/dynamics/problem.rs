@@ -70,6 +70,10 @@ impl Problem {
     /// What stands against it, by name.
     pub fn check_orbits(&self) -> Result<(), DynamicsError> {
         self.check_periodic()?;
+        check_elastic(&self.parameters)?;
+        if let Some(varied) = &self.varied {
+            varied.values.iter().try_for_each(|&value| check_elastic(&self.at(value)))?;
+        }
         if self.files.recording.is_some() {
             return Err(DynamicsError::Recording);
         }
@@ -80,4 +84,10 @@ impl Problem {
             _ => Ok(()),
         }
     }
+}
+
+/// Checks that the films keep nothing of a contact that is over.
+pub(super) fn check_elastic(parameters: &Parameters) -> Result<(), DynamicsError> {
+    let (name, value) = ("membrane.viscousModulus", parameters.viscous_modulus);
+    if parameters.is_viscous() { Err(DynamicsError::Viscous { name, value }) } else { Ok(()) }
 }

@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use videg::dynamics::orbits::{self, Search};
-use videg::dynamics::{Basins, Files, Motion, Periods, Problem, exponent};
-use videg_model::{Case, ExcitationKind, ForceTable, MembraneLaw, Parameters, Recording};
+use videg::dynamics::{Basins, Files, Motion, Periods, Problem, Varied, exponent};
+use videg_model::{Case, ContactLaw, ExcitationKind, ForceTable, MembraneLaw, Parameters, Recording};
 
 fn fig14() -> Parameters {
     (Case::find("fig14").unwrap().parameters)()
@@ -77,4 +77,23 @@ fn a_membrane_measured_from_the_power_law_has_its_gain_and_orbits() {
     for (a, b) in ours.iter().zip(&theirs) {
         assert_relative_eq!(a.voltage_gain, b.voltage_gain, max_relative = 1e-6);
     }
+}
+
+#[test]
+fn viscous_films_have_sections_but_no_orbits_or_lyapunov_exponent() {
+    let film = Parameters { contact_law: ContactLaw::Compliant, membrane_law: MembraneLaw::Gent, ..fig14() };
+    let viscous = Parameters { viscous_modulus: 1e4, relaxation_time: 0.01, ..film };
+    let motion = Motion::take(&viscous, 5, 5).unwrap();
+    let refused = exponent(&viscous, motion.last(), 2).unwrap_err().to_string();
+    assert!(refused.starts_with("membrane.viscousModulus = 10000: "), "{refused}");
+    assert!(exponent(&film, Motion::take(&film, 5, 5).unwrap().last(), 2).is_ok());
+    let problem = |parameters, varied| Problem { parameters, files: Files::default(), varied };
+    let quantity = Parameters::TABLE.iter().find(|it| it.name == "membrane.viscousModulus").unwrap();
+    let varied = Some(Varied { quantity, values: vec![0.0, 1e3] });
+    let over = Parameters { viscous_modulus: 0.0, ..viscous };
+    for (problem, expected) in [(problem(viscous, None), "10000: "), (problem(over, varied), "1000: ")] {
+        let refused = problem.check_orbits().unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("membrane.viscousModulus = {expected}")), "{refused}");
+    }
+    assert!(problem(film, None).check_orbits().is_ok());
 }
