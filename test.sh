@@ -35,8 +35,8 @@ usage() {
     cat <<'EOF'
 Usage: ./test.sh [STAGE...]
 
-Runs the stages named one after the other; without a name, setup while the tests are compiled, and then those of these that have not
-passed yet on the same files, two at a time, and again alone what failed so:
+Runs the stages named one after the other. Without a name it runs setup while the tests are compiled, and then those of the following that
+have not passed yet on the same files, two at a time. A stage that fails runs again, alone:
   setup        install what the tests need: system packages that are missing (apt), Python packages into .venv
   unit         the tests of all Rust packages, but for the slow ones
   lint         cargo fmt, clippy and rustdoc, with warnings as errors; one version everywhere, shell scripts, workflows
@@ -71,7 +71,7 @@ Only when named:
                nightly compiler
   release      a release as far as one machine can make it: FMUs of several platforms, the program without its source tree,
                licences of the dependencies, every library from its package; installs mingw and builds cargo-deny
-  coverage     lines of model, circuit and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
+  coverage     lines of model, circuit, coupled run, exporter and FMUs that their tests reach, into docs/coverage.md; builds cargo-llvm-cov
 
 Needs a Rust toolchain with a C linker, and Python 3.11 or later. Stages after setup need it to have run once.
 EOF

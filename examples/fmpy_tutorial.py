@@ -185,7 +185,7 @@ for name in ("ball.position", "impact.lastVelocity", "impact.nextTime", "pulse.n
     print(f"{name:19} {slave.get(name)[0]:.6f}")
 
 # %% [markdown]
-# `impact.nextTime` and `pulse.nextKnot` are the times of the next kink of C(t) and of the next release of a resting ball. They follow
+# `impact.nextTime` is the time of the next impact, `pulse.nextKnot` that of the next kink or peak of C(t), or of the release of a resting ball. They follow
 # the inputs as soon as these are set, and look ahead as far as `pulse.knownUntil`: one period of the excitation, or less. A master that sets its inputs,
 # steps to these times and never beyond `pulse.knownUntil` has every impact, peak and release at the end of a step. With phase noise that is 512 hold
 # intervals ahead, or only the end of the present one; the description of [`impact.nextTime`](../reference/variables.md) has the rule.
@@ -212,7 +212,7 @@ print("and on to the same bits: ", np.array_equal(slave.get("ball.position", "le
 #
 # ## Get derivatives
 #
-# Directional derivatives tell how the outputs at the end of a step depend on the force during it. They are exact, also through impacts.
+# Directional derivatives tell how the outputs at the end of a step depend on the force during it. With the law and mount of the paper they are exact, also through impacts ([others](../theory/motion.md#derivatives)).
 # This step of 0.15 s begins before an impact and ends while the membrane is pressed in. The difference of two runs confirms the result:
 
 # %%

@@ -191,5 +191,5 @@ axes.set_ylabel("gain in 10 s (mJ)")
 figure.savefig(figures / "storage.svg")
 
 # %% [markdown]
-# `videg crosscheck --sweep` and `videg reproduce tuning` make this map for Zener diodes, switches and storages, over voltage and
-# load.
+# `videg crosscheck --sweep` draws such curves for Zener diodes, switches and storages. `videg reproduce tuning` maps voltage and load for
+# the circuit of the paper and for isolated membranes with a switch.

@@ -45,7 +45,7 @@ run("videg fmu build --resource examples/film.csv --output out/membrane/fmu")
 # - The first row is that of a flat membrane: deflection 0, force 0.
 # - Deflection and force rise from row to row, the capacitance does not fall. If noise makes forces fall, average the passes of the machine, or take rows
 #   farther apart.
-# - 3 to 1,000,000 rows, up to 100 m, 1e9 N and 1 F.
+# - 3 to 1,000,000 rows; a last deflection of at most 20 `membrane.radius`, forces up to 1e9 N, capacitances from 1e-18 to 1 F.
 # - Between the rows the curve is a monotone cubic, that of scipy's `PchipInterpolator`; the energy is its exact integral.
 # - Beyond the last row force and capacitance go on in straight lines. The log and the report say so when it happens: measure deeper.
 #
@@ -83,7 +83,8 @@ restitution = np.sum(before * after) / np.sum(before**2)
 print(f"r = {restitution:.3f}; by impact {np.round(after / before, 2)}")
 
 # %% [markdown]
-# videg has one `membrane.restitution` for all speeds. If yours depends on the speed, take its value at the speed of the impacts of your case.
+# `membrane.restitution` is one number for all speeds. If yours depends on the speed, take its value at the speed of the impacts of your case, or describe the film
+# by its material, with [viscosity](../theory/contact.md#viscous-films-restitution-follows), from which the restitution follows.
 #
 # ## Fit K and n, or the constants of a film
 #

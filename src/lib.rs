@@ -29,10 +29,10 @@
 //! - [`export`] writes C(t) for other programs;
 //! - [`ngspice`] runs the circuit in ngspice, to check the embedded solver;
 //! - [`crosscheck`] compares both with each other and with the closed forms of the paper;
-//! - [`paper`] reproduces every table and figure of the paper;
+//! - [`paper`] reproduces the tables and figures of the paper;
 //! - [`dynamics`] finds what the motion of a case is like for long: bifurcations, periodic orbits, basins;
 //! - [`sweep`] runs the harvester, or any FMU, many times over its parameters;
-//! - [`map`] maps the net power over two variables, with its best point and the limits of the film;
+//! - [`map`] maps the net power, or another result, over two variables, with its best point and the limits of the film;
 //! - [`cli`] is the command-line tool.
 //!
 //! Beside it: [`videg_report`] draws figures and writes HTML reports, [`videg_input`] reads files that a user gives, [`videg_system`] has

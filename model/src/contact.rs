@@ -1,5 +1,8 @@
 //! The compliant contact law: a contact takes time, and the wall moves meanwhile.
 //!
+//! Here the force of the membrane is K x^n; another law puts its own in that place. A viscous film has no such branches: its dashpot
+//! takes the loss, and r is not used (`membrane/viscosity.rs`).
+//!
 //! With x the deflection, inwards from the membrane's rest plane, the membrane pushes the ball back with K x^n while it is
 //! deeper than ever in this contact, and with r^2 K x^n otherwise: unloading and loading again run on the same curve up to
 //! the largest deflection of the contact, where the force jumps up to K x^n. Under an unaccelerated wall that gives exactly

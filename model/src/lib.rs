@@ -2,8 +2,8 @@
 //! vibro-impact system", and the membrane capacitances C(t) that follow from it.
 //!
 //! A ball slides in a shaken cylinder and hits a pre-stretched membrane at either end. Between impacts both bodies have
-//! closed forms, so the motion is computed from event to event, not stepped: no impact is missed, and the result does
-//! not depend on how a run is split.
+//! closed forms, a cylinder on a suspension power series, so the motion is computed from event to event, not stepped: no impact is
+//! missed, and the result does not depend on how a run is split. Contacts that take time are integrated with a bound on the error.
 //!
 //! ```
 //! use videg_model::{Harvester, Parameters, Side};

@@ -1,4 +1,4 @@
-//! Where a model is used beyond what it holds for: what VHB 4910 stands, in stretch, electric field and tension, and the
+//! Where a model is used beyond what it holds for: what VHB 4910 bears, in stretch, electric field and tension, and the
 //! ratio of masses that Eq. (7) neglects. Nothing in the motion depends on them.
 
 use core::fmt;

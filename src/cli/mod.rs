@@ -77,7 +77,7 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Run many simulations over parameters and seeds, on all cores; resumes interrupted sweeps, merges shards
     Sweep(Box<sweep::Arguments>),
-    /// Map the net power over two variables of harvester and circuit, with its best point and the limits of the film
+    /// Map the net power, or another result, over two variables of harvester and circuit, with its best point and the limits of the film
     Map(Box<map::Arguments>),
     /// Bifurcation diagram, Poincare section, Lyapunov exponent, periodic orbits and basins of attraction of any case
     Dynamics(dynamics::Arguments),

@@ -17,8 +17,8 @@ pub struct CaseOptions {
     /// capsule-soft [default: fig14]
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. The initial
-    /// values of a case stay those of the paper
+    /// Set a parameter or input, e.g. membrane.restitution=0.7 or load.resistance=1e10; may be repeated. Start
+    /// positions and velocities stay those of the case
     #[arg(long = "set", value_name = "VARIABLE=VALUE")]
     settings: Vec<String>,
     /// Case file (TOML) with case, until, step, window and a [set] table

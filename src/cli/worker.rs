@@ -1,5 +1,5 @@
 //! `videg ngspice-worker` and `videg fmu-worker`: processes for shared libraries that may crash: that of ngspice, for
-//! `--circuit ngspice`, and those of isolated FMUs.
+//! `--circuit ngspice` and `--netlist`, and those of isolated FMUs.
 
 use std::io;
 

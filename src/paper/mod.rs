@@ -1,4 +1,4 @@
-//! Every table and figure of the paper, and what lies beyond it, computed through the harvester FMU.
+//! Every table and figure of the paper, computed through the harvester FMU, and what lies beyond it, partly by the model alone.
 //!
 //! An [`Item`] is one table or figure, a file of this module each. [`reproduce`] makes an [`Artefact`] of each with the
 //! [`Study`]: numbers beside the paper's ([`Finding`]), data ([`Sheet`]), pictures and words. The same items give the same bytes whenever

@@ -10,8 +10,9 @@ use videg_golden::Golden;
 const HEAD: &str = "\
 # Model descriptions
 
-`VibroImpactHarvester.xml` and `HarvestingCircuit.xml` are the `modelDescription.xml` of the two FMUs. They
-follow from the variable tables in `fmu/*/src/variables.rs`, and this page follows from them; tests compare all three.
+`VibroImpactHarvester.xml` and `HarvestingCircuit.xml` are the `modelDescription.xml` of the two FMUs for FMI 2.0; `fmi3/` has those
+for FMI 3.0. They follow from the variable tables in `fmu/*/src/variables.rs`, for parameters from those in `model/src/parameters.rs` and
+`circuit/src/settings.rs`, and this page follows from them; tests compare all three.
 After a change of a table run `UPDATE_MODEL_DESCRIPTION=1 cargo test --workspace` (twice: the descriptions first).
 
 Symbols, equations, figures, tables and sections are those of the paper, \"Energy harvesting from a DE-based dynamic

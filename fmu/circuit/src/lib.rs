@@ -1,4 +1,4 @@
-//! The FMU `HarvestingCircuit`: the circuit of Fig. 8(a) behind the FMI 2.0 interface for co-simulation.
+//! The FMU `HarvestingCircuit`: the circuit of Fig. 8(a) behind the interfaces of FMI 2.0 and 3.0 for co-simulation.
 //!
 //! Only glue lives here: [`Harvesting`] keeps what the importer sets and hands it to [`videg_circuit`]; the variables
 //! are in `variables.rs`, the parameters among them in the circuit's own table.

@@ -1,5 +1,5 @@
-//! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the FMI 2.0 interfaces for
-//! co-simulation and model exchange.
+//! The FMU `VibroImpactHarvester`: the mechanical model of the paper behind the interfaces of FMI 2.0 and 3.0
+//! for co-simulation and model exchange.
 //!
 //! Only glue lives here: [`Harvester`] keeps what the importer sets and hands it to [`videg_model`]; the variables are
 //! in `variables.rs`, the parameters among them in the model's own table.

@@ -9,11 +9,12 @@
 //!   state and comes back with it. With respect to a continuous state, which no importer can set there, at the
 //!   communication point, as in model exchange.
 //!
-//! With friction, a suspension, reaction or the compliant law, and with respect to scale and offset of a recording, they are taken by differences, to some ten digits. There
+//! With friction, a suspension, reaction, the compliant law or another law of the membrane than Eq. (2), and with respect to
+//! parameters of these, scale and offset of a recording and n of Eq. (2), they are taken by differences, to some nine digits. There
 //! are none with respect to a state during a contact that lasts.
 //!
 //! The voltages have no influence but on the electric fields: an impulsive impact takes no time in which they could do
-//! work on the ball.
+//! work on the ball. Under the compliant law with electrostatic feedback what they do to the motion is left out.
 
 use fmu_export::Variable;
 use videg_model::{Direction, Energies, ExcitationKind, Harvester as Model, Parameters, Sensitivities, Side};

@@ -84,8 +84,8 @@ static INPUTS: [V; 3] = [
 
 // Dependencies, after FMI 2.0.4, section 2.2.8: those "at the current super dense time instant" and "at the current
 // Communication Point", on states and inputs. No output depends on an input of the same point, which would make loops of
-// connections algebraic, but for the electric fields and the predicted times, which drive nothing; how the force of a
-// step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
+// connections algebraic, but for the electric fields and the predicted times, which drive nothing, and the force of the mount;
+// how the force of a step acts on the outputs at its end is no dependency in this sense, and directional derivatives in co-simulation give
 // it all the same.
 
 /// The outputs of the membrane at one side. They depend on time and past impacts only.

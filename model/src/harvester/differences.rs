@@ -1,5 +1,5 @@
 //! First-order changes by differences, where they are not carried along in closed form: with friction, a suspension or reaction,
-//! under the compliant law, and with respect to parameters of these and of a recording and to the exponent of the force law, on which
+//! under the compliant law, with another law of the membrane than Eq. (2), and with respect to parameters of these and of a recording and to the exponent of the force law, on which
 //! the shape of a pulse depends in no simple way.
 //!
 //! Harvesters in which the cause is moved a little are compared with this one. They must have met the same events, so that all

@@ -17,8 +17,8 @@
 //!
 //! - [`CapacitanceTable`] is C(t), the same for both solvers;
 //! - [`Elements`] is the circuit, rendered from the templates in `ngspice_netlists`, with C(t) from a table or from a
-//!   program that has loaded ngspice. Only numbers can be put into a template, so that no text of a user ever gets into a
-//!   netlist;
+//!   program that has loaded ngspice. Only numbers, names of files and other templates can be put into a template, so that no text
+//!   of a user gets into such a netlist;
 //! - [`Ngspice`] finds the program and runs it; [`RawReader`] reads the result, which is summed up point by point;
 //! - [`UserNetlist`] is a circuit of the user;
 //! - [`live`] runs ngspice's shared library step by step, as the partner of a co-simulation;

@@ -20,7 +20,7 @@ pub struct Isolation {
 pub struct Bounds {
     /// Longest time that a call may take; none: any.
     pub time: Option<Duration>,
-    /// Address space of the process, bytes; none: any. On Windows it is not bounded.
+    /// Address space of the process, bytes; none: any. On macOS and Windows it is not bounded.
     pub memory: Option<u64>,
 }
 
