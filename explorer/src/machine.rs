@@ -76,7 +76,7 @@ impl Machine {
         let setup = self.setup();
         setup.validate().map_err(|error| error.to_string())?;
         let p = setup.parameters;
-        let membrane = videg_model::Membrane::new(p);
+        let membrane = videg_model::Membrane::new(setup);
         Ok(vec![
             p.travel(),
             p.membrane_radius(),

@@ -156,6 +156,9 @@ fn files_are_taken_and_faults_in_them_are_named_with_their_line() {
     assert_eq!(machine.run(1.0, 2.0).unwrap(), before, "the law does not ask for the table");
     machine.set("membrane.law", 2.0).unwrap();
     assert_ne!(machine.run(1.0, 2.0).unwrap(), before);
+    machine.set_table("deflection,force,capacitance\n0,0,3e-11\n1e-3,0.01,3.1e-11\n9e-3,2,6e-11\n").unwrap();
+    let place = Machine::derived_names().iter().position(|name| name == "restCapacitance").unwrap();
+    assert_eq!(machine.derived().unwrap()[place], 3e-11, "as it was measured");
     machine.set_table("").unwrap();
     assert!(machine.run(1.0, 2.0).unwrap_err().contains("membrane.law"));
     machine.clear();

@@ -114,3 +114,21 @@ fn so_they_are_along_parameters() {
         })
     });
 }
+
+/// Where neither the harmonic force nor the present external one tells what a large force is.
+#[test]
+fn a_force_that_is_over_and_an_amplitude_of_zero_have_changes() {
+    let p = Parameters { amplitude: 0.0, suspension_stiffness: 1e-9, ball_velocity: 0.0, ..Parameters::default() };
+    let mut harvester = Harvester::new(&p, 0.0).unwrap();
+    harvester.advance(0.01).unwrap();
+    harvester.set_external_force(0.0, 0.0).unwrap();
+    harvester.advance(0.02).unwrap();
+    let (found, expected) =
+        (harvester.sensitivities().cylinder, [0.01_f64.powi(2) / 2.0, 0.01].map(|it| it / p.cylinder_mass));
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+    }
+    let along = Direction::of_parameter("excitation.amplitude").unwrap();
+    let begun = Harvester::along(&p, 0.0, 0.0, &along).unwrap().sensitivities().cylinder[2];
+    assert!((begun * p.cylinder_mass - 1.0).abs() < 1e-6, "{begun}");
+}

@@ -138,8 +138,7 @@ impl Arguments {
         let setup = problem.setup(parameters);
         let (motion, exponent) = during(observer, "section", "Poincare section and Lyapunov exponent", || {
             let motion = Motion::take(setup, transient, self.taken(SECTION))?;
-            let exponent = || exponent(setup, motion.last(), self.taken(SECTION));
-            let exponent = (!parameters.is_viscous()).then(exponent).transpose()?;
+            let exponent = exponent(setup, motion.last(), self.taken(SECTION))?;
             Ok::<_, DynamicsError>((motion, exponent))
         })?;
         let diagram = problem.varied.as_ref().map(|varied| {

@@ -21,7 +21,7 @@ pub struct Found {
     pub transient: u32,
     /// The motion from the start of the case.
     pub motion: Motion,
-    /// Its largest Lyapunov exponent, 1/s; none with viscous films.
+    /// Its largest Lyapunov exponent, 1/s, if there is one.
     pub exponent: Option<f64>,
     pub diagram: Option<Diagram>,
     /// Whether orbits were searched for.
@@ -210,7 +210,7 @@ fn exponent(found: &Found) -> (String, &'static str) {
     match found.exponent {
         Some(exponent) if exponent > 0.0 => (significant(exponent, 4), "neighbours part"),
         Some(exponent) => (significant(exponent, 4), "neighbours do not part"),
-        None => ("-".to_owned(), "not computed for viscous films"),
+        None => ("-".to_owned(), "not found where films are viscous, or pressed in at the start of each period"),
     }
 }
 

@@ -51,8 +51,8 @@ pub enum DynamicsError {
     InitialState { name: &'static str },
     /// The film remembers more than the section shows.
     #[error(
-        "{name} = {value}: the deflection that a viscous film keeps is part of its state, which orbits and Lyapunov exponents do not follow; 0 \
-         is a film without"
+        "{name} = {value}: the deflection that a viscous film keeps is part of its state, which orbits do not follow; 0 is a film \
+         without"
     )]
     Viscous { name: &'static str, value: f64 },
     /// The observer wants no more.

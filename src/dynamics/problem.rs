@@ -87,7 +87,7 @@ impl Problem {
 }
 
 /// Checks that the films keep nothing of a contact that is over.
-pub(super) fn check_elastic(parameters: &Parameters) -> Result<(), DynamicsError> {
+fn check_elastic(parameters: &Parameters) -> Result<(), DynamicsError> {
     let (name, value) = ("membrane.viscousModulus", parameters.viscous_modulus);
     if parameters.is_viscous() { Err(DynamicsError::Viscous { name, value }) } else { Ok(()) }
 }

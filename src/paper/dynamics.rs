@@ -91,7 +91,7 @@ fn sections(study: &Study<'_>, cylinder: &Cylinder) -> Result<Vec<Section>, Pape
         let start = cylinder.saw_tooth(restitution, cylinder.gamma(FORCE, FREQUENCY), FREQUENCY);
         let take = || -> Result<Section, crate::dynamics::DynamicsError> {
             let motion = Motion::take(&parameters, TRANSIENT, periods)?;
-            let exponent = exponent(&start, motion.last(), many / 4)?;
+            let exponent = exponent(&start, motion.last(), many / 4)?.unwrap_or(f64::NAN);
             Ok(Section { case, title, motion, exponent })
         };
         Ok(take()?)

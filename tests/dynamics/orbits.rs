@@ -88,7 +88,7 @@ fn figure_14_is_an_orbit_of_two_periods_beside_its_mirror_image() {
     assert_eq!(names, ["4:2, 2 periods", "2:4, 2 periods"]);
     let motion = Motion::take(&p, 200, 60).unwrap();
     assert_eq!(motion.recurrence(), Some(2));
-    assert!(exponent(&p, motion.last(), 100).unwrap() < 0.0);
+    assert!(exponent(&p, motion.last(), 100).unwrap().unwrap() < 0.0);
     for orbit in &stable {
         assert_relative_eq!(orbit.voltage_gain, 8_078.869_538_542_804, max_relative = 1e-9);
         let [a, b] = [trace_and_determinant(orbit), by_differences(&p, orbit)];
@@ -213,6 +213,8 @@ fn orbits_between_soft_membranes_have_the_multipliers_of_differences() {
     let p = case("capsule-soft");
     let found = orbits::orbits(&at(p), &Search { periods: 1, ..Search::default() }, &()).unwrap();
     let orbit = found.iter().find(|orbit| orbit.is_stable() && orbit.pattern.counts() == [1, 1]).unwrap();
+    // In a membrane the ball turns, too, but not in flight.
+    assert!(orbit.least_gap > 0.0, "{}", orbit.least_gap);
     for (ours, theirs) in trace_and_determinant(orbit).into_iter().zip(by_differences(&p, orbit)) {
         assert_relative_eq!(ours, theirs, max_relative = 1e-5, epsilon = 1e-6);
     }
@@ -268,7 +270,7 @@ fn diagrams_and_basins_work_with_soft_membranes_suspension_and_friction() {
     let shares: f64 = basins.attractors.iter().map(|(_, share)| share).sum();
     assert!(basins.ends.len() == 16 && (shares - 1.0).abs() < 1e-12);
     let motion = Motion::take(&p, 20, 10).unwrap();
-    assert!(exponent(&p, motion.last(), 50).unwrap().is_finite());
+    assert!(exponent(&p, motion.last(), 50).unwrap().unwrap().is_finite());
     // A parameter beyond its bound is named.
     let refused = Diagram::new(vec![0.5, 1.5], (at, &Files::default()), periods, &()).unwrap_err().to_string();
     assert!(refused.contains("membrane.restitution = 1.5"), "{refused}");

@@ -25,6 +25,9 @@ const SHORTER: f64 = 0.3;
 /// Steps that are tried. The last is below the rounding of anything.
 const STEPS: usize = 14;
 
+/// Least acceleration that counts as typical, in units of a motion through the gap at the frequency of the excitation.
+const LEAST: f64 = 1e-3;
+
 /// Two estimates that differ by less than this, relative to them, agree.
 const AGREED: f64 = 1e-11;
 
@@ -240,7 +243,7 @@ impl Harvester {
         let p = &self.parameters;
         let [force, _] = self.external_force();
         let sum = p.harmonic_acceleration() + p.incline().abs() + p.friction_acceleration();
-        (p.cylinder_mass * sum).max(force.abs()).max(f64::MIN_POSITIVE.sqrt())
+        (p.cylinder_mass * sum).max(force.abs()).max(p.typical("N", 0.0))
     }
 
     fn past(&self) -> Past {
@@ -389,11 +392,13 @@ impl Parameters {
     /// What a parameter in this `unit` typically is, from its `value`.
     fn typical(&self, unit: &str, value: f64) -> f64 {
         let omega = TAU * self.frequency;
+        // A recording or the external force may be all that drives.
+        let acceleration = self.harmonic_acceleration().max(LEAST * self.travel() * omega * omega);
         let typical = match unit {
             "m" => self.travel(),
             "m/s" => self.travel() * self.frequency,
-            "m/s2" => self.harmonic_acceleration(),
-            "N" => self.cylinder_mass * self.harmonic_acceleration(),
+            "m/s2" => acceleration,
+            "N" => self.cylinder_mass * acceleration,
             "N/m" => self.cylinder_mass * omega * omega,
             "N.s/m" => self.cylinder_mass * omega,
             "s" => 1.0 / self.frequency,

@@ -47,7 +47,7 @@ impl Cycle {
             if impacts.len() > MOST_IMPACTS * periods as usize {
                 return Ok(None);
             }
-            let flies = impacts.len() == known && is_free(&before) && is_free(&harvester);
+            let flies = impacts.len() == known && is_free(&before, half) && is_free(&harvester, half);
             if flies {
                 least_gap = least_gap.min(gap_at_turn(&before, &harvester, half));
             }
@@ -74,8 +74,9 @@ fn middle_of_longest(flights: &[bool]) -> Option<f64> {
     Some((start as f64 + 0.5 * length as f64) % count as f64)
 }
 
-fn is_free(harvester: &Harvester) -> bool {
-    harvester.resting().is_none() && !harvester.is_stuck()
+/// Whether the ball flies, between membranes that lie at `half` of the gap, m.
+fn is_free(harvester: &Harvester, half: f64) -> bool {
+    harvester.resting().is_none() && !harvester.is_stuck() && harvester.relative_displacement().abs() < half
 }
 
 fn rate(harvester: &Harvester) -> f64 {
