@@ -65,6 +65,24 @@ fn the_model_itself_and_its_fmu_give_the_same_bytes() {
 }
 
 #[test]
+fn without_a_circuit_the_membranes_have_the_voltage_of_the_supply() {
+    let (_guard, folder) = folder();
+    let [built_in, recorded, given] = ["a", "b", "c"].map(|name| folder.join(name));
+    let feedback = ["--set", "contact.law=compliant", "--set", "contact.electrostaticFeedback=true"];
+    let what = [&feedback[..], &["--vary", "biasVoltage=1000,9000"]].concat();
+    done(&mut sweep(&built_in, &what));
+    done(sweep(&recorded, &what).args(["--record", "left.electricField", "--record", "impact.count"]));
+    let gains = ["average_voltage_gain", "impacts"].map(|name| column(&built_in, name));
+    assert_eq!(gains, ["average_voltage_gain", "impacts"].map(|name| column(&recorded, name)));
+    let fields: Vec<f64> = column(&recorded, "left.electricField").iter().map(|text| text.parse().unwrap()).collect();
+    assert!(fields[1] > 5.0 * fields[0], "{fields:?}");
+    // A voltage that is given counts.
+    let both = ["--set", "left.voltage=0", "--set", "right.voltage=0", "--record", "left.electricField"];
+    done(sweep(&given, &what).args(both));
+    assert_eq!(column(&given, "left.electricField"), ["0.0", "0.0"]);
+}
+
+#[test]
 fn any_fmu_is_swept_once_it_is_said_what_to_record() {
     done(&mut videg(&["fmu", "build"]));
     let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/fmu/HarvestingCircuit.fmu");

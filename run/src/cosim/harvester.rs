@@ -118,16 +118,30 @@ pub fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result
     Ok(instance)
 }
 
+/// Voltages of the membranes, which are inputs.
+pub const VOLTAGES: [&str; 2] = ["left.voltage", "right.voltage"];
+
+/// The settings, with membranes at the voltage of the supply, unless they say more of it: so the model has them where no circuit gives
+/// them another.
+fn with_voltages(settings: &[Setting]) -> Vec<Setting> {
+    let mut all = settings.to_vec();
+    if let Some(bias) = settings.iter().rfind(|setting| setting.name == "biasVoltage") {
+        let missing = VOLTAGES.into_iter().filter(|name| settings.iter().all(|setting| setting.name != *name));
+        all.extend(missing.map(|name| Setting { name: name.to_owned(), ..bias.clone() }));
+    }
+    all
+}
+
 impl HarvesterFmu {
     /// Instantiates `fmu` and initialises it with `settings`, from 0 s on.
     ///
     /// # Errors
     /// A setting that the FMU refuses, or an FMU that lacks a variable.
     pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
-        let instance = instantiate(fmu, Some(scenario.until), settings)?;
+        let instance = instantiate(fmu, Some(scenario.until), &with_voltages(settings))?;
         let reals = references(fmu, REALS)?;
         let counts = references(fmu, ["impact.count", "solver.events"])?;
-        let voltages = references(fmu, ["left.voltage", "right.voltage"])?;
+        let voltages = references(fmu, VOLTAGES)?;
         let bias = references(fmu, ["biasVoltage"])?;
         let [bias_voltage] = read(&instance, &bias)?;
         let feedback = Feedback::of(fmu, &instance, &voltages)?;

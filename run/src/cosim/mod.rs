@@ -44,7 +44,7 @@ pub use error::CosimError;
 pub use excitation::Excitation;
 pub use flows::Flows;
 pub use harvester::instantiate;
-pub use harvester::{HarvesterFmu, HarvesterSample};
+pub use harvester::{HarvesterFmu, HarvesterSample, VOLTAGES};
 pub use instance::{read, references};
 pub use mapping::Mapping;
 pub use master::{Master, Observer, Outcome, Row};
