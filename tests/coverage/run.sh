@@ -26,6 +26,8 @@ if ! compgen -G "$sysroot/lib/rustlib/*/bin/llvm-profdata*" >/dev/null; then
     export LLVM_COV=$tools/llvm-cov LLVM_PROFDATA=$tools/llvm-profdata
 fi
 
+# Without it small functions are compiled into each package that calls them, and are counted where none is called.
+export CARGO_INCREMENTAL=1
 packages=(-p videg-model -p videg-circuit -p videg-coupled -p fmu-abi -p fmu-export -p videg-fmu-harvester -p videg-fmu-circuit)
 cargo llvm-cov clean --workspace
 cargo llvm-cov --no-report --quiet "${packages[@]}"
