@@ -5,7 +5,7 @@ use fmu_import::{FmiError, Fmu, Instance, Logging, Value, Variable};
 use super::Sweep;
 use super::plan::{GAINS, Results, Run};
 use super::times::Driven;
-use crate::cosim::{Gains, VOLTAGES};
+use crate::cosim::{Gains, set_voltages};
 
 /// Runs an instance and reads `record` at its end. What a sweep of harvester and circuit sets in the circuit is left out.
 pub(super) fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run, record: &[Variable]) -> Result<Results, FmiError> {
@@ -13,14 +13,9 @@ pub(super) fn run_fmu(fmu: &Fmu, sweep: &Sweep, run: &Run, record: &[Variable]) 
     let settings = sweep.settings.iter().map(|(variable, value)| (variable, value));
     let is_there = |variable: &Variable| fmu.description().variable(&variable.name).is_ok();
     let mut choices: Vec<_> = settings.chain(sweep.assigned(run)).filter(|(variable, _)| is_there(variable)).collect();
-    // As the model has the membranes where no circuit gives them a voltage: at that of the supply, if none is set.
-    let set = |name: &str| choices.iter().rfind(|(variable, _)| variable.name == name);
-    if let Some((_, bias)) = set("biasVoltage") {
-        let missing = VOLTAGES.into_iter().filter(|name| set(name).is_none());
-        let inputs = missing.filter_map(|name| fmu.description().variable(name).ok()).filter(|it| it.is_input());
-        let added: Vec<_> = inputs.map(|variable| (variable, *bias)).collect();
-        choices.extend(added);
-    }
+    let input = |name| fmu.description().variable(name).ok().filter(|variable| variable.is_input());
+    let like = |&(_, bias): &(&Variable, _), name| Some((input(name)?, bias));
+    set_voltages(&mut choices, |(variable, _)| &variable.name, like);
     instance.begin_initialization(
         0.0,
         None,

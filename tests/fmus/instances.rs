@@ -3,6 +3,8 @@
 use std::thread;
 
 use fmu_import::{Fmu, Logging, Value};
+use videg::scenario::{Request, Setting};
+use videg::simulate;
 
 use super::fmus;
 use super::instance::initialised;
@@ -34,4 +36,22 @@ fn sixty_four_instances_on_eight_threads_give_the_results_of_one() {
     let together: Vec<f64> = threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect();
     assert_eq!(alone, together);
     assert!(alone.iter().all(|gain| *gain > 0.0) && alone.windows(2).any(|pair| pair[0] != pair[1]));
+}
+
+#[test]
+fn membranes_begin_at_the_voltage_of_the_supply_unless_theirs_is_set() {
+    let [fmu, _] = fmus();
+    let mut random = fastrand::Rng::with_seed(7);
+    for _ in 0..20 {
+        let [bias, left] = [(); 2].map(|()| 1e4 * random.f64());
+        let mut settings = vec![Setting::new("biasVoltage", bias.to_string())];
+        let is_set = random.bool();
+        if is_set {
+            settings.insert(0, Setting::new("left.voltage", left.to_string()));
+        }
+        let scenario = Request { settings, ..Request::default() }.resolve().unwrap();
+        let instance = simulate::instance(&fmu, &scenario).unwrap();
+        let voltages = ["left.voltage", "right.voltage"].map(|name| instance.get_by_name(name).unwrap());
+        assert_eq!(voltages, [if is_set { left } else { bias }, bias].map(Value::Real));
+    }
 }

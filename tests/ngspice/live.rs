@@ -1,15 +1,16 @@
 //! ngspice's shared library in its worker process, and what happens when the worker or the library fails. `videg crosscheck`
 //! compares its energies with those of the embedded solver.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use videg::cosim::{CircuitSample, CircuitSlave, NgspiceCircuit};
 use videg::ngspice::live::{Circuit, Job, LiveError, Ramp, Reply, State, WORKER_VERB, Wanted, Worker};
 use videg::ngspice::{Elements, Run};
 use videg_circuit::Settings;
-use videg_system::messages::frame;
+use videg_system::messages::{frame, take};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_videg");
 const STEP: f64 = 1e-3;
@@ -175,6 +176,20 @@ fn a_worker_that_dies_hangs_or_talks_nonsense_is_an_error_and_not_more() {
     assert_eq!(error.to_string(), "no answer of ngspice about the netlist within 1 s");
     let missing = Worker::start(Path::new("/nowhere/videg"), &job(), Duration::from_secs(1)).err().unwrap();
     assert!(missing.to_string().starts_with(&format!("cannot start /nowhere/videg {WORKER_VERB}: ")), "{missing}");
+}
+
+#[test]
+fn a_worker_of_another_build_says_so() {
+    let mut command = Command::new(PROGRAM);
+    command.arg(WORKER_VERB).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut worker = command.spawn().unwrap();
+    worker.stdin.take().unwrap().write_all(&frame(&"0.0.0 with messages 0").unwrap()).unwrap();
+    let mut said = worker.wait_with_output().unwrap().stdout;
+    let Some(Reply::Failure(reason)) = take(&mut said, 1000).unwrap() else { panic!("another answer") };
+    assert!(
+        reason.starts_with("the worker is of videg ") && reason.ends_with("this is 0.0.0 with messages 0"),
+        "{reason}"
+    );
 }
 
 #[test]

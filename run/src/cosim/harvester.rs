@@ -108,28 +108,31 @@ struct Feedback {
     work: Option<[u32; 1]>,
 }
 
-/// An instance of `fmu`, initialised with `settings` for a run from 0 s to `stop`, s.
+/// An instance of the harvester in `fmu`, initialised with `settings` for a run from 0 s to `stop`, s.
 ///
 /// # Errors
 /// A setting that the FMU refuses.
 pub fn instantiate(fmu: &Fmu, stop: Option<f64>, settings: &[Setting]) -> Result<Instance, CosimError> {
-    let mut instance = begin(fmu, "harvester", stop, settings, Setting::value_for_fmu)?;
+    let mut settings = settings.to_vec();
+    let like = |bias: &Setting, name: &str| Some(Setting { name: name.to_owned(), ..bias.clone() });
+    set_voltages(&mut settings, |setting| &setting.name, like);
+    let mut instance = begin(fmu, "harvester", stop, &settings, Setting::value_for_fmu)?;
     instance.exit_initialization_mode()?;
     Ok(instance)
 }
 
 /// Voltages of the membranes, which are inputs.
-pub const VOLTAGES: [&str; 2] = ["left.voltage", "right.voltage"];
+const VOLTAGES: [&str; 2] = ["left.voltage", "right.voltage"];
 
-/// The settings, with membranes at the voltage of the supply, unless they say more of it: so the model has them where no circuit gives
-/// them another.
-fn with_voltages(settings: &[Setting]) -> Vec<Setting> {
-    let mut all = settings.to_vec();
-    if let Some(bias) = settings.iter().rfind(|setting| setting.name == "biasVoltage") {
-        let missing = VOLTAGES.into_iter().filter(|name| settings.iter().all(|setting| setting.name != *name));
-        all.extend(missing.map(|name| Setting { name: name.to_owned(), ..bias.clone() }));
+/// Adds the voltages of the membranes to settings that give the voltage of the supply but not these: so the model has them where no
+/// circuit gives them another. `name` is that of a setting, `like` one that sets another variable to the same, if it can be set.
+pub fn set_voltages<T>(settings: &mut Vec<T>, name: impl Fn(&T) -> &str, like: impl Fn(&T, &'static str) -> Option<T>) {
+    let Some(bias) = settings.iter().rposition(|setting| name(setting) == "biasVoltage") else { return };
+    for voltage in VOLTAGES {
+        if settings.iter().all(|setting| name(setting) != voltage) {
+            settings.extend(like(&settings[bias], voltage));
+        }
     }
-    all
 }
 
 impl HarvesterFmu {
@@ -138,7 +141,7 @@ impl HarvesterFmu {
     /// # Errors
     /// A setting that the FMU refuses, or an FMU that lacks a variable.
     pub fn new(fmu: &Fmu, scenario: &Scenario, settings: &[Setting]) -> Result<Self, CosimError> {
-        let instance = instantiate(fmu, Some(scenario.until), &with_voltages(settings))?;
+        let instance = instantiate(fmu, Some(scenario.until), settings)?;
         let reals = references(fmu, REALS)?;
         let counts = references(fmu, ["impact.count", "solver.events"])?;
         let voltages = references(fmu, VOLTAGES)?;

@@ -44,7 +44,7 @@ pub use error::CosimError;
 pub use excitation::Excitation;
 pub use flows::Flows;
 pub use harvester::instantiate;
-pub use harvester::{HarvesterFmu, HarvesterSample, VOLTAGES};
+pub use harvester::{HarvesterFmu, HarvesterSample, set_voltages};
 pub use instance::{read, references};
 pub use mapping::Mapping;
 pub use master::{Master, Observer, Outcome, Row};

@@ -142,8 +142,7 @@ impl Worker {
     }
 
     fn lost(&self, end: End, to: f64) -> LiveError {
-        let when =
-            if to > 0.0 { format!("between {} s and {to} s", self.time) } else { "about the netlist".to_owned() };
+        let when = self.when(to);
         let how = match end {
             End::TooLong => return LiveError::TimeLimit { when, limit: self.limit },
             End::Ended(status) => status.to_string(),
